@@ -16,7 +16,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud
+from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.adc_synthesis import AdcSynthesis
+from mmweaver.paths.board_correction import corrected
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.paths import Interaction
 from mmweaver.paths.receiver import Impairments, Receiver
@@ -119,6 +121,23 @@ def test_an_ideal_board_shows_no_errors():
     assert abs(found.board.first_chirp_amplitude_percent) < 0.05
     if found.board.channel_gain_db.size:
         assert np.abs(found.board.channel_gain_db).max() < 0.8
+
+
+def test_a_recording_is_corrected_by_the_board_that_it_was_calibrated_from(board: Board, found: Calibration):
+    made = cluttered_room(board, frames=4)
+    ideal = radar_cube(cluttered_room(replace(Board(), noise_figure_db=12.0), frames=4)).values
+    raw, mended = (radar_cube(one).values for one in (made, corrected(made, found.board).adc))
+    near, room = slice(0, 8), slice(30, 200)  # 0 to 0.3 m, 1.3 to 8.8 m
+    loops = RADAR.num_loops // 2
+
+    def amiss_db(values: np.ndarray, bins: slice) -> float:
+        error = values[:, bins, loops] - ideal[:, bins, loops]
+        return float(20 * np.log10(np.linalg.norm(error) / np.linalg.norm(ideal[:, bins, loops])))
+
+    # what is linear in an antenna's place is a direction, and stays
+    assert amiss_db(mended, room) < amiss_db(raw, room) - 2
+    before, after = (np.abs(values[:, near, loops]).max() for values in (raw, mended))
+    assert after < 0.1 * before
 
 
 def people(range_m: np.ndarray, phase_deg: float, middle_m: float, seed: int = 0) -> PointCloud:

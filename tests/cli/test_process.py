@@ -1,12 +1,14 @@
 """mmweaver process: recordings of a radar become the same files; what is no recording becomes one line."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
+from mmweaver.core.boards import typical_board
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
@@ -161,3 +163,38 @@ def test_bad_input_is_one_line_and_writes_nothing(
     assert says in captured.err
     assert captured.out == ""
     assert sorted(file.name for file in tmp_path.iterdir()) == before
+
+
+def test_a_board_is_taken_away(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    board = replace(typical_board(AWR1843, 3), drift_ppm=0.3)
+    board.save(tmp_path / "board.json")
+    plain, mended = tmp_path / "plain", tmp_path / "mended"
+    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--no-pictures", "--no-analysis"]
+    assert main([*argv, "--out", str(plain)]) == 0
+    assert main([*argv, "--board", str(tmp_path / "board.json"), "--out", str(mended)]) == 0
+    said = json.loads((mended / "meta.json").read_text())["board"]
+    assert said["name"] == "typical:3"
+    assert set(said["corrected"]) >= {"antenna errors", "IF response", "range bias", "first chirp"}
+    assert any(one.startswith("drift") for one in said["left_in"])
+    assert json.loads((plain / "meta.json").read_text())["board"] is None
+    cubes = [read_radar_npz(folder / "radar.npz") for folder in (plain, mended)]
+    loops = AWR1843.num_loops // 2
+    places = []
+    for cube in cubes:
+        power = (np.abs(cube.values[0, :, loops]) ** 2).mean(axis=1)
+        at = int(power.argmax())
+        near = slice(at - 2, at + 3)
+        places.append(float((power[near] * cube.grid.range_m[near]).sum() / power[near].sum()))
+    assert places[0] - places[1] == pytest.approx(board.range_bias_m, abs=0.01)
+    # a cube of a folder is corrected, too
+    again = tmp_path / "again"
+    assert main(["process", str(plain), "--board", str(tmp_path / "board.json"), "--no-pictures", "--no-analysis",
+                 "--out", str(again)]) == 0  # fmt: skip
+    from_cube = read_radar_npz(again / "radar.npz").values[:, 4:-4]
+    whole = cubes[1].values[:, 4:-4]
+    assert np.linalg.norm(from_cube - whole) < 0.15 * np.linalg.norm(whole)
+    capsys.readouterr()
+    (tmp_path / "none.json").write_text("{}")
+    assert main([*argv, "--board", str(tmp_path / "none.json"), "--out", str(tmp_path / "nothing")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "nothing").exists()

@@ -22,6 +22,7 @@ EXAMPLES = """examples:
   mmweaver process capture_00000/ --out capture/
   mmweaver process sitting.bin --radar profile.cfg --range 0.3,3 --out sitting/     # breathing, heart, displacement
   mmweaver process walk.bin --radar adv.cfg --subframe 1 --antennas aop --remove-static auto --out walk/
+  mmweaver process walk.bin --radar profile.cfg --board board.json --out walk/     # without the board's errors
   mmweaver process adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample --out capture/
 """
 
@@ -55,6 +56,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "--strict", action="store_true", help="refuse samples that do not fit the settings (default: a warning)"
     )
     add_board_options(recording)
+    recording.add_argument(
+        "--board", type=source, metavar="FILE",
+        help="board.json of the board that made it (mmweaver calibrate), whose errors are taken away",
+    )  # fmt: skip
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_points_option(output)
@@ -91,6 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.file, radar_of(arguments), layout=arguments.layout, axes=arguments.axes,
             iq_order=arguments.iq_order, tx_order=arguments.tx_order, range_m=arguments.range_m,
             range_bins=arguments.range_bins, points=arguments.points, static_removal=arguments.remove_static,
+            board=arguments.board,
             analyse=not arguments.no_analysis,
             strict=arguments.strict, stages=Stages(bar),
         )  # fmt: skip

@@ -37,13 +37,13 @@ class BoardEffects:
     # paths ----------------------------------------------------------------------------------------------------------
     def on_static(self, paths: StaticPaths) -> StaticPaths:
         """Static paths (path,) as strong as the receiver's IF leaves them."""
-        factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * self._gain
+        factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * self.gain
         return replace(paths, amplitude=paths.amplitude * factor)
 
     def on_moving(self, paths: Paths, frames: np.ndarray, seed: int) -> Paths:
         """Moving paths (frame * segment, path) of frames of these numbers, with the carrier's drift, too."""
         length_m = paths.length_m
-        factor = self.if_response(length_m) * self._gain
+        factor = self.if_response(length_m) * self.gain
         if self.board.drift_ppm:
             drift = torch.from_numpy(np.repeat(self.drift(frames, seed), len(length_m) // len(frames)))
             turn = length_m * (2 * torch.pi / self.radar.wavelength_m) * drift[:, None]
@@ -51,20 +51,22 @@ class BoardEffects:
         return replace(paths, amplitude=(paths.amplitude * factor).to(torch.complex64))
 
     @property
-    def _gain(self) -> float:
+    def gain(self) -> float:
+        """Of the amplitude of echoes."""
         return 10 ** (self.board.gain_db / 20)
 
     def if_response(self, length_m: Tensor) -> Tensor:
         """Complex gain (...) of the IF at the beats of path lengths (...)."""
         config = self.radar
         beat_hz = config.chirp_slope_hz_per_s * (length_m + self.extra_length_m) / SPEED_OF_LIGHT_MPS
-        return torch.from_numpy(self._response((beat_hz / config.sample_rate_hz).numpy()))
+        return torch.from_numpy(self.response((beat_hz / config.sample_rate_hz).numpy()))
 
     def noise_gain(self, share: np.ndarray) -> np.ndarray:
         """By what the IF multiplies the amplitude of noise at shares (...) of the sample rate."""
-        return np.abs(self._response(share))
+        return np.abs(self.response(share))
 
-    def _response(self, share: np.ndarray) -> np.ndarray:
+    def response(self, share: np.ndarray) -> np.ndarray:
+        """Complex gain (...) of the IF at shares (...) of the sample rate."""
         board = self.board
         if not len(board.if_share):
             return np.ones(share.shape, complex)

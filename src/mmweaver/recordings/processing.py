@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.board import Board, read_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
@@ -24,7 +25,7 @@ from mmweaver.formats.npz_files import write_npz
 from mmweaver.formats.radar_file import load_firmware
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 from mmweaver.recordings.plausibility import implausible
-from mmweaver.recordings.read_recording import Recording, as_config, read_recording
+from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 
@@ -88,12 +89,14 @@ def process_recording(
     range_bins: tuple[int, int] | None = None,
     points: str = "cfar",
     static_removal: str = "none",
+    board: str | Path | Board | None = None,
     analyse: bool = True,
     strict: bool = False,
     stages: Stages | None = None,
 ) -> ProcessedRecording:
     """Reads a recording and takes it through range, Doppler, angle and CFAR.
 
+    `board`: whose errors are taken away first, a board.json (`mmweaver calibrate`) or a Board.
     `path`, `radar`, `layout`, `axes`, `iq_order`, `tx_order`, `range_m` and `range_bins` as in `read_recording`.
     `static_removal` (see `dsp.cube.remove_static`) takes static clutter away from the cube and its points; `analyse`
     looks for slow movement, vital signs, micro-Doppler and people. The meta warns of samples that do not fit the
@@ -103,6 +106,7 @@ def process_recording(
     frame, by the recorder's clock. Raises InputError for anything that cannot be read so.
     """
     stages = stages or Stages()
+    made_by = read_board(board) if isinstance(board, str | Path) else board
     if radar is not None:  # a point cloud that this radar cannot have is refused before its samples are read
         check_points(points, as_config(radar))
         _firmware(points, None if isinstance(radar, RadarConfig) else str(radar))
@@ -111,6 +115,8 @@ def process_recording(
             path, radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order, range_m=range_m,
             range_bins=range_bins,
         )  # fmt: skip
+        if made_by is not None:
+            recording = without_board(recording, made_by)
         check_points(points, recording.config)
         if recording.adc is None and points != "firmware" and needs_adc(points):
             raise InputError(f"{path} holds a cube, but --points {points} needs raw samples; give the raw recording")
@@ -136,6 +142,7 @@ def process_recording(
         "points": points,
         "static_removal": static_removal,
         "calibration": _calibration_meta(recording),
+        "board": _board_meta(recording),
         "warnings": warnings,
         "analysis": None if analysis is None else analysis.meta(),
         "firmware": firmware,
@@ -153,6 +160,14 @@ def _calibration_meta(recording: Recording) -> dict[str, Any] | None:
     if own is None:
         return None
     return {"range_bias_m": own.range_bias_m, "factor_abs": np.abs(own.factors), "factor_rad": np.angle(own.factors)}
+
+
+def _board_meta(recording: Recording) -> dict[str, Any] | None:
+    """The board whose errors were taken away, which of them were and were not."""
+    own = recording.board
+    if own is None:
+        return None
+    return {**own.board.meta(), "corrected": own.corrected, "left_in": own.left_in}
 
 
 def _warnings(recording: Recording, strict: bool) -> list[str]:

@@ -14,12 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.board import Board
 from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.dsp.cube import cropped, radar_cube, tdm_compensation
+from mmweaver.dsp.cube import adc_from_cube, cropped, radar_cube, tdm_compensation
 from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
@@ -28,10 +29,20 @@ from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_cubelearn,
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.formats.ti_calibration import read_ti_calibration
+from mmweaver.paths.board_correction import corrected
 from mmweaver.stream_folder import is_stream, read_stream_cube
 
 CUBE = "radar.npz"
 PACKET_SUFFIXES = (".pcap", ".pcapng")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CorrectedBoard:
+    """A board whose errors were taken away, and which of them were and were not."""
+
+    board: Board
+    corrected: tuple[str, ...]
+    left_in: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +61,7 @@ class Recording:
     first_frame: int = 0  # of the stretch that was read
     packets: PacketCapture | None = None  # of a capture folder or file
     calibration: ChannelCalibration | None = None  # whose errors were taken away
+    board: CorrectedBoard | None = None  # and of a board.json
 
     @cached_property
     def cube(self) -> RadarCube:
@@ -181,6 +193,28 @@ def _with_range(found: Recording, range_m: tuple[float, float] | None, range_bin
     adc = None if found.adc is None else replace(found.adc, config=config)
     cube = None if found.stored_cube is None else cropped(found.stored_cube, config)
     return replace(found, config=config, adc=adc, stored_cube=cube)
+
+
+def without_board(found: Recording, board: Board) -> Recording:
+    """The recording without the errors of the board that made it.
+
+    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias. Raises
+    InputError for the board of another radar.
+    """
+    samples = found.adc
+    if samples is None:
+        assert found.stored_cube is not None
+        samples = adc_from_cube(found.stored_cube)
+    fixed = corrected(samples, board)
+    done = CorrectedBoard(board=board, corrected=fixed.corrected, left_in=fixed.left_in)
+    stored = found.stored_cube
+    if stored is not None:
+        values = radar_cube(fixed.adc, compensate_tdm=found.compensate_tdm).values
+        stored = replace(stored, values=values, config=fixed.adc.config)
+        grid = replace(CubeGrid.of(fixed.adc.config, len(values)), frame_time_s=stored.grid.frame_time_s)
+        stored = replace(stored, grid=grid)
+    adc = None if found.adc is None else fixed.adc
+    return replace(found, adc=adc, stored_cube=stored, config=fixed.adc.config, board=done)
 
 
 def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
