@@ -131,6 +131,7 @@ def network_seconds(device: str) -> dict[str, float]:
         point_cross_section_m2=1e-3 * torch.rand(NUM_POINTS, generator=generator),
         point_features=torch.rand(NUM_POINTS, POINT_FEATURES, generator=generator),
         camera_from_radar=torch.tensor([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        camera_m=torch.zeros(3),
         camera=torch.tensor([100.0, 100.0, 80.0, 60.0]),
         plane_centre_m=torch.tensor([[0.0, 2.0, -1.2]]).repeat(NUM_PLANES, 1),
         plane_axes=torch.eye(3).repeat(NUM_PLANES, 1, 1),

@@ -17,6 +17,7 @@ from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.firmware import firmware_points
+from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.formats.npz_files import (
     read_npz,
     read_points_npz,
@@ -28,6 +29,8 @@ from mmweaver.formats.npz_files import (
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.methods import METHODS, Signal
+from mmweaver.models.power_network import PowerNetwork
+from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.verification import verify
 
@@ -288,13 +291,26 @@ def test_several_radars_record_the_same_scene(weaver: Weaver, room: Room, walk: 
         elsewhere.save_html(tmp_path / "page.html")
 
 
-def test_the_network_knows_radars_at_the_camera_only(room: Room):
-    there = mmweaver.RadarPose(x_m=0.3)
-    made = Weaver().generate(room, TEXT, frames=2, radar_poses=[there])
-    assert made.meta["method"] == "physics"
-    assert any("network" in sentence for sentence in made.meta["assumed"])
-    with pytest.raises(InputError, match="choose physics"):
-        Weaver("weaver").request(TEXT, radar_poses=[there])
+def test_the_network_follows_the_radar(room: Room, tmp_path: Path):
+    """A radar that is turned sees the same echoes at another angle; fields of power refuse."""
+    turned = mmweaver.RadarPose(yaw_deg=20.0)
+    made = Weaver().generate(room, TEXT, frames=2, seed=3, radar_poses=[mmweaver.RadarPose(), turned])
+    here, there = made.radars
+    assert there.meta["method"] == "weaver"
+    assert any("trained with radars at the camera" in sentence for sentence in there.meta["assumed"])
+    x, y = there.pose.joints_m[0, 0, :2]
+    expected = np.sin(np.arctan2(x, y))
+    angle = azimuth_axis_rad()
+    power = range_azimuth_power(there.cube, angle, moving_only=True).sum(axis=(0, 1))
+    assert np.sin(angle[power.argmax()]) == pytest.approx(expected, abs=0.2)
+    assert not np.array_equal(here.cube.values, there.cube.values)
+    card = WeightsCard(
+        recipe="paper_power", licence="MIT", dataset_sha256="", radar="awr1843", steps=1, seed=0, validation_loss=0.0,
+        mmweaver_version="0",
+    )  # fmt: skip
+    save_weights(tmp_path / "fields.safetensors", PowerNetwork(), card)
+    with pytest.raises(InputError, match="fields of power"):
+        Weaver(weights=tmp_path / "fields.safetensors").request(TEXT, radar_poses=[turned])
 
 
 def test_a_background_recording_is_of_one_radar(weaver: Weaver, room: Room, walk: Path):

@@ -55,8 +55,6 @@ from mmweaver.streaming import (
     takes_argument,
 )
 
-BY_PHYSICS = "the network has only seen radars at the camera; the signals of radars elsewhere are those of physics"
-
 
 class Weaver(RoomReader):
     """Generates radar signals with one method and one radar.
@@ -155,22 +153,17 @@ class Weaver(RoomReader):
         Raises InputError for a request that cannot be met.
         """
         request = parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
-        self._method_for(request)
+        self._check_poses(request)
         return request
 
-    def _method_for(self, request: Request) -> Method:
-        """The method that makes the signals: the ray tracer's where a radar stands elsewhere, if none was chosen.
-
-        Raises InputError where the network was.
-        """
-        if all(pose.is_at_camera for pose in request.radar_poses) or not isinstance(self.method, Learned):
-            return self.method
-        if self.method_name != DEFAULT_METHOD:
+    def _check_poses(self, request: Request) -> None:
+        """Raises InputError for radars that the method's weights do not know."""
+        elsewhere = any(not pose.is_at_camera for pose in request.radar_poses)
+        if elsewhere and isinstance(self.method, Learned) and self.method.reads_fields:
             raise InputError(
-                "the network has only seen radars that stand at the camera, level; leave out the method and weights,"
-                " or choose physics, for radars elsewhere"
+                "fields of power (recipe paper_power) are counted from what a radar at the camera has before it; leave"
+                " out the weights, or choose physics, for radars elsewhere"
             )
-        return METHODS["physics"]()
 
     def generate(
         self,
@@ -274,22 +267,20 @@ class Weaver(RoomReader):
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
         scenes = [scene_seen_from(room.scene, pose) for pose in poses]
-        method = self._method_for(request)
+        self._check_poses(request)
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
             people = compose_request(request, room.scene) if people is None else people
-        results = [self._recorded(request, replace(room, scene=scene), people, method, stages) for scene in scenes]
+        results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 
-    def _recorded(
-        self, request: Request, room: Room, people: tuple[Motion, ...], method: Method, stages: Stages
-    ) -> Generation:
+    def _recorded(self, request: Request, room: Room, people: tuple[Motion, ...], stages: Stages) -> Generation:
         """What one radar records; `room` is in its frame, the people in the camera's."""
         pose = room.scene.radar_pose
         motions = people_seen_from(tuple(person.pose for person in people), pose)
         board, given = self.board_of(replace(request, seed=pose.noise_seed(request.seed)), room)
-        signal = method(
+        signal = self.method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
             keep_adc=request.keep_adc or needs_adc(self.points), stages=stages, background=room.background,
             **given,
@@ -300,8 +291,6 @@ class Weaver(RoomReader):
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
             adc = self.calibration.recorded(adc)
-        if method is not self.method:
-            signal = replace(signal, method="physics", assumptions=(*signal.assumptions, BY_PHYSICS))
         if not pose.is_at_camera:
             signal = replace(signal, assumptions=(*signal.assumptions, *unseen_notes(poses, request.range_window_m)))
         meta = self._meta(request, room, people, poses, signal, board)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar, runtime_checkable
 
@@ -31,6 +32,7 @@ LEARNED_NOTE = UsualAssumption(
 FIELDS_NOTE = (
     "a hypernetwork wrote fields of power (recipe paper_power); each of their cells is a scatterer of sampled phase"
 )
+ELSEWHERE = "the network was trained with radars at the camera; elsewhere it is as near to the truth as physics is"
 FIRST_ORDER_ALONE = "one bounce off rough surfaces and off the body: no paths over both"
 RECORDED = "static clutter is that of the background recording"
 
@@ -158,6 +160,14 @@ class Learned:
         self.weights = weights
         self._encoded = _Latest(self._encode)
 
+    @cached_property
+    def reads_fields(self) -> bool:
+        """Whether the weights are of recipe `paper_power`."""
+        from mmweaver.models.power_network import RECIPE
+        from mmweaver.models.weights import read_card
+
+        return self.weights is not None and read_card(self.weights).recipe == RECIPE
+
     def __call__(
         self,
         scene: Scene,
@@ -178,10 +188,13 @@ class Learned:
             room = self._encoded.get(scene, config, background, board)
         with stages("weave the signal"):
             motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
-            cube, adc = room.signal(motions, seed=seed, keep_adc=keep_adc, first_frame=first_frame)
+            cube, adc = room.signal(
+                motions, seed=scene.radar_pose.noise_seed(seed), keep_adc=keep_adc, first_frame=first_frame
+            )  # fmt: skip
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         note = FIELDS_NOTE if room.reads_cells else LEARNED_NOTE
-        assumptions = (note, *several, *_of_background(room.background))
+        moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
+        assumptions = (note, *moved, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
     def _encode(

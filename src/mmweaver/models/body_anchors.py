@@ -161,7 +161,8 @@ def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Ten
     """How much farther than the anchor the photo's surface lies (at it, above, next to it), and whether in view."""
     seen, inside = [], torch.zeros_like(distance)
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
-        camera = (place + place.new_tensor([x, 0.0, z])) @ room.camera_from_radar[:, None].transpose(-1, -2)
+        shifted = place + place.new_tensor([x, 0.0, z]) - room.camera_m[:, None, None]
+        camera = shifted @ room.camera_from_radar[:, None].transpose(-1, -2)
         depth = camera[..., 2].clamp(min=0.1)
         column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *room.camera[:, None, None].unbind(-1))
         rows, columns = room.depth_m.shape[-2:]

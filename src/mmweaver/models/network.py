@@ -156,7 +156,7 @@ class WeaverNetwork(EchoNetwork):
 @in_full_precision
 def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
-    camera = point_m @ view.camera_from_radar.transpose(-1, -2)
+    camera = (point_m - view.camera_m[:, None]) @ view.camera_from_radar.transpose(-1, -2)
     depth = camera[..., 2].clamp(min=0.05)
     column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *view.camera[:, None].unbind(-1))
     rows, columns = view.depth_m.shape[-2:]

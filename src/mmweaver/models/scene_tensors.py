@@ -38,6 +38,7 @@ class SceneTensors(TensorRecord):
     point_cross_section_m2: Tensor  # (point,) what physics says of the photographed room; 0 = no point
     point_features: Tensor  # (point, POINT_FEATURES)
     camera_from_radar: Tensor  # (3, 3)
+    camera_m: Tensor  # (3,) where the camera stands, in the radar's frame
     camera: Tensor  # (4,) fx, fy, cx, cy in cells of the picture
     plane_centre_m: Tensor  # (plane, 3)
     plane_axes: Tensor  # (plane, 3, 3): u, v, normal
@@ -63,6 +64,7 @@ class SceneTensors(TensorRecord):
             depth_m=_tensor(np.nan_to_num(grid.depth_m[view])),
             **points,
             camera_from_radar=_tensor(scene.radar_from_camera.T),
+            camera_m=_tensor(scene.radar_pose.seen(np.zeros(3))),
             camera=_tensor(np.array([camera.fx, camera.fy, camera.cx, camera.cy])),
             **planes,
         )  # fmt: skip

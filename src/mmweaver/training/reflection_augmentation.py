@@ -27,6 +27,7 @@ def reflected_scene(scene: SceneTensors) -> SceneTensors:
         point_m=scene.point_m * flip,
         point_features=_negated(scene.point_features, _POINT_X),
         camera_from_radar=scene.camera_from_radar * flip * flip[:, None],
+        camera_m=scene.camera_m * flip,
         camera=camera,
         plane_centre_m=scene.plane_centre_m * flip,
         plane_axes=scene.plane_axes * flip,
