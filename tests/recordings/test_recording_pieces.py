@@ -11,6 +11,7 @@ from mmweaver.formats.npz_files import write_radar_npz
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.recordings.recording_pieces import RecordingPieces
 from mmweaver.stream_folder import LIST, PARTS
+from tests.captures import packets_of, pcap_of
 from tests.fields.echoes import SMALL
 
 RADAR = replace(SMALL, num_loops=2, num_range_bins=4, num_samples=32)
@@ -23,12 +24,16 @@ def samples() -> np.ndarray:
     return (100 * (draw[0] + 1j * draw[1])).astype(np.complex64)
 
 
-@pytest.mark.parametrize("kind", ["bin", "npy", "npy, frames not first", "npz", "stream"])
+@pytest.mark.parametrize("kind", ["bin", "pcap", "npy", "npy, frames not first", "npz", "stream"])
 def test_a_stretch_of_frames_is_that_of_the_whole(kind: str, samples: np.ndarray, tmp_path: Path):
     how: dict = {}
     if kind == "bin":
         path = tmp_path / "adc_data.bin"
         write_bin(path, AdcCube(samples=samples, config=RADAR, scale=1.0))
+    elif kind == "pcap":
+        path = tmp_path / "dca.pcap"
+        path.write_bytes(pcap_of(packets_of(tmp_path, AdcCube(samples=samples, config=RADAR, scale=1.0))))
+        how["iq_order"] = "qi"
     elif kind.startswith("npy"):
         path = tmp_path / "adc.npy"
         is_first = kind == "npy"

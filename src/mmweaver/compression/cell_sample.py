@@ -1,6 +1,8 @@
 """What cells would cost at any step, estimated from some of them and without coding (encoder side)."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -27,15 +29,21 @@ class Estimate:
 
 @dataclass(frozen=True, kw_only=True)
 class CellSample:
-    """Coefficients of some cells. `front_bytes`: what is coded besides cells."""
+    """Coefficients of some cells, and what is coded besides cells.
+
+    That is `front_bytes` at `front_step`, with so many values of which each costs a bit more where the step is halved.
+    """
 
     magnitude: Array  # (part, beam, cell) float32
     is_active: Array  # (cell,)
     weight: Array  # (cell,): how many cells each stands for
     front_bytes: int = 0
+    front_values: int = 0
+    front_step: float = 1.0
+    _known: dict[tuple[float, int], Estimate] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, coefficients: Array, is_active: Array, front_bytes: int = 0) -> "CellSample":
+    def of(cls, coefficients: Array, is_active: Array, front_bytes: int = 0, **front: Any) -> "CellSample":
         """A sample of coefficients (beam, time, range, index); all of the strongest cells are in it."""
         flat, active = coefficients.reshape(len(coefficients), -1), is_active.reshape(-1)
         chosen, weight = np.arange(flat.shape[1]), np.ones(flat.shape[1])
@@ -52,21 +60,27 @@ class CellSample:
         some = flat[:, chosen]
         return cls(
             magnitude=np.abs(np.stack([some.real, some.imag])), is_active=active[chosen], weight=weight,
-            front_bytes=front_bytes,
+            front_bytes=front_bytes, **front,
         )  # fmt: skip
 
-    def at(self, step: float, coarser: int, price: float = PRICE) -> Estimate:
-        """The estimate for a step; cells that are not active have `coarser` times that. `price`: see `quantized`."""
+    def at(self, step: float, coarser: int) -> Estimate:
+        """The estimate for a step; cells that are not active have `coarser` times that."""
+        if (step, coarser) not in self._known:
+            self._known[step, coarser] = self._estimated(step, coarser)
+        return self._known[step, coarser]
+
+    def _estimated(self, step: float, coarser: int) -> Estimate:
         own_step = np.where(self.is_active, step, step * (coarser or 1)).astype(self.magnitude.dtype)
         magnitude = self.magnitude / own_step
         levels = np.floor(magnitude + np.float32(ROUNDING))
         bits = approximate_bits(levels).sum(axis=(0, 1)) + OPEN_BITS
         gain = np.sum(levels * (2 * magnitude - levels), axis=(0, 1))
-        is_open = (gain > price * bits) & levels.any(axis=(0, 1)) & (self.is_active | (coarser > 0))
+        is_open = (gain > PRICE * bits) & levels.any(axis=(0, 1)) & (self.is_active | (coarser > 0))
         error = np.square(magnitude).sum(axis=(0, 1)) - np.where(is_open, gain, 0)
         error = error * own_step.astype(np.float64) ** 2 * self.weight
         num_bits = SHORTER * float(np.sum(bits * is_open * self.weight))
+        num_bits += self.front_values * math.log2(self.front_step / step)
         return Estimate(
-            num_bytes=self.front_bytes + num_bits / 8, active_error=float(error[self.is_active].sum()),
+            num_bytes=max(self.front_bytes + num_bits / 8, 1.0), active_error=float(error[self.is_active].sum()),
             all_error=float(error.sum()),
         )  # fmt: skip

@@ -18,7 +18,7 @@ from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
-from mmweaver.compression.low_rank import RankFactors
+from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.compression.residual_stream import PRICE, QuantizedCells, code_cells, quantized
@@ -28,7 +28,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.point_response import Points
 from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.layers import Layers, no_points, rendered, static_cells, strongest
+from mmweaver.fields.scatterers.layers import Layers, no_points, rendered, static_cells, strongest, values_of_point
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
@@ -121,7 +121,10 @@ class DecodedChunk:
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkDraft:
-    """A chunk whose cells are still to be coded. `front`: bytes before the stream, but for prefix and transform."""
+    """A chunk whose cells are still to be coded. `front`: bytes before the stream, but for prefix and transform.
+
+    `num_values`: real numbers coded in layers.
+    """
 
     step: float
     stream: Encoder
@@ -129,6 +132,7 @@ class ChunkDraft:
     front: bytes
     near: np.ndarray
     rank: int
+    num_values: int
     transform: ChunkTransform
     coefficients: np.ndarray
     is_active: np.ndarray
@@ -136,7 +140,9 @@ class ChunkDraft:
     def sample(self) -> CellSample:
         """Some cells, for estimates."""
         before = PREFIX.size + len(self.front) + len(self.transform.packed) + len(self.stream.to_bytes())
-        return CellSample.of(self.coefficients, self.is_active, before)
+        return CellSample.of(
+            self.coefficients, self.is_active, before, front_values=self.num_values, front_step=self.step
+        )
 
 
 @dataclass(kw_only=True)
@@ -157,6 +163,7 @@ class ChunkEncoder:
     _refined_points: tuple[int, Points] | None = None
     _noise: tuple[ChunkMode, NoiseLayer] | None = None
     _noise_sample: CellSample | None = None
+    _components: Components | None = None
 
     def __post_init__(self) -> None:
         self.beams = beams_of(self.frames.config)
@@ -199,16 +206,17 @@ class ChunkEncoder:
     def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
         """The chunk with its layers coded, and its cells not."""
         step = float(np.float32(step))
-        stream, flags, front = Encoder(), IS_VERSION_4, b""
+        stream, flags, front, num_values = Encoder(), IS_VERSION_4, b"", 0
         target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
         if mode.with_points and self.layers is not None:
-            target, near, more, front = self._points(stream, step)
+            target, near, more, front, num_values = self._points(stream, step)
             flags += more
         noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
-        factors = RankFactors.of(target, step, noise_power) if mode.with_rank else None
+        factors = self._factors(step, noise_power) if mode.with_rank else None
         if factors is not None:
             flags += HAS_RANK
             factors.code(stream)
+            num_values += factors.num_values
             target = (target - factors.values(step, target.shape)).astype(target.dtype)
         if mode.noise_step:
             noise = self._noise_layer(mode, target)
@@ -218,7 +226,8 @@ class ChunkEncoder:
         transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
         return ChunkDraft(
             step=step, stream=stream, flags=flags, front=front, near=near, rank=0 if factors is None else factors.rank,
-            transform=transform, coefficients=coefficients, is_active=transform.spread(self.is_active),
+            num_values=num_values, transform=transform, coefficients=coefficients,
+            is_active=transform.spread(self.is_active),
         )  # fmt: skip
 
     def exact(self, values: CubeValues) -> bytes:
@@ -250,6 +259,11 @@ class ChunkEncoder:
             self._noise = mode, NoiseLayer.of(quiet, mode.noise_step, self.beams)
         return self._noise[1]
 
+    def _factors(self, step: float, noise_power: float) -> RankFactors | None:
+        if self._components is None:
+            self._components = components_of(self.target)
+        return RankFactors.of_components(self._components, self.target.shape, step, noise_power)
+
     def _transformed(self, choice, target, *, is_plain: bool) -> tuple[ChunkTransform, np.ndarray]:
         if is_plain and choice in self._coefficients:
             return self._coefficients[choice]
@@ -259,8 +273,9 @@ class ChunkEncoder:
             self._coefficients[choice] = found
         return found
 
-    def _points(self, stream: BitStream, step: float) -> tuple[np.ndarray, np.ndarray, int, bytes]:
-        """Codes static layer and scatterers; returns what remains, nearness, flags and the packed gains."""
+    def _points(self, stream: BitStream, step: float) -> tuple[np.ndarray, np.ndarray, int, bytes, int]:
+        """Codes static layer and scatterers; returns what remains, nearness, flags, the packed gains, and the number
+        of values."""
         assert self.layers is not None
         window = self.frames.fit_window()
         layers = self.layers
@@ -279,7 +294,8 @@ class ChunkEncoder:
         has_gains = bool((layers.calibration != 1).any())
         flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains
         near = nearness(coded, self.target.shape[:3])
-        return target, near, flags, _pack_gains(layers.calibration) if has_gains else b""
+        num_values = int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response)
+        return target, near, flags, _pack_gains(layers.calibration) if has_gains else b"", num_values
 
     def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
         values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)

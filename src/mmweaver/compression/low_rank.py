@@ -12,6 +12,7 @@ from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.level_coder import LevelCoder
 
 Array = np.ndarray
+Components = tuple[Array, Array, Array]  # left (row, component), strength (component,), right (component, column)
 MOST_RANK = 255
 ROUNDING = 0.4
 LEAST_GAIN = 0.3  # squared steps per bit that a component must remove
@@ -37,10 +38,16 @@ class RankFactors:
 
         Components no stronger than noise of `noise_power` a cell would be are left out.
         """
-        frames, num_range, doppler, antennas = values.shape
-        matrix = values.reshape(frames * num_range, doppler * antennas)
-        left, strength, right = np.linalg.svd(matrix, full_matrices=False)
-        rank = _worthwhile(strength, matrix.shape, step, noise_power)
+        return cls.of_components(components_of(values), values.shape, step, noise_power)
+
+    @classmethod
+    def of_components(
+        cls, components: Components, shape: tuple[int, ...], step: float, noise_power: float = 0.0
+    ) -> "RankFactors | None":
+        """As `of`, of the singular value decomposition of the values, which is the same for every step."""
+        frames, num_range, doppler, antennas = shape
+        left, strength, right = components
+        rank = _worthwhile(strength, (frames * num_range, doppler * antennas), step, noise_power)
         if not rank:
             return None
         scaled = (left[:, :rank] * strength[:rank]).T
@@ -53,6 +60,11 @@ class RankFactors:
     def rank(self) -> int:
         """Number of components."""
         return self.left.shape[2]
+
+    @property
+    def num_values(self) -> int:
+        """Levels that are not zero."""
+        return int(np.count_nonzero(self.left) + np.count_nonzero(self.right))
 
     def values(self, step: float, shape: tuple[int, int, int, int]) -> Complex[Array, "frame range doppler antenna"]:
         """The matrix as values of a chunk of this shape."""
@@ -75,6 +87,13 @@ class RankFactors:
             left=np.zeros((2, 1, rank, frames * num_range, 1), np.int64),
             right=np.zeros((2, 1, rank, doppler, antennas), np.int64),
         )
+
+
+def components_of(values: Complex[Array, "frame range doppler antenna"]) -> Components:
+    """The singular value decomposition of values, (frame, range) by (Doppler, antenna)."""
+    frames, num_range, doppler, antennas = values.shape
+    left, strength, right = np.linalg.svd(values.reshape(frames * num_range, doppler * antennas), full_matrices=False)
+    return left, strength, right
 
 
 def _worthwhile(strength: Array, shape: tuple[int, int], step: float, noise_power: float) -> int:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
+from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
 from mmweaver.compression.residual_stream import PRICE
@@ -30,6 +31,7 @@ class ModeChooser:
         self.encoder, self.without = encoder, without
         self.plain = ChunkMode(transform=choices_of(encoder.target.shape)[0])
         self.mode: ChunkMode | None = None
+        self.sample: CellSample | None = None  # of the mode decided on, at the step of the decision
 
     def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> CodedChunk:
         """The chunk at a step, in the mode decided on; with a noise layer where it has a step.
@@ -60,10 +62,11 @@ class ModeChooser:
         modes = [self.plain]
         if np.any(self.encoder.target):
             modes += self._layered(step, coarser)
-        self.mode = modes[0] if len(modes) == 1 else min(modes, key=lambda mode: self._cost(mode, step, coarser))
-
-    def _cost(self, mode: ChunkMode, step: float, coarser: int) -> float:
-        return self.encoder.draft(step, mode, coarser).sample().at(step, coarser).cost(step, coarser)
+        samples = [self.encoder.sample(self.plain.transform)]
+        samples += [self.encoder.draft(step, mode, coarser).sample() for mode in modes[1:]]
+        costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
+        best = int(np.argmin(costs))
+        self.mode, self.sample = modes[best], samples[best]
 
     def _layered(self, step: float, coarser: int) -> list[ChunkMode]:
         encoder, modes = self.encoder, []

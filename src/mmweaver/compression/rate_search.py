@@ -18,7 +18,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import CubeValues
 
 EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at least this share of the cube's
-TRIALS, BISECTIONS = 9, 12
+TRIALS, EVALUATIONS = 9, 24
+SMALL_EXCESS = 1e-3  # relative error of a size or error that an estimate is asked for
+DECISIONS = 2
 CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
 EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
@@ -70,11 +72,8 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
         exact = segment.exact()
         if sum(map(len, exact)) <= num_bytes:
             return exact
-    step = likely_step(segment, num_bytes)
-    segment.decide(step)
+    step = _decided_step(segment, num_bytes)
     found = _finest(segment, num_bytes, step, segment.coarser, progress)
-    if abs(math.log(found.step / step)) > SAME_MODE and segment.decide(found.step):
-        found = _finest(segment, num_bytes, found.step, segment.coarser, progress)
     if segment.coarser > 1:
         found = _evened(segment, num_bytes, found, progress)
         found = found if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, found, progress)
@@ -84,31 +83,45 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
     return [chunk.data for chunk in found.coded]
 
 
-def likely_step(segment: SegmentEncoder, num_bytes: int) -> float:
-    """The step at which the estimated size is that allowed, without any layer."""
-    return _step_of_size(segment.samples(), num_bytes, segment.coarser, segment.finest_step, segment.coarsest_step)
+def _decided_step(segment: SegmentEncoder, num_bytes: int) -> float:
+    """Decides on the modes at the step that they will have; returns it."""
+    bounds = segment.finest_step, segment.coarsest_step
+    step = _step_of_size(segment.samples(), num_bytes, segment.coarser, *bounds)
+    for _ in range(DECISIONS):
+        decided_at = step
+        segment.decide(step)
+        step = _step_of_size(segment.decided_samples(), AIM * num_bytes, segment.coarser, *bounds)
+        if abs(math.log(step / decided_at)) < SAME_MODE:
+            break
+    return step
 
 
 def _step_of_size(
     samples: list[CellSample], num_bytes: int | float, coarser: int, finest: float, coarsest: float
 ) -> float:
+    def excess(step: float) -> float:
+        return math.log(sum(sample.at(step, coarser).num_bytes for sample in samples) / max(num_bytes, LEAST_ERROR))
+
+    return _step_where(excess, finest, coarsest)
+
+
+def _step_where(excess: Callable[[float], float], finest: float, coarsest: float) -> float:
+    """The step at which a falling function of it is zero, by false position over its logarithm."""
     low, high = math.log(finest), math.log(coarsest)
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        if sum(sample.at(math.exp(middle), coarser).num_bytes for sample in samples) > num_bytes:
-            low = middle
+    above, below = excess(math.exp(low)), excess(math.exp(high))
+    if above <= 0 or below >= 0:
+        return finest if above <= 0 else coarsest
+    side = 0
+    for _ in range(EVALUATIONS):
+        middle = low + (high - low) * min(max(above / (above - below), 0.02), 0.98)
+        here = excess(math.exp(middle))
+        if abs(here) < SMALL_EXCESS or high - low < SMALL_EXCESS:
+            return math.exp(middle)
+        if here > 0:
+            low, above, below, side = middle, here, below / 2 if side > 0 else below, 1
         else:
-            high = middle
-    return math.exp((low + high) / 2)
-
-
-def _step_of(segment: SegmentEncoder, is_fine: Callable[[float], bool]) -> float:
-    """The coarsest step that is fine enough."""
-    low, high = math.log(segment.finest_step), math.log(segment.coarsest_step)
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (middle, high) if is_fine(math.exp(middle)) else (low, middle)
-    return math.exp(low)
+            high, below, above, side = middle, here, above / 2 if side < 0 else above, -1
+    return math.exp(middle)
 
 
 def _finest(
@@ -232,20 +245,18 @@ def _noise_steps(
     The noise has more bytes where the signal's step would be finer than 1 / NOISE_STEPS of its own. `noise_factor`: its
     bytes in estimated ones.
     """
-    noise = segment.noise_samples()
+    noise, bounds = segment.noise_samples(), (segment.finest_step, segment.coarsest_step)
 
     def signal_step(noise_step: float) -> float:
         left = num_bytes - noise_factor * sum(one.at(noise_step, 1).num_bytes for one in noise)
-        return _step_of_size(samples, max(left, 1) / factor, 0, segment.finest_step, segment.coarsest_step)
+        return _step_of_size(samples, max(left, 1) / factor, 0, *bounds)
 
     limit = NOISE_SHARE * allowed
-    enough = _step_of(segment, lambda step: sum(one.at(step, 1).all_error for one in noise) <= limit)
+    enough = _step_of_error(noise, limit, bounds, lambda one, step: one.at(step, 1).all_error)
     if noise_factor * sum(one.at(enough, 1).num_bytes for one in noise) > MOST_SHARE * num_bytes:
         return 0.0, 0.0
     noise_step, step = enough, signal_step(enough)
-    low = math.log(
-        _step_of_size(noise, MOST_SHARE * num_bytes / noise_factor, 1, segment.finest_step, segment.coarsest_step)
-    )
+    low = math.log(_step_of_size(noise, MOST_SHARE * num_bytes / noise_factor, 1, *bounds))
     high = math.log(enough)
     for _ in range(NOISE_TRIALS):
         middle = math.exp((low + high) / 2)
@@ -320,28 +331,32 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
 def _step_of_quality(segment: SegmentEncoder, quality_db: float, is_active: np.ndarray) -> float:
     signal = float(np.sum(np.abs(segment.cube.values[is_active]) ** 2)) / segment.scale.peak**2
     bounds = segment.finest_step, segment.coarsest_step
-    return _step_of_error(segment.samples(), signal * 10 ** (-quality_db / 10), segment.coarser, bounds)
+    error = signal * 10 ** (-quality_db / 10)
+    return _step_of_error(
+        segment.samples(), error, bounds, lambda one, step: one.at(step, segment.coarser).active_error
+    )
 
 
-def _step_of_error(samples: list[CellSample], error: float, coarser: int, bounds: tuple[float, float]) -> float:
-    low, high = math.log(bounds[0]), math.log(bounds[1])
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        if sum(sample.at(math.exp(middle), coarser).active_error for sample in samples) > error:
-            high = middle
-        else:
-            low = middle
-    return math.exp((low + high) / 2)
+def _step_of_error(
+    samples: list[CellSample], error: float, bounds: tuple[float, float], error_of: Callable[[CellSample, float], float]
+) -> float:
+    def room(step: float) -> float:
+        return -math.log(max(sum(error_of(sample, step) for sample in samples), LEAST_ERROR) / max(error, LEAST_ERROR))
+
+    return _step_where(room, *bounds)
 
 
 def _next_quality(
     coded: list[CodedChunk], guess: float, too_good_db: float, low: float, high: float, *, is_late: bool
 ) -> float:
     samples, step = [chunk.sample for chunk in coded], math.exp(guess)
-    coarser = 1  # coarse cells have no part in the error of active ones
-    here = sum(sample.at(step, coarser).active_error for sample in samples)
+
+    def error(sample: CellSample, step: float) -> float:
+        return sample.at(step, 1).active_error  # in which coarse cells have no part
+
+    here = sum(error(sample, step) for sample in samples)
     bounds = math.exp(max(low, guess - 2)), math.exp(min(high, guess + 2))
-    found = math.log(_step_of_error(samples, here * 10 ** (too_good_db / 10), coarser, bounds))
+    found = math.log(_step_of_error(samples, here * 10 ** (too_good_db / 10), bounds, error))
     edge = 0.02 * (high - low)
     inside = low + edge < found < high - edge
     return found if inside and not is_late else (max(low, guess - 4) + min(high, guess + 4)) / 2

@@ -109,6 +109,10 @@ class SegmentEncoder:
         """Samples of the chunks without layers."""
         return [chooser.encoder.sample(chooser.plain.transform) for chooser in self._choosers]
 
+    def decided_samples(self) -> list[CellSample]:
+        """Samples of the chunks in the modes decided on."""
+        return [chooser.sample for chooser in self._choosers if chooser.sample is not None]
+
     def exact(self) -> list[bytes]:
         """All chunks without loss."""
         return [

@@ -43,60 +43,62 @@ class Batches:
 class MixedModel:
     """Distributions of symbols 0 ... size - 1, one table of contexts for each entry of `num_contexts`.
 
-    The tables are averaged; contexts with many counts and narrow distributions have more weight.
+    The tables are averaged; contexts with many counts and narrow distributions have more weight. They lie one after
+    the other in one array, so that all learn at once: batches are small, and calls cost more than numbers.
     """
 
     def __init__(self, priors: list[np.ndarray]):
         """Initial distributions (context, symbol) of each table; they need not be normalised."""
         self.size = priors[0].shape[1]
-        self.tables = [PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors]
-        self.totals = [np.full(len(prior), PRIOR) for prior in priors]
-        self._weighted = [np.empty_like(table) for table in self.tables]
-        for index, table in enumerate(self.tables):
-            self._weigh(index, np.arange(len(table)))
+        self.counts = np.concatenate([PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors])
+        self.totals = np.full(len(self.counts), PRIOR)
+        self._first = np.cumsum([0] + [len(prior) for prior in priors[:-1]])
+        self._place = np.zeros(len(self.counts), np.int64)
+        self._weighted = np.empty_like(self.counts)
+        self._weigh(np.arange(len(self.counts)))
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
         """Codes symbols (n,) with one context (n,) per table, then learns them.
 
         Where `mirrored` (n,) is set, a number and its negative are learned alike.
         """
-        rows = np.zeros((len(values), self.size))
-        for weighted, context in zip(self._weighted, contexts, strict=True):
-            rows += weighted[context]
+        places = [first + context for first, context in zip(self._first, contexts, strict=True)]
+        rows = self._weighted[places[0]]
+        for place in places[1:]:
+            rows += self._weighted[place]
         rows /= rows.sum(axis=1, keepdims=True)
         found = stream.rows(rows, values)
-        for index, context in enumerate(contexts):
-            self._learn(index, context, found, mirrored)
+        self._learn(np.concatenate(places), found, mirrored)
         return found
 
-    def _learn(self, index: int, context: Integers, symbols: Integers, mirrored: np.ndarray | None) -> None:
-        table, total = self.tables[index], self.totals[index]
-        counts = np.bincount(context, minlength=len(total))
+    def _learn(self, places: Integers, symbols: Integers, mirrored: np.ndarray | None) -> None:
+        """Counts symbols (n,) at their places in every table (table x n,)."""
+        num = len(places) // len(self._first)
+        counts = np.bincount(places, minlength=len(self.totals))
         seen = np.flatnonzero(counts)
-        # tables are large, and few of their contexts occur at once
-        place = np.zeros(len(total), np.int64)
-        place[seen] = np.arange(len(seen))
-        first = place[context] * self.size
+        self._place[seen] = np.arange(len(seen)) * self.size  # tables are large, and few of their contexts occur
+        first = self._place[places].reshape(-1, num)
         size = len(seen) * self.size
         if mirrored is None:
-            table[seen] += np.bincount(first + symbols, minlength=size).reshape(-1, self.size)
+            self.counts[seen] += np.bincount((first + symbols).ravel(), minlength=size).reshape(-1, self.size)
         else:
             other = np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
-            weights = np.where(mirrored, 0.5, 1.0)
-            table[seen] += np.bincount(first + symbols, weights, size).reshape(-1, self.size)
-            table[seen] += np.bincount(first + other, 1.0 - weights, size).reshape(-1, self.size)
-        total += counts
-        old = total > MEMORY
-        table[old] *= 0.5
-        total[old] *= 0.5
-        self._weigh(index, seen)
+            weights = np.tile(np.where(mirrored, 0.5, 1.0), len(first))
+            self.counts[seen] += np.bincount((first + symbols).ravel(), weights, size).reshape(-1, self.size)
+            self.counts[seen] += np.bincount((first + other).ravel(), 1.0 - weights, size).reshape(-1, self.size)
+        self.totals += counts
+        old = self.totals > MEMORY
+        if old.any():
+            self.counts[old] *= 0.5
+            self.totals[old] *= 0.5
+        self._weigh(seen)
 
-    def _weigh(self, index: int, rows: Integers) -> None:
+    def _weigh(self, rows: Integers) -> None:
         """Distributions of some contexts times their weight in the average."""
-        total = self.totals[index][rows]
-        share = self.tables[index][rows] / total[:, None]
+        total = self.totals[rows]
+        share = self.counts[rows] / total[:, None]
         confidence = np.minimum(total, CONFIDENT) / (1.005 - (share * share).sum(axis=1))
-        self._weighted[index][rows] = share * confidence[:, None]
+        self._weighted[rows] = share * confidence[:, None]
 
 
 class SignedModel:

@@ -44,8 +44,8 @@ def radar_folder(path: Path | str) -> Path:
     return found[0]
 
 
-def read_radar_capture(path: Path | str) -> RadarCapture:
-    """Reads the radar of a capture folder (or the radar's own folder in it).
+def read_radar_capture(path: Path | str, frames: slice = slice(None)) -> RadarCapture:
+    """Reads the radar of a capture folder (or the radar's own folder in it), or a stretch of its frames.
 
     Raises InputError where a file is missing or damaged, or the samples have headers (lvdsStreamCfg).
     """
@@ -62,7 +62,7 @@ def read_radar_capture(path: Path | str) -> RadarCapture:
                 " record without them"
             )
     num_frames = whole(lines["frameCfg"][-1], "frameCfg", 3)
-    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=num_frames or None)
+    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=num_frames or None, frames=frames)
     return RadarCapture(folder=folder, config=config, iq_order=iq_order, packets=packets)
 
 

@@ -3,13 +3,15 @@
 Reference: IETF draft-ietf-opsawg-pcap and draft-ietf-opsawg-pcapng; RFC 791, RFC 768.
 """
 
+import os
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.regular_files import read_bytes
+from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 
 # magic number in the file: (byte order, ticks per second)
 MAGIC = {
@@ -20,40 +22,53 @@ PCAPNG = b"\x0a\x0d\x0d\x0a"
 SECTION, INTERFACE, PACKET, RESOLUTION = 0x0A0D0D0A, 1, 6, 9  # blocks of pcapng, and an option of an interface
 # link type: bytes before the network layer, and the offset of the protocol number in them (None: always IP)
 LINK_TYPES: dict[int, tuple[int, int | None]] = {1: (14, 12), 101: (0, None), 113: (16, 14), 276: (20, 0)}
-MAX_BYTES = 8_000_000_000
+MOST_KEPT = 2**18  # bytes of a packet that recorders keep at most; longer ones are skipped
 IPV4, VLAN, UDP = 0x0800, 0x8100, 17
 
 
 @dataclass(frozen=True)
 class UdpPacket:
-    """The payload of a packet and its capture time (seconds of the recorder's clock)."""
+    """The payload of a packet, its first byte in the file, and its capture time (seconds of the recorder's clock)."""
 
     time_s: float
     payload: bytes
+    at: int
 
 
 def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
     """Yields the packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
 
-    A truncated last packet (the recorder was stopped) is omitted. Raises InputError where the file cannot be read, is
-    not a .pcap, or is truncated before its first packet.
+    One packet is held at a time. A truncated last packet (the recorder was stopped) is omitted. Raises InputError where
+    the file cannot be read, is not a .pcap, or is truncated before its first packet.
     """
     path = Path(path)
-    data = read_bytes(path, max_bytes=MAX_BYTES)
-    if data[:4] == PCAPNG:
-        yield from _of_pcapng(path, data, port)
-        return
-    order, ticks, link = _header(path, data)
-    at, header = 24, struct.Struct(f"{order}IIII")
-    while at + 16 <= len(data):
-        seconds, fraction, kept, _ = header.unpack_from(data, at)
-        at += 16
-        if at + kept > len(data):
+    size = check_regular(path)
+    with open_regular(path) as file:
+        start = file.read(24)
+        if start[:4] == PCAPNG:
+            file.seek(0)
+            yield from _of_pcapng(path, file, size, port)
             return
-        payload = _udp_payload(data, at, at + kept, link, port)
-        if payload is not None:
-            yield UdpPacket(seconds + fraction / ticks, payload)
-        at += kept
+        order, ticks, link = _header(path, start)
+        at, header = 24, struct.Struct(f"{order}IIII")
+        while len(head := file.read(16)) == 16:
+            seconds, fraction, kept, _ = header.unpack(head)
+            at += 16
+            if at + kept > size:
+                return
+            found = _udp_payload(_read(file, kept), link, port)
+            if found is not None:
+                first, payload = found
+                yield UdpPacket(seconds + fraction / ticks, payload, at + first)
+            at += kept
+
+
+def _read(file: BufferedReader, num: int) -> bytes:
+    """So many bytes; none of a packet that is longer than any."""
+    if num <= MOST_KEPT:
+        return file.read(num)
+    file.seek(num, os.SEEK_CUR)
+    return b""
 
 
 def _header(path: Path, data: bytes) -> tuple[str, float, int]:
@@ -70,24 +85,25 @@ def _header(path: Path, data: bytes) -> tuple[str, float, int]:
     return order, ticks, link
 
 
-def _of_pcapng(path: Path, data: bytes, port: int) -> Iterator[UdpPacket]:
+def _of_pcapng(path: Path, file: BufferedReader, size: int, port: int) -> Iterator[UdpPacket]:
     """The same of a pcapng file: enhanced packet blocks, with the link and clock of their interface."""
-    order = "<" if data[8:12] == b"\x4d\x3c\x2b\x1a" else ">"
+    order = "<"
     links: list[tuple[int, float]] = []  # of each interface: link type, ticks a second
     at = 0
-    while at + 12 <= len(data):
-        kind, length = struct.unpack_from(f"{order}II", data, at)
+    while len(head := file.read(12)) == 12:
+        kind, length = struct.unpack_from(f"{order}II", head)
         if kind == SECTION:
-            order, links = ("<" if data[at + 8 : at + 12] == b"\x4d\x3c\x2b\x1a" else ">"), []
-            length = struct.unpack_from(f"{order}I", data, at + 4)[0]
+            order, links = ("<" if head[8:12] == b"\x4d\x3c\x2b\x1a" else ">"), []
+            length = struct.unpack_from(f"{order}I", head, 4)[0]
         if length < 12 or length % 4:
             raise InputError(f"{path} has a damaged block at byte {at}; record it again")
-        if at + length > len(data):
+        if at + length > size:
             return  # the recorder was stopped
-        if kind == INTERFACE:
-            links.append((struct.unpack_from(f"{order}H", data, at + 8)[0], _ticks(data, at + 16, at + length, order)))
-        elif kind == PACKET:
-            interface, high, low, kept = struct.unpack_from(f"{order}IIII", data, at + 8)
+        data = head + _read(file, length - 12)
+        if kind == INTERFACE and len(data) >= 16:
+            links.append((struct.unpack_from(f"{order}H", data, 8)[0], _ticks(data, 16, length, order)))
+        elif kind == PACKET and len(data) >= 28:
+            interface, high, low, kept = struct.unpack_from(f"{order}IIII", data, 8)
             if interface >= len(links) or kept > length - 32:
                 raise InputError(f"{path} has a damaged block at byte {at}; record it again")
             link, ticks = links[interface]
@@ -95,9 +111,10 @@ def _of_pcapng(path: Path, data: bytes, port: int) -> Iterator[UdpPacket]:
                 raise InputError(
                     f"{path} was captured on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)"
                 )
-            payload = _udp_payload(data, at + 28, at + 28 + kept, link, port)
-            if payload is not None:
-                yield UdpPacket((high << 32 | low) / ticks, payload)
+            found = _udp_payload(data[28 : 28 + kept], link, port)
+            if found is not None:
+                first, payload = found
+                yield UdpPacket((high << 32 | low) / ticks, payload, at + 28 + first)
         at += length
 
 
@@ -114,22 +131,22 @@ def _ticks(data: bytes, at: int, end: int, order: str) -> float:
     return 1e6
 
 
-def _udp_payload(data: bytes, at: int, end: int, link: int, port: int) -> bytes | None:
-    """The payload if the packet is IPv4, UDP and for this port, else None."""
-    length, kind_at = LINK_TYPES[link]
+def _udp_payload(data: bytes, link: int, port: int) -> tuple[int, bytes] | None:
+    """The payload and where it begins if the packet is IPv4, UDP and for this port, else None."""
+    at, kind_at = LINK_TYPES[link]
+    end = len(data)
     if kind_at is not None:
-        if at + length > end:
+        if at > end:
             return None
-        kind = int.from_bytes(data[at + kind_at : at + kind_at + 2], "big")
+        kind = int.from_bytes(data[kind_at : kind_at + 2], "big")
         if kind == VLAN:
-            kind, length = int.from_bytes(data[at + length + 2 : at + length + 4], "big"), length + 4
+            kind, at = int.from_bytes(data[at + 2 : at + 4], "big"), at + 4
         if kind != IPV4:
             return None
-    at += length
     if at + 20 > end or data[at] >> 4 != 4 or data[at + 9] != UDP:
         return None
     at += 4 * (data[at] & 0xF)
     if at + 8 > end or int.from_bytes(data[at + 2 : at + 4], "big") != port:
         return None
     size = int.from_bytes(data[at + 4 : at + 6], "big")
-    return data[at + 8 : min(at + size, end)]  # Ethernet pads short packets
+    return at + 8, data[at + 8 : min(at + size, end)]  # Ethernet pads short packets

@@ -159,9 +159,8 @@ def _of_samples(
     if axes is not None:
         return replace(found, adc=read_adc_npy(path, config, axes, frames=frames), axes=axes)
     if path.suffix.lower() in PACKET_SUFFIXES:
-        packets = read_pcap(path, config, iq_order=iq_order)
-        found = Recording(path=path, files=found.files, config=config, radar_source=source)
-        return _stretch(replace(found, adc=packets.adc, packets=packets, iq_order=iq_order), frames)
+        packets = read_pcap(path, config, iq_order=iq_order, frames=frames)
+        return replace(found, adc=packets.adc, packets=packets, iq_order=iq_order)
     return replace(found, adc=read_bin(path, config, iq_order=iq_order, frames=frames), iq_order=iq_order)
 
 
@@ -232,7 +231,7 @@ def _from_folder(
         cube = read_stream_cube(path, frames)
         return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
     if is_capture(path):
-        return _stretch(_from_capture(path, given), frames)
+        return _from_capture(path, given, frames)
     if any(path.glob("*.npy")):
         return None
     raise InputError(
@@ -249,14 +248,14 @@ def _from_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool)
     )  # fmt: skip
 
 
-def _from_capture(path: Path, given: list[str]) -> Recording:
+def _from_capture(path: Path, given: list[str], frames: slice) -> Recording:
     if given:
         raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {given[0]}")
-    capture = read_radar_capture(path)
+    capture = read_radar_capture(path, frames)
     found = Recording(
         path=capture.folder, files={"recording": capture.folder / PACKETS, "radar": capture.folder / RADAR},
         config=capture.config, adc=capture.packets.adc, iq_order=capture.iq_order,
-        radar_source=str(capture.folder / RADAR), packets=capture.packets,
+        radar_source=str(capture.folder / RADAR), packets=capture.packets, first_frame=frames.start or 0,
     )  # fmt: skip
     return _calibrated(found, read_ti_calibration(str(capture.folder / RADAR)))
 

@@ -7,29 +7,33 @@ from typing import Any
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.formats.capture_std import is_capture
 from mmweaver.formats.dca1000 import num_frames_of_bin
-from mmweaver.recordings.read_recording import PACKET_SUFFIXES, read_recording
+from mmweaver.recordings.read_recording import Recording, read_recording
 from mmweaver.stream_folder import is_stream, num_frames_of_stream
 
 
 class RecordingPieces:
     """The frames of a recording, read when they are asked for.
 
-    An adc_data.bin, a .npy whose first axis is "frame" and a folder of `generate --stream` are read in part, a
-    radar.npz is mapped; anything else is read at once, at the first use.
+    An adc_data.bin, packets of a DCA1000, a .npy whose first axis is "frame" and a folder of `generate --stream` are
+    read in part, a radar.npz is mapped; anything else is read at once, at the first use.
     """
 
     def __init__(self, path: str | Path, radar: Any = None, **how: Any):
         """Arguments as those of `read_recording`. Raises InputError where the first frame cannot be read so."""
         self.path, self._radar, self._how = Path(path), radar, how
         self._in_part = self._is_read_in_part(how.get("axes"))
-        self._first = self._read(slice(0, 1)) if self._in_part else None
+        first = self._recording(slice(0, 1)) if self._in_part else None
+        self._first, self._packets = (None, None) if first is None else (first.cube, first.packets)
 
     @cached_property
     def num_frames(self) -> int:
         """Number of frames."""
         if self._first is None:
             return len(self._whole.values)
+        if self._packets is not None:
+            return self._packets.num_frames
         if self.path.is_dir():
             return num_frames_of_stream(self.path)
         if self.path.suffix == ".npy":
@@ -46,13 +50,13 @@ class RecordingPieces:
         """The range-Doppler cube of a stretch of frames. Raises InputError where they cannot be read."""
         stretch = slice(frames.start, frames.stop)
         if self._in_part:
-            return self._read(stretch)
+            return self._recording(stretch).cube
         whole = self._whole
         grid = replace(whole.grid, frame_time_s=whole.grid.frame_time_s[stretch])
         return replace(whole, values=whole.values[stretch], grid=grid)
 
-    def _read(self, frames: slice) -> RadarCube:
-        return read_recording(self.path, self._radar, frames=frames, **self._how).cube
+    def _recording(self, frames: slice) -> Recording:
+        return read_recording(self.path, self._radar, frames=frames, **self._how)
 
     @cached_property
     def _whole(self) -> RadarCube:
@@ -62,5 +66,5 @@ class RecordingPieces:
         if self.path.suffix == ".npy":
             return axes is not None and axes.split(",")[0].strip() == "frame"
         if self.path.is_dir():
-            return is_stream(self.path)
-        return self.path.is_file() and self.path.suffix.lower() not in (".npz", *PACKET_SUFFIXES)
+            return is_stream(self.path) or is_capture(self.path)
+        return self.path.is_file() and self.path.suffix.lower() != ".npz"

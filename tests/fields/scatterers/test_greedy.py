@@ -23,7 +23,7 @@ def test_weak_candidates_are_rejected():
     target[1, 5, 5] = 1.0
     response, axes = fit_window.response, fit_window.axes
     beams = Beams.over(axes, 2)
-    power, _ = matched_power(target, response, beams)
+    power, _ = matched_power(target, response, beams, count=9, least=0.0)
     found = next_points(target, response, axes, beams, count=9, least=0.5 * float(power.max()))
     assert (found.amplitude != 0).sum(dim=1).tolist() == [0, 1]
     none = next_points(target, response, axes, beams, count=9, least=2 * float(power.max()))

@@ -1,6 +1,6 @@
 """Fits scatterers to a cube: alternates greedy selection with joint refinement."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -21,6 +21,7 @@ from mmweaver.fields.scatterers.layers import (
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
 DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
+CALIBRATED_EVERY = 4  # stages: gains change slowly
 WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
@@ -66,7 +67,9 @@ class _Fit:
         self.damping = Damping.fresh(len(target))
         self.static = torch.zeros_like(target[0, :, 0])
         self.active_beams: Tensor | None = None  # (range, beam) of the static layer; None = all
+        self.calibrated = target  # over the gains
         self.residual = target.clone()
+        self.refinements = 0
         self._update_static()
 
     def run(self) -> Layers:
@@ -102,20 +105,23 @@ class _Fit:
         if wanted > have:
             new = next_points(self.residual, self.response, self.axes, self.beams, count=wanted - have, least=least)
             self.points = join_points(self.points, new)
+            if new.amplitude.shape[1]:
+                self.residual = self.response.render(replace(new, amplitude=-new.amplitude), self.axes, self.residual)
 
     def _refine(self, steps: int) -> None:
         if not self.points.amplitude.shape[1]:
             return
         self.points, self.residual = refined(
             self.points, self._without_static(), self.response, self.axes, self.damping,
-            steps=steps, largest=self.recipe.largest_group,
+            steps=steps, largest=self.recipe.largest_group, residual=self.residual,
         )  # fmt: skip
-        if self.recipe.with_calibration:
+        self.refinements += 1
+        if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
             self._calibrate()
         self._update_static()
 
     def _without_static(self) -> Tensor:
-        return self.target / self.calibration - static_cells(self.static, self.response, self.axes)
+        return self.calibrated - static_cells(self.static, self.response, self.axes)
 
     def _update_static(self) -> None:
         """Moves the static part of the residual into the static layer."""
@@ -153,6 +159,7 @@ class _Fit:
         gain = (model.conj() * received).sum((0, 1, 2)) / model.abs().square().sum((0, 1, 2)).clamp(min=1e-30)
         gain = gain / gain.abs().mean().clamp(min=1e-6)
         self.calibration = self.calibration * gain
+        self.calibrated = self.target / self.calibration
         self.static = self.static / gain
         self.residual = self._without_static() - model
 

@@ -9,7 +9,8 @@ from torch.nn.functional import max_pool2d
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 BEAMS_A_WAVELENGTH = 2.2  # slightly denser than the array's resolution
-FRAMES_AT_ONCE = 4
+CELLS_A_POINT, CELLS_AT_ONCE = 16, 8192
+ROUNDED = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,15 +37,36 @@ class Beams:
         return cls(direction=direction, steer=torch.polar(torch.ones_like(angle), angle) / len(axes.place) ** 0.5)
 
 
-def matched_power(residual: Tensor, response: PointResponse, beams: Beams) -> tuple[Tensor, Tensor]:
-    """Energy (frame, range, doppler) that one scatterer per cell would explain, and the index of its beam."""
+def matched_power(
+    residual: Tensor, response: PointResponse, beams: Beams, *, count: int, least: float
+) -> tuple[Tensor, Tensor]:
+    """Energy (frame, range, doppler) that one scatterer per cell would explain, and the index of its beam.
+
+    Where it is at most `least`, or less than that of `count` local maxima, it may be 0. A cell cannot explain more than
+    the energy of its antennas, so that beams are formed in the strongest cells alone, in ever more of them.
+    """
     smoothed = _along(_along(residual, response.range_kernel, 1), response.doppler_kernel, 2)
-    power, beam = [], []
-    for part in smoothed.split(FRAMES_AT_ONCE):
-        best = torch.view_as_real(part @ beams.steer).square().sum(-1).max(dim=-1)
-        power.append(best.values)
-        beam.append(best.indices)
-    return torch.cat(power), torch.cat(beam)
+    bound = torch.view_as_real(smoothed).square().sum((-2, -1)) * (1 + ROUNDED)
+    shape, flat = bound.shape, bound.flatten()
+    power, beam = torch.zeros_like(flat), torch.zeros(flat.shape, dtype=torch.long)
+    order = torch.topk(flat, min(len(flat), CELLS_A_POINT * count)).indices
+    done = 0
+    while True:
+        some = order[done:]
+        for part in some.split(CELLS_AT_ONCE):
+            best = torch.view_as_real(smoothed.flatten(0, 2)[part] @ beams.steer).square().sum(-1).max(dim=-1)
+            power[part], beam[part] = best.values, best.indices
+        done = len(order)
+        reached = float(flat[order[-1]])
+        found = peaks(power.view(shape)) > max(reached, least)
+        if done == len(flat) or reached <= least or int(found.sum()) >= count:
+            return power.view(shape), beam.view(shape)
+        order = torch.topk(flat, min(len(flat), 4 * done)).indices
+
+
+def peaks(power: Tensor) -> Tensor:
+    """Powers (frame, range, doppler) of local maxima over range and Doppler, 0 elsewhere."""
+    return power * (power >= max_pool2d(power, 3, stride=1, padding=1))
 
 
 def _along(values: Tensor, kernel, dim: int) -> Tensor:
@@ -65,10 +87,9 @@ def next_points(
 
     Candidates are local maxima over range and Doppler that explain more energy than `least`.
     """
-    power, beam = matched_power(residual, response, beams)
-    peak = power * (power >= max_pool2d(power, 3, stride=1, padding=1))
+    power, beam = matched_power(residual, response, beams, count=count, least=max(least, 0.0))
     frames, num_range, num_doppler = power.shape
-    flat = peak.flatten()
+    flat = peaks(power).flatten()
     best = torch.topk(flat, min(count, flat.numel()))
     chosen = best.indices[best.values > max(least, 0.0)]
     frame = chosen // (num_range * num_doppler)

@@ -51,15 +51,23 @@ class Damping:
 
 
 def refined(
-    points: Points, target: Tensor, response: PointResponse, axes: Axes, damping: Damping, *, steps: int, largest: int
+    points: Points,
+    target: Tensor,
+    response: PointResponse,
+    axes: Axes,
+    damping: Damping,
+    *,
+    steps: int,
+    largest: int,
+    residual: Tensor | None = None,
 ) -> tuple[Points, Tensor]:
     """The points (frame, point) after `steps` steps, and the residual of the target.
 
     The target is (frame, range, doppler, antenna) in centred phase. Frames of more than `largest` scatterers are split
     into groups of neighbours in range, solved in turn. A step that would raise a frame's error is rejected. Padded
-    points have amplitude zero and stay.
+    points have amplitude zero and stay. `residual`: that of the points at the start, if known.
     """
-    residual = target - response.render(points, axes)
+    residual = target - response.render(points, axes) if residual is None else residual
     cost = _energy(residual)
     for _ in range(steps):
         count = points.range_bin.shape[1]
@@ -71,18 +79,20 @@ def refined(
             own = slice(half, None, halves)  # alternate groups: each sees the updates of its neighbours
             moved = _stepped(_some(groups, own), residual, response, axes, damping.value)
             trial = _ungrouped(_put_back(groups.points, moved, own), count)
-            remainder = target - response.render(trial, axes)
+            remainder = response.render(replace(trial, amplitude=-trial.amplitude), axes, target)
             trial_cost = _energy(remainder)
             is_better = trial_cost < cost
             damping.learn(is_better)
             points = _where(is_better, trial, points)
-            residual = torch.where(is_better[:, None, None, None], remainder, residual)
+            all_better = bool(is_better.all())
+            residual = remainder if all_better else torch.where(is_better[:, None, None, None], remainder, residual)
             cost = torch.where(is_better, trial_cost, cost)
     return points, residual
 
 
 def _energy(residual: Tensor) -> Tensor:
-    return torch.view_as_real(residual).flatten(1).square().sum(dim=1)
+    parts = torch.view_as_real(residual).flatten(1)
+    return (parts[:, None, :] @ parts[:, :, None]).flatten()
 
 
 def _sorted_by_range(points: Points) -> Points:
@@ -139,7 +149,9 @@ def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Ax
     """Points of every group after one damped Gauss-Newton step."""
     points = groups.points
     cells = groups.first[..., None] + torch.arange(groups.num_cells)
-    seen = residual[torch.arange(len(residual))[:, None, None], cells]  # frame, group, range, doppler, antenna
+    # frame, group, range, doppler, antenna
+    is_whole = groups.num_cells == residual.shape[1]
+    seen = residual[:, None] if is_whole else residual[torch.arange(len(residual))[:, None, None], cells]
     local = replace(axes, range_bin=axes.range_bin[cells][:, :, None, :])
     factors = response.factors(points, local)
     vectors = _antenna_vectors(points, factors[4], axes)
