@@ -63,6 +63,10 @@ class CellSample:
             front_bytes=front_bytes, **front,
         )  # fmt: skip
 
+    def front_at(self, step: float) -> float:
+        """Bytes of what is coded besides cells."""
+        return self.front_bytes + self.front_values / 8 * math.log2(self.front_step / step)
+
     def at(self, step: float, coarser: int) -> Estimate:
         """The estimate for a step; cells that are not active have `coarser` times that."""
         if (step, coarser) not in self._known:
@@ -79,8 +83,7 @@ class CellSample:
         error = np.square(magnitude).sum(axis=(0, 1)) - np.where(is_open, gain, 0)
         error = error * own_step.astype(np.float64) ** 2 * self.weight
         num_bits = SHORTER * float(np.sum(bits * is_open * self.weight))
-        num_bits += self.front_values * math.log2(self.front_step / step)
         return Estimate(
-            num_bytes=max(self.front_bytes + num_bits / 8, 1.0), active_error=float(error[self.is_active].sum()),
+            num_bytes=max(self.front_at(step) + num_bits / 8, 1.0), active_error=float(error[self.is_active].sum()),
             all_error=float(error.sum()),
         )  # fmt: skip

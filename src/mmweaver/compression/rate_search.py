@@ -19,9 +19,10 @@ from mmweaver.core.shapes import CubeValues
 
 EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at least this share of the cube's
 TRIALS, EVALUATIONS = 9, 24
-SMALL_EXCESS = 1e-3  # relative error of a size or error that an estimate is asked for
+SMALL_EXCESS = 3e-3  # relative error of a size or error that an estimate is asked for
 DECISIONS = 2
 CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
+CLOSE_FIRST = 0.2  # difference of log(bytes) up to which the first file tells the error of one of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
 EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
 SPARE = 1.25  # times the bytes: an even coder by the estimate has no less error than a real one of fewer bytes
@@ -35,6 +36,7 @@ OVER_RANGE_LOSES = 1.7  # times the error estimated: cells are predicted by neig
 NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
 MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 8, 5
+SAME_STEP = 0.03  # difference of log(step) of noise layers that are taken for the same
 
 Progress = Callable[[str], None]
 
@@ -72,15 +74,31 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
         exact = segment.exact()
         if sum(map(len, exact)) <= num_bytes:
             return exact
-    step = _decided_step(segment, num_bytes)
-    found = _finest(segment, num_bytes, step, segment.coarser, progress)
-    if segment.coarser > 1:
-        found = _evened(segment, num_bytes, found, progress)
-        found = found if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, found, progress)
+    found = _best_of_modes(segment, num_bytes, progress)
+    if segment.has_rank:  # sizes jump with the rank, which no estimate knows
+        segment.leave_out_rank()
+        other = _best_of_modes(segment, num_bytes, progress)
+        fits = [one for one in (found, other) if one.num_bytes <= num_bytes]
+        found = min(fits or [found, other], key=lambda one: one.active_error * one.all_error)
     if found.num_bytes > num_bytes:
         more = found.num_bytes - num_bytes
         raise InputError(f"the bytes are too few for this recording; give at least {more} more")
     return [chunk.data for chunk in found.coded]
+
+
+def _best_of_modes(segment: SegmentEncoder, num_bytes: int, progress: Progress) -> Found:
+    """The chunks in the modes that cost least by estimates, at the finest step that fits."""
+    step = _decided_step(segment, num_bytes)
+    first = _coded(segment, step, segment.coarser, 0.0)
+    if abs(math.log(first.num_bytes / num_bytes)) > CLOSE_FIRST:
+        step = _estimated_step(first, num_bytes, segment.finest_step, segment.coarsest_step)
+        first = _coded(segment, step, segment.coarser, 0.0)
+    found = _evened(segment, num_bytes, first, progress) if segment.coarser > 1 else None
+    if found is None:
+        found = _finest(segment, num_bytes, step, segment.coarser, progress, first=first)
+    if segment.coarser > 1:
+        found = found if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, found, progress)
+    return found
 
 
 def _decided_step(segment: SegmentEncoder, num_bytes: int) -> float:
@@ -126,9 +144,12 @@ def _step_where(excess: Callable[[float], float], finest: float, coarsest: float
 
 def _finest(
     segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, progress: Progress, noise_step: float = 0.0,
-    *, over_range: bool = False,
+    *, over_range: bool = False, first: Found | None = None,
 ) -> Found:  # fmt: skip
-    """The chunks with the finest step that fit; larger ones where none does. `over_range`: after a DCT of ranges."""
+    """The chunks with the finest step that fit; larger ones where none does.
+
+    `over_range`: after a DCT of ranges. `first`: a trial at this step that was made before.
+    """
 
     def coded(step: float) -> Found:
         if over_range:
@@ -139,7 +160,7 @@ def _finest(
     larger: Found | None = None
     low, high = segment.finest_step, segment.coarsest_step
     for trial in range(TRIALS):
-        one = coded(step)
+        one = coded(step) if trial or first is None else first
         progress(f"trial {trial + 1}")
         if one.num_bytes <= num_bytes:
             fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
@@ -181,38 +202,46 @@ def _between(larger: Found, fits: Found, num_bytes: int, *, is_even: bool) -> fl
     return math.exp(low + share * (high - low))
 
 
-def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Progress) -> Found:
+def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Progress) -> Found | None:
     """The chunks whose error over all cells is about that of an even coder, with the finest step.
 
-    Either cells without signal have less coarse steps, or a noise layer holds them.
+    Either cells without signal have less coarse steps, or a noise layer holds them. None where those of the mode tried
+    `first` have no more error than that once they have the bytes allowed.
     """
     bounds, plain = (segment.finest_step, segment.coarsest_step), segment.samples()
-    samples = [chunk.sample for chunk in found.coded]
-    here = [sample.at(found.step, found.coarser) for sample in samples]
-    factor = found.num_bytes / sum(one.num_bytes for one in here)
+    samples = [chunk.sample for chunk in first.coded]
+    here = [sample.at(first.step, first.coarser) for sample in samples]
+    factor = first.num_bytes / sum(one.num_bytes for one in here)
+    own_step = _step_of_size(samples, AIM * num_bytes / factor, first.coarser, *bounds)
+    before = max(sum(one.all_error for one in here), LEAST_ERROR)
+    own_error = first.all_error * sum(sample.at(own_step, first.coarser).all_error for sample in samples) / before
     step = _step_of_size(plain, SPARE * num_bytes / factor, 1, *bounds)
-    if found.all_error <= sum(sample.at(step, 1).all_error for sample in plain):
-        return found
+    if own_error <= sum(sample.at(step, 1).all_error for sample in plain):
+        return None
     even, even_factor = _even_error(segment, num_bytes, plain)
     allowed = even * 10 ** (EVEN_DB / 10)
-    if found.all_error <= allowed:
-        return found
-    error_factor = found.all_error / max(sum(one.all_error for one in here), LEAST_ERROR)
+    if own_error <= allowed:
+        return None
+    error_factor = first.all_error / before
     for coarser in (3, 2, 1):
         share = math.log(coarser) / math.log(segment.coarser)
         step = _step_of_size(samples, num_bytes / (factor**share * even_factor ** (1 - share)), coarser, *bounds)
         if coarser == 1 or error_factor * sum(sample.at(step, coarser).all_error for sample in samples) <= allowed:
             break
-    noise_step, with_noise = 0.0, 0.0
+    noise_step, with_noise, tried = 0.0, 0.0, None
     if "noise layer" not in segment.without:
         noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
     if noise_step and with_noise < step:
         trial = _coded(segment, with_noise, 0, noise_step)
-        noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded) - sum(one.front_bytes for one in samples)
-        noise_factor = noise_bytes / max(1.0, sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples()))
+        noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded)
+        noise_bytes -= sum(one.front_at(with_noise) for one in samples)
+        estimated = sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples())
+        noise_factor = max(noise_bytes, 1.0) / max(estimated, 1.0)
         noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor, noise_factor)
+        if noise_step and abs(math.log(noise_step / trial.noise_step)) < SAME_STEP:
+            noise_step, with_noise, tried = trial.noise_step, trial.step, trial
     if noise_step and with_noise < step:
-        one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step)
+        one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step, first=tried)
         if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR:
             return one
     while True:
@@ -289,21 +318,26 @@ def _even_error(segment: SegmentEncoder, num_bytes: int, plain: list[CellSample]
 
 
 def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress) -> list[bytes]:
-    """The coarsest step found whose error-to-signal ratio in active cells is at most -quality_db."""
+    """The fewest bytes found whose error-to-signal ratio in active cells is at most -quality_db.
+
+    They are those of the quality asked for, but where one or two numbers hold the signal: then the smallest file is
+    better already, since the offsets of its levels hold eight bits of each.
+    """
     cube = segment.cube
     if not np.any(cube.values):
         return segment.exact()
     is_active = active_cells(cube.values)
-    best: tuple[float, float, list[bytes]] | None = None  # quality, logarithm of the step
+    best: tuple[int, float, float, list[bytes]] | None = None  # bytes, quality, logarithm of the step
     low, high = math.log(segment.finest_step), math.log(segment.coarsest_step)
 
     def is_enough(log_step: float, price: float = PRICE) -> tuple[list[CodedChunk], float]:
-        """Encodes; keeps the worst that is good enough."""
+        """Encodes; keeps the smallest that is good enough."""
         nonlocal best
         coded = segment.encode(math.exp(log_step), segment.coarser, price=price)
         found_db = -error_db(cube.values, _values_of(coded, cube), is_active)
-        if found_db >= quality_db and (best is None or found_db < best[0]):
-            best = found_db, log_step, [chunk.data for chunk in coded]
+        size = sum(len(chunk.data) for chunk in coded)
+        if found_db >= quality_db and (best is None or (size, found_db) < best[:2]):
+            best = size, found_db, log_step, [chunk.data for chunk in coded]
         return coded, found_db
 
     guess = math.log(_step_of_quality(segment, quality_db, is_active))
@@ -315,8 +349,8 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
             break
         low, high = (guess, high) if found_db >= quality_db else (low, guess)
         guess = _next_quality(coded, guess, found_db - quality_db - AIM_DB, low, high, is_late=trial > TRIALS // 2)
-    if best is not None and best[0] > quality_db + WITHIN_DB:  # the quality jumps here: levels are lowered instead
-        cheap, dear, log_step = math.log(PRICE), math.log(MOST_PRICE), best[1]
+    if best is not None and best[1] > quality_db + WITHIN_DB:  # the quality jumps here: levels are lowered instead
+        cheap, dear, log_step = math.log(PRICE), math.log(MOST_PRICE), best[2]
         for _ in range(PRICES):
             _, found_db = is_enough(log_step, math.exp((cheap + dear) / 2))
             if quality_db <= found_db <= quality_db + WITHIN_DB:
@@ -325,7 +359,7 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
             cheap, dear = (middle, dear) if found_db >= quality_db else (cheap, middle)
     if best is None:
         raise InputError(f"a quality of {quality_db:g} dB cannot be reached; ask for less")
-    return best[2]
+    return best[3]
 
 
 def _step_of_quality(segment: SegmentEncoder, quality_db: float, is_active: np.ndarray) -> float:

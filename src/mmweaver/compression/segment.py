@@ -80,6 +80,16 @@ class SegmentEncoder:
             chooser.decide(step, self.coarser)
         return before != [chooser.mode for chooser in self._choosers]
 
+    @property
+    def has_rank(self) -> bool:
+        """Whether any chunk is coded as a matrix of low rank."""
+        return any(chooser.mode is not None and chooser.mode.with_rank for chooser in self._choosers)
+
+    def leave_out_rank(self) -> None:
+        """From now on no chunk is."""
+        for chooser in self._choosers:
+            chooser.without = (*chooser.without, "low rank")
+
     def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> list[CodedChunk]:
         """All chunks at a step, in the modes decided on; with a noise layer where it has a step."""
         return [chooser.encode(step, coarser, noise_step, price) for chooser in self._choosers]
