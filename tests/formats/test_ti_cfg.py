@@ -109,6 +109,38 @@ def test_bpm_of_the_azimuth_pair_beside_tdm(tmp_path: Path):
     assert np.allclose(config.antenna_position_m, read_ti_cfg(written(tmp_path, BEST_RANGE)).antenna_position_m)
 
 
+# of public code for the AWR2544: six chirps a loop, two empty Doppler bands
+DOPPLER_DIVISION = """channelCfg 15 15 0 0 0
+adcCfg 2 0
+adcbufCfg -1 1 0 1 1
+profileCfg 0 77 7 7 20.81 0 0 8.883 0 256 30000 0 0 164
+chirpCfg 0 5 0 0 0 0 0 15
+frameCfg 0 5 128 0 100 50 1 0
+procChainCfg 1 0 530 0 1
+ddmPhaseShiftAntOrder 0 2 3 1
+"""
+
+
+def test_doppler_division_turns_each_transmitter_at_its_own_rate(tmp_path: Path):
+    config = read_ti_cfg(written(tmp_path, DOPPLER_DIVISION))
+    weights = weights_of(config.tx_code)
+    assert (config.num_slots, config.num_loops, config.num_antennas) == (6, 128, 16)
+    for tx, multiple in zip((0, 2, 3, 1), range(4), strict=True):
+        expected = np.exp(2j * np.pi * multiple * np.arange(6) / 6)
+        assert np.abs(np.angle(weights[:, tx] / expected, deg=True)).max() < 5.625 / 2
+    assert np.linalg.cond(weights) < 1.05
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [("Order 0 2 3 1", "Order 0 2 3 3", "name each"), ("Order 0 2 3 1", "Order 0 2 3", "name each"),
+     ("frameCfg 0 5", "frameCfg 0 2", "needs as many chirps")],
+)  # fmt: skip
+def test_impossible_doppler_division_is_refused(tmp_path: Path, old: str, new: str, said: str):
+    with pytest.raises(InputError, match=said):
+        read_ti_cfg(written(tmp_path, DOPPLER_DIVISION.replace(old, new)))
+
+
 def test_all_transmitters_at_once_are_one_beam(tmp_path: Path):
     text = BEST_RANGE.replace("chirpCfg 0 0 0 0 0 0 0 1", "chirpCfg 0 0 0 0 0 0 0 5").replace(
         "frameCfg 0 2 16", "frameCfg 0 0 16"

@@ -36,6 +36,7 @@ SCHEMES = {
         np.array([[1, 1, 1, 1], [1, -1, 1, -1], [1, 1, -1, -1], [1, -1, -1, 1]]), FOUR
     ),
     "phases of thirds over three": coded(np.exp(2j * np.pi * np.outer(range(3), range(3)) / 3)),
+    "four in six Doppler bands": coded(np.exp(2j * np.pi * np.outer(range(6), (0, 3, 1, 2)) / 6), FOUR),
     "bursts with a pause": replace(TDM, loop_gap_s=400e-6),
 }  # fmt: skip
 RANGE_M, SPEED_MPS, AZIMUTH_RAD, ELEVATION_RAD = 2.1, 0.8, 0.3, -0.12

@@ -50,7 +50,8 @@ def stray(folder: Path, clockwise: int = 0) -> None:
     (folder / "camera_matrix.csv").write_text(f"{fx}, 0.0, {cx}\n0.0, {fy}, {cy}\n0.0, 0.0, 1.0\n")
     numbers = ", ".join(map(str, QUATERNIONS[clockwise]))
     (folder / "odometry.csv").write_text(
-        f"timestamp, frame, x, y, z, qx, qy, qz, qw\n0.1, 000000, 0, 0, 0, {numbers}\n"
+        "timestamp, frame, x, y, z, qx, qy, qz, qw, fx, fy, cx, cy, distortion_center_x, distortion_center_y\n"
+        f"0.1, 000000, 0, 0, 0, {numbers}, {fx}, {fy}, {cx}, {cy}, , \n"
     )
 
 
@@ -65,16 +66,23 @@ def polycam(folder: Path, clockwise: int = 0) -> None:
 
 
 def record3d(folder: Path, clockwise: int = 0) -> None:
-    """An unpacked .r3d, its depth in stored blocks of LZFSE; portrait photos are upright in it."""
-    assert clockwise == 0
-    rgb, depth_m, (fx, fy, cx, cy) = lying(0)
+    """An unpacked .r3d, its depth in stored blocks of LZFSE; poses are of ARKit's camera (x right, y up)."""
+    rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
     save(folder / "rgbd" / "0.jpg", rgb)
     raw = depth_m.astype("<f4").tobytes()
     blocks = [raw[:1000], raw[1000:]]
     stored = b"".join(b"bvx-" + len(one).to_bytes(4, "little") + one for one in blocks) + b"bvx$"
     (folder / "rgbd" / "0.depth").write_bytes(stored)
     size = {"w": rgb.shape[1], "h": rgb.shape[0], "dw": depth_m.shape[1], "dh": depth_m.shape[0]}
-    (folder / "metadata").write_text(json.dumps({**size, "K": [fx, 0, 0, 0, fy, 0, cx, cy, 1], "fps": 60}))
+    turned = ([0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.70710678, 0.70710678])[clockwise]  # x, y, z, w
+    more = {"poses": [[*turned, 0.0, 0.0, 0.0]], "perFrameIntrinsicCoeffs": [[fx, fy, cx, cy]], "fps": 60}
+    (folder / "metadata").write_text(json.dumps({**size, "K": [fx + 9, 0, 0, 0, fy + 9, 0, cx, cy, 1], **more}))
+    put_confidence(folder, np.full(depth_m.shape, 2, np.uint8))
+
+
+def put_confidence(folder: Path, confidence: np.ndarray) -> None:
+    raw = confidence.tobytes()
+    (folder / "rgbd" / "0.conf").write_bytes(b"bvx-" + len(raw).to_bytes(4, "little") + raw + b"bvx$")
 
 
 def scannet(folder: Path, clockwise: int = 0) -> None:
@@ -100,7 +108,7 @@ def assert_same_depth(found: RgbdPhoto, depth_m: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("clockwise", [0, 1])
-@pytest.mark.parametrize("write", [stray, polycam, scannet])
+@pytest.mark.parametrize("write", [stray, polycam, scannet, record3d])
 def test_a_scan_is_the_upright_photo(write: Callable[[Path, int], None], clockwise: int, tmp_path: Path):
     write(tmp_path, clockwise)
     rgb, depth_m, numbers = lying(0)
@@ -126,6 +134,34 @@ def test_record3d_is_read_as_it_was_shown(tmp_path: Path):
         depth.write_bytes(damaged)
         with pytest.raises(InputError, match=says):
             read_scan_photo(tmp_path)
+
+
+@pytest.mark.parametrize("write", [stray, polycam, record3d])
+def test_depth_of_the_lowest_confidence_is_left_out(write: Callable[[Path, int], None], tmp_path: Path):
+    write(tmp_path, 0)
+    whole = read_scan_photo(tmp_path)
+    confidence = np.full(SIZE[::-1], 255 if write is polycam else 2, np.uint8)
+    confidence[:, :120] = 0
+    if write is record3d:
+        put_confidence(tmp_path, confidence)
+    else:
+        save(tmp_path / ("keyframes" if write is polycam else ".") / "confidence"
+             / ("100.png" if write is polycam else "000000.png"), confidence)  # fmt: skip
+    found = read_scan_photo(tmp_path)
+    width = found.photo.depth_m.shape[1]
+    assert np.isnan(found.photo.depth_m[:, : width * 110 // 320]).all()
+    right = slice(width * 130 // 320, None)  # single missing pixels are filled only where few are
+    left, before = found.photo.depth_m[:, right], whole.photo.depth_m[:, right]
+    assert np.isfinite(left).sum() > 0.95 * np.isfinite(before).sum()
+    both = np.isfinite(left) & np.isfinite(before)
+    np.testing.assert_array_equal(left[both], before[both])
+    assert "lowest confidence" in " ".join(found.assumptions)
+
+
+def test_an_old_table_of_poses_has_a_line_a_frame(tmp_path: Path):
+    stray(tmp_path, 1)
+    (tmp_path / "odometry.csv").write_text("0.0, 0.0, 0.0, " + ", ".join(map(str, QUATERNIONS[1])))
+    assert_same_depth(read_scan_photo(tmp_path).photo, lying(0)[1])
 
 
 def test_tum_has_its_unit_and_camera(tmp_path: Path):

@@ -18,10 +18,11 @@ MAX_CFG_BYTES = 2**20
 # command: minimum count of numbers that follow it (later SDKs append more)
 NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8}
 FRAMES = {"frameCfg": 6, "advFrameCfg": 5, "subFrameCfg": 10}  # one of the first two
-OPTIONAL = {"adcbufCfg": 4, "bpmCfg": 4}
+OPTIONAL = {"adcbufCfg": 4, "bpmCfg": 4, "ddmPhaseShiftAntOrder": 2}
 REFUSED = {"contModeCfg": "continuous mode", "advChirpCfg": "advanced chirps", "LUTDataCfg": "advanced chirps"}
 OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
+SHIFTER_DEG = 5.625  # a step of the phase shifters
 CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 
 
@@ -142,7 +143,7 @@ def _chirps(name: str, lines: dict[str, list[Line]], sub_frame: int | None) -> T
         num_loops=frame.num_loops,
         frame_period_ms=frame.period_ms,
         complex_samples=ADC_FORMATS[adc_format],
-        chirp_phase_deg=_bpm_phases(lines, masks, frame),
+        chirp_phase_deg=_ddm_phases(lines, masks) or _bpm_phases(lines, masks, frame),
         sub_frame=_others(lines, frame),
     )
 
@@ -220,6 +221,34 @@ def _bpm_phases(lines: dict[str, list[Line]], masks: tuple[int, ...], frame: Fra
         mask = masks[second - frame.first]
         phases[second - frame.first][mask.bit_length() - 1] = 180.0
     return tuple(tuple(row) for row in phases)
+
+
+def _ddm_phases(lines: dict[str, list[Line]], masks: tuple[int, ...]) -> tuple[tuple[float, ...], ...]:
+    """Doppler-division MIMO (AWR2944, AWR2544): phases in the samples; () without ddmPhaseShiftAntOrder.
+
+    The k-th transmitter of the line turns by k of N steps of 360/N degrees from chirp to chirp, N chirps a loop (more
+    than transmitters, which leaves empty bands), as near as its shifter can. The demo counts chirps backwards, because
+    samples turn against the shifter: they are the ramp times the conjugate echo. Source: the demo of TI's MCU+ SDK for
+    the AWR294x and AWR2544, where it sets rlRfPhaseShiftCfg_t.
+    """
+    if "ddmPhaseShiftAntOrder" not in lines or len(set(masks)) != 1 or masks[0].bit_count() < 2:
+        return ()
+    line, count = lines["ddmPhaseShiftAntOrder"][-1], len(masks)
+    order = [whole(line, "ddmPhaseShiftAntOrder", at) for at in range(len(line.values))]
+    fired = [tx for tx in range(MOST_TX) if masks[0] >> tx & 1]
+    if sorted(set(order)) != sorted(order) or not set(fired) <= set(order):
+        raise InputError(f"line {line.number}: ddmPhaseShiftAntOrder must name each transmitter that fires once")
+    if count < len(fired):
+        raise InputError(
+            f"line {line.number}: Doppler-division MIMO of {len(fired)} transmitters needs as many chirps in a loop,"
+            f" not {count}"
+        )
+    multiple = {tx: place for place, tx in enumerate(one for one in order if one in fired)}
+    step_deg = 360 / SHIFTER_DEG / count
+    return tuple(
+        tuple(-SHIFTER_DEG * round(-chirp * multiple.get(tx, 0) % count * step_deg) for tx in range(MOST_TX))
+        for chirp in range(count)
+    )
 
 
 def _profile(lines: dict[str, list[Line]], profile_ids: set[int]) -> Line:

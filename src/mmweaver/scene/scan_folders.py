@@ -2,9 +2,9 @@
 
 Folders of Stray Scanner, Record3D, Polycam (raw data), ScanNet and TUM RGB-D.
 
-The depth of phones is coarse; colours are resampled to it as `read_photo` does. Phones store pictures as the sensor
-lies; the recorded pose says which side is up, and the photo is rotated upright.
-Facts of the formats: their publishers' documentation (Stray Robots, Polycam, ScanNet, TUM Computer Vision Group).
+The depth of phones is coarse; colours are resampled to it as `read_photo` does, and depth of the lowest confidence is
+left out. Phones store pictures as the sensor lies; the recorded pose says which side is up, and the photo is rotated
+upright. Facts of the formats: table in docs/photos.md.
 """
 
 from collections.abc import Sequence
@@ -29,6 +29,7 @@ from mmweaver.scene.read_photo import to_common_size
 from mmweaver.scene.whole_room.scan_poses import scan_pose, spread_out
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
+MOST_DOUBTFUL = 0.7  # share of the depth: where more is of the lowest confidence there is nothing better
 TUM_APART_S = 0.03  # colour and depth farther apart are of other moments
 # fx, fy, cx, cy of 640 x 480 (Sturm et al., IROS 2012, and the data set's page); by default those of ROS
 TUM_CAMERAS = {
@@ -128,7 +129,10 @@ def _pose_of(folder: Path, kind: str, pictures: Sequence[Path], index: int, turn
 
 
 def _stray(folder: Path, index: int) -> _Frame:
-    """rgb.mp4, depth/000000.png in millimetres, camera_matrix.csv of the video, odometry.csv with the poses."""
+    """rgb.mp4, depth/000000.png in millimetres, confidence/ (0, 1, 2), camera_matrix.csv of the video, odometry.csv.
+
+    The table has poses and, of newer versions, the camera of each frame.
+    """
     depth = _chosen(folder / "depth", index, ".png")
     matrix = number_table(folder / "camera_matrix.csv")
     if matrix.shape != (3, 3):
@@ -136,28 +140,31 @@ def _stray(folder: Path, index: int) -> _Frame:
     video = folder / "rgb.mp4"
     number = int(depth.stem) if depth.stem.isdigit() else index
     rgb = read_video_frame(video, number)
-    up, notes = (0.0, 1.0), ("No odometry.csv: the picture was taken as upright.",)
-    odometry = folder / "odometry.csv"
-    if odometry.is_file():
-        rows = number_table(odometry)
-        chosen = rows[rows[:, 1] == number] if rows.shape[1] >= 9 else rows[:0]
-        if len(chosen):
-            up, notes = _up_of_quaternion(chosen[0, 5:9]), ()
-    camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
+    lens = [float(matrix[at]) for at in ((0, 0), (1, 1), (0, 2), (1, 2))]
+    said = number_table(folder / "odometry.csv") if (folder / "odometry.csv").is_file() else np.zeros((0, 0))
+    own = said[said[:, 1] == number] if said.shape[1] >= 13 else said[:0]
+    if len(own):
+        lens = [float(value) for value in own[0, 9:13]]
+    up, notes = _up_of_pose(folder, "Stray Scanner", depth, 1)
+    depth_m, doubts = _without_doubtful(read_depth(depth, MILLIMETRE)[0], folder / "confidence" / depth.name)
     files = {"rgb": video, "depth": depth}
-    return _Frame(rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=camera, up=up, files=files, notes=notes)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), up=up, files=files, notes=notes + doubts)
 
 
 def _record3d(folder: Path, index: int) -> _Frame:
-    """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns), rgbd/0.jpg, rgbd/0.depth (float32 metres, LZFSE).
+    """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns, perFrameIntrinsicCoeffs, poses), rgbd/0.jpg,
+    rgbd/0.depth (float32 metres, LZFSE), rgbd/0.conf (0, 1, 2; LZFSE).
 
-    Pictures are stored as the app shows them, upright.
+    Pictures are stored upright in portrait; of a phone held across they lie on their side.
     """
     colour = _chosen(folder / "rgbd", index, ".jpg")
-    depth = colour.with_suffix(".depth")
+    depth, doubt = colour.with_suffix(".depth"), colour.with_suffix(".conf")
     said, rgb = read_json(folder / "metadata"), read_rgb(colour)[0]
     try:
-        fx, fy, cx, cy = (float(said["K"][at]) for at in (0, 4, 6, 7))
+        lens = [float(said["K"][at]) for at in (0, 4, 6, 7)]
+        each = said.get("perFrameIntrinsicCoeffs") or []
+        if colour.stem.isdigit() and int(colour.stem) < len(each) and len(each[int(colour.stem)]) == 4:
+            lens = [float(value) for value in each[int(colour.stem)]]
         width, height = int(said["w"]), int(said["h"])
         columns, rows = int(said.get("dw", 192)), int(said.get("dh", 256))
     except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError):
@@ -166,13 +173,19 @@ def _record3d(folder: Path, index: int) -> _Frame:
         raise InputError(f"{folder / 'metadata'} has other sizes than its pictures; export the scan again")
     depth_m = np.frombuffer(read_lzfse(depth, 4 * rows * columns), "<f4").reshape(rows, columns).astype(np.float64)
     depth_m = np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, np.nan)
+    doubts: tuple[str, ...] = ()
+    if doubt.is_file():
+        confidence = np.frombuffer(read_lzfse(doubt, rows * columns), np.uint8).reshape(rows, columns)
+        depth_m, doubts = _left_out(depth_m, confidence == 0)
+    up, notes = _up_of_pose(folder, "Record3D", colour, 1)
     files = {"rgb": colour, "depth": depth, "camera": folder / "metadata"}
-    notes = ("Record3D's picture was taken as upright, as the app shows it.",)
-    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(fx, fy, cx, cy, rgb), files=files, notes=notes)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), files=files, up=up, notes=notes + doubts)
 
 
 def _polycam(folder: Path, index: int) -> _Frame:
-    """keyframes/: images, depth in millimetres and cameras (JSON with fx, fy, cx, cy and the pose t_ij, y up)."""
+    """keyframes/: images, depth in millimetres, confidence (0, 127, 255) and cameras (JSON with fx, fy, cx, cy and the
+    pose t_ij, y up).
+    """
     keyframes = folder / "keyframes"
     kind = "corrected_" if (keyframes / "corrected_images").is_dir() else ""
     colour = _chosen(keyframes / f"{kind}images", index, ".jpg")
@@ -182,10 +195,10 @@ def _polycam(folder: Path, index: int) -> _Frame:
         fx, fy, cx, cy, right, top = (float(said[key]) for key in ("fx", "fy", "cx", "cy", "t_10", "t_11"))
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{place} lacks fx, fy, cx, cy or the pose t_10, t_11") from None
-    files = {"rgb": colour, "depth": depth, "camera": place}
+    depth_m, doubts = _without_doubtful(read_depth(depth, MILLIMETRE)[0], keyframes / "confidence" / depth.name)
     return _Frame(
-        rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=_camera(fx, fy, cx, cy, rgb), up=(right, top),
-        files=files,
+        rgb=rgb, depth_m=depth_m, camera=_camera(fx, fy, cx, cy, rgb), up=(right, top), notes=doubts,
+        files={"rgb": colour, "depth": depth, "camera": place},
     )  # fmt: skip
 
 
@@ -195,15 +208,12 @@ def _scannet(folder: Path, index: int) -> _Frame:
     depth, matrix = folder / "depth" / f"{colour.stem}.png", number_table(folder / "intrinsic" / "intrinsic_color.txt")
     if matrix.shape[0] < 3 or matrix.shape[1] < 3:
         raise InputError(f"{folder / 'intrinsic' / 'intrinsic_color.txt'} holds no 4 x 4 matrix")
-    rgb, up = read_rgb(colour)[0], (0.0, 1.0)
-    pose = folder / "pose" / f"{colour.stem}.txt"
-    if pose.is_file():
-        world = number_table(pose, allow_infinite=True)
-        if world.shape == (4, 4) and np.isfinite(world).all():
-            up = float(world[2, 0]), -float(world[2, 1])
+    rgb = read_rgb(colour)[0]
+    up, notes = _up_of_pose(folder, "ScanNet", colour, 2)
     files = {"rgb": colour, "depth": depth}
     camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
-    return _Frame(rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=camera, up=up, files=files)
+    depth_m = read_depth(depth, MILLIMETRE)[0]
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=camera, up=up, files=files, notes=notes)
 
 
 def _tum(folder: Path, index: int) -> _Frame:
@@ -253,10 +263,30 @@ def _camera(fx: float, fy: float, cx: float, cy: float, rgb: RgbPixels) -> Camer
     return CameraIntrinsics(fx=fx, fy=fy, cx=cx, cy=cy, width=width, height=height)
 
 
-def _up_of_quaternion(xyzw: np.ndarray) -> tuple[float, float]:
-    """Where the world's y axis points in the picture, by the rotation of a camera (x right, y down) into the world."""
-    x, y, z, w = xyzw / max(float(np.linalg.norm(xyzw)), 1e-9)
-    return float(2 * (x * y + w * z)), -float(1 - 2 * (x * x + z * z))
+def _up_of_pose(folder: Path, kind: str, picture: Path, axis: int) -> tuple[tuple[float, float], tuple[str, ...]]:
+    """Where the world's axis y (1) or z (2) points in the picture, to the right and to the top."""
+    pose = scan_pose(folder, kind, picture)
+    if pose is None:
+        return (0.0, 1.0), ("The scan says no pose of this photo: it was taken as upright.",)
+    return (float(pose[axis, 0]), -float(pose[axis, 1])), ()
+
+
+def _without_doubtful(depth_m: DepthPixels, file: Path) -> tuple[DepthPixels, tuple[str, ...]]:
+    """Depth without the pixels of the lowest confidence, 0 in a picture of the same size; all of it without one."""
+    if not file.is_file():
+        return depth_m, ()
+    confidence = read_rgb(file)[0][..., 0]
+    if confidence.shape != depth_m.shape:
+        raise InputError(f"{file} has another size than the depth; export the scan again")
+    return _left_out(depth_m, confidence == 0)
+
+
+def _left_out(depth_m: DepthPixels, doubtful: np.ndarray) -> tuple[DepthPixels, tuple[str, ...]]:
+    share = float((doubtful & np.isfinite(depth_m)).sum() / max(np.isfinite(depth_m).sum(), 1))
+    if share == 0 or share > MOST_DOUBTFUL:
+        return depth_m, ()
+    note = f"{100 * share:.0f} % of the depth, that of the lowest confidence, was left out."
+    return np.where(doubtful, np.nan, depth_m), (note,)
 
 
 def _upright(frame: _Frame) -> tuple[RgbPixels, DepthPixels, CameraIntrinsics, int]:

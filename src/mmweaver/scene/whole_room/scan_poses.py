@@ -23,6 +23,8 @@ def scan_pose(folder: Path, kind: str, frame: Path) -> Pose | None:
     None where the scan does not say it.
     """
     number = frame.stem
+    if kind != "ScanNet" and not number.replace(".", "", 1).isdigit():
+        return None
     if kind == "Stray Scanner":
         return _in_table(folder / "odometry.csv", float(number), 1, slice(2, 9), apart=0.5)
     if kind == "TUM RGB-D":
@@ -71,6 +73,8 @@ def _in_table(path: Path, key: float, column: int, values: slice, *, apart: floa
     if not path.is_file():
         return None
     rows = number_table(path)
+    if rows.shape[1] == 7 and column:  # Stray Scanner until 2021: a line a frame, no time and number
+        return _of_quaternion(rows[int(key)].tolist(), np.eye(4)) if int(key) < len(rows) else None
     if rows.shape[1] < values.stop:
         return None
     nearest = int(np.argmin(np.abs(rows[:, column] - key)))
