@@ -129,34 +129,34 @@ def result_row(
     verdicts = Counter(judgements[name]["verdict"] for name in valid)
     seen = {_plain(sentence.text) for sentence in developed}
     metrics = {
-        "understood": _share(len(readings), len(sentences), "sentences that give a plan, of all"),
-        "understood_checking_half": _share(
+        "understood": share(len(readings), len(sentences), "sentences that give a plan, of all"),
+        "understood_checking_half": share(
             sum(s.name in readings for s in checking), len(checking), "the same, of the half not developed on"
         ),
-        "understood_draw": _share(
+        "understood_draw": share(
             sum(name in readings for name in uniform_draw(checking)), DRAWN, "the same, of 300 drawn from that half"
         ),
-        "understood_development_draw": _share(
+        "understood_development_draw": share(
             sum(name in readings for name in developed_on), len(developed_on), "the same, of those read to widen it"
         ),
-        "understood_fresh_draw": _share(
+        "understood_fresh_draw": share(
             len(names), len(drawn), "the same, of those drawn for annotation: none in an earlier sample, so harder"
         ),
-        "understood_new_sentences": _share(
+        "understood_new_sentences": share(
             sum(s.name in readings for s in checking if _plain(s.text) not in seen),
             sum(_plain(s.text) not in seen for s in checking),
             "the same, of checking sentences whose words occur in no sentence of the other half",
         ),
         **{
-            f"wrong_{name}_sample": _share(
+            f"wrong_{name}_sample": share(
                 sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
                 len(earlier),
                 "an earlier sample of the checking half, annotated before the faults found in it were fixed",
             )
             for name, earlier in before.items()
         },
-        "wrong": _share(verdicts["wrong"], len(valid), "wrong by hand annotation without a word, of those understood"),
-        "said": _share(verdicts["said"], len(valid), "shown otherwise or in part, which the clause's record says"),
+        "wrong": share(verdicts["wrong"], len(valid), "wrong by hand annotation without a word, of those understood"),
+        "said": share(verdicts["said"], len(valid), "shown otherwise or in part, which the clause's record says"),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
     return {
@@ -170,7 +170,7 @@ def result_row(
     }
 
 
-def _share(part: int, whole: int, definition: str) -> dict[str, Any]:
+def share(part: int, whole: int, definition: str) -> dict[str, Any]:
     """A share with its 95 % Wilson interval."""
     share = part / max(whole, 1)
     z = 1.96

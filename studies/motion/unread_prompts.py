@@ -1,0 +1,68 @@
+"""How many prompts of other text-to-motion projects are understood, and how many correctly? 231 that shaped nothing.
+
+python -m studies run unread_prompts --prompts prompts.txt
+
+The file has one prompt a line; it is not part of the project. These are the examples of MoMask's and MoSa's demos, the
+text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a generator
+and pairs of captions that differ in one word, each prompt once, without those read to widen the grammar. The
+grammar was frozen by commit 5a2a9e6 before any was read; what it understood was judged by hand, once, as the sentences
+of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements.json, named by the prompts' sha256.
+"""
+
+import argparse
+import hashlib
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.sentence import parse
+from studies.manifest import StudyRun
+from studies.motion.kitml import Judgements, reading_of, share
+from studies.result_rows import complete_rows
+from studies.study import Reads
+
+
+def name_of(prompt: str) -> str:
+    """What stands for a prompt in the judgements: twelve digits of its sha256."""
+    return hashlib.sha256(prompt.strip().encode()).hexdigest()[:12]
+
+
+def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
+    """Shares of the frozen grammar, from the judgements, and what today's grammar understands of the same prompts."""
+    today = {}
+    for prompt in prompts:
+        try:
+            today[name_of(prompt)] = reading_of(parse(prompt))
+        except InputError:
+            continue
+    judged = [judgements[name] for name in map(name_of, prompts) if name in judgements]
+    verdicts = Counter(one["verdict"] for one in judged)
+    return {
+        "n": len(prompts),
+        "seeds": [],
+        "evaluated": len(judged),
+        "read_otherwise_today": sum(today.get(name) != one["reading"] for name, one in judgements.items()),
+        "metrics": {
+            "understood": share(len(judged), len(prompts), "prompts that gave a plan, of all; frozen grammar"),
+            "wrong": share(verdicts["wrong"], len(judged), "wrong by hand without a word, of those understood"),
+            "said": share(verdicts["said"], len(judged), "shown otherwise or in part, which the clause's record says"),
+            "understood_today": share(len(today), len(prompts), "prompts that give a plan today, after what was found"),
+        },
+    }
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--prompts", type=Path, action=Reads, required=True, help="file with one prompt a line")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    prompts = [line for line in options.prompts.read_text(encoding="utf-8").splitlines() if line.strip()]
+    path = run.out / "unread_prompts" / "judgements.json"
+    judgements = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    digest = hashlib.sha256(options.prompts.read_bytes()).hexdigest()
+    row = {"dataset": {"name": "prompts of six projects", "sha256": digest}, **result_row(prompts, judgements)}
+    run.write(
+        "unread_prompts", "reading", config={}, rows=complete_rows([row], unknown={"seconds": "see the manifest"})
+    )
