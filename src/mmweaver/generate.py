@@ -251,7 +251,7 @@ class Weaver(RoomReader):
         }  # fmt: skip
         streamer = Streamer(
             room=room, config=request.config, method=self.method, method_name=self.method_name,
-            detect_points=point_detector(self.points, self.firmware), motion=motion, seed=seed,
+            detect_points=point_detector(self.points, self._firmware_of(own)), motion=motion, seed=seed,
             chunk_frames=check_chunk_frames(chunk_frames), needs_adc=needs_adc(self.points), keep_adc=keep_adc,
             meta=meta, board=given,
         )  # fmt: skip
@@ -286,7 +286,7 @@ class Weaver(RoomReader):
             **given,
         )  # fmt: skip
         with stages("point cloud"):
-            points = detect(signal.cube, signal.adc, self.points, self.firmware)
+            points = detect(signal.cube, signal.adc, self.points, self._firmware_of(board))
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
@@ -319,6 +319,10 @@ class Weaver(RoomReader):
             raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
         return IDEAL_BOARD, {}
 
+    def _firmware_of(self, board: Board) -> FirmwareSettings | None:
+        """The settings of TI's point cloud, with the threshold of the board that was calibrated."""
+        return None if self.firmware is None else self.firmware.with_threshold(board.cfar_threshold)
+
     def _meta(
         self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
         signal: Signal, board: Board,
@@ -334,7 +338,7 @@ class Weaver(RoomReader):
             "weights": self.weights,
             "board": board.meta(),
             "points": self.points,
-            "firmware": self.firmware if self.points == "firmware" else None,
+            "firmware": self._firmware_of(board) if self.points == "firmware" else None,
             **radar_meta(request.config),
             "inputs": room.inputs | _motion_input(request.motion),
             "placed": {

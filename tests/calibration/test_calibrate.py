@@ -107,7 +107,7 @@ def test_what_changes_over_time_comes_back(found: Calibration):
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     text = found.text()
     assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
-    assert "elevation offset: it takes point clouds of people" in text
+    assert "elevation offset, CFAR threshold: they take point clouds of people" in text
     assert any(note.startswith("gain of echoes") for note in found.board.notes)
     assert set(found.to_values()) == {"board", "found", "not_seen"}
     found.board.save(tmp_path / "made.json")

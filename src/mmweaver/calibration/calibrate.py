@@ -12,22 +12,23 @@ from typing import Any
 
 from mmweaver.calibration.antenna_fits import fit_channels
 from mmweaver.calibration.cloud_fits import fit_elevation
+from mmweaver.calibration.cloud_levels import DOING, fit_levels
 from mmweaver.calibration.finding import Finding
 from mmweaver.calibration.receiver_fits import fit_filter, fit_leakage, fit_noise_figure
+from mmweaver.calibration.target_fits import KnownTarget, fit_target, unknown_targets
 from mmweaver.calibration.time_fits import fit_drift, fit_first_chirp
 from mmweaver.comparison.compared_sides import RawReading, signals_of
 from mmweaver.comparison.signal_evidence import SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
+from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
-from mmweaver.formats.radar_file import load_radar
+from mmweaver.formats.radar_file import load_firmware, load_radar
 
 SIGNAL_FITS = (fit_filter, fit_noise_figure, fit_leakage, fit_channels, fit_first_chirp, fit_drift)
 NEVER_SEEN = (
-    Finding(title="range bias", text="it takes an echo at a known distance"),
-    Finding(title="gain of echoes", text="it takes an echo of known cross section at a known distance"),
     Finding(title="coupling between antennas", text="it takes one target at many known directions"),
     Finding(title="element spacing", text="it takes a target at known directions"),
 )
@@ -64,6 +65,8 @@ def calibrate(
     iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
     body_z_m: float | None = None,
+    doing: str | None = None,
+    target: KnownTarget | None = None,
     name: str | None = None,
 ) -> Calibration:
     """The board that made the recordings: of a room with or without people, unlabelled; point clouds of people.
@@ -71,7 +74,9 @@ def calibrate(
     Each is a path (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube, an
     AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the same
     settings. `radar`: of raw samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
-    height over the radar of the people in clouds. Raises InputError for what is no recording, and for several radars.
+    height over the radar of the people in clouds; `doing`: a sentence that says what they did (default: they wave).
+    `target`: what stands at a known distance in the signals. Raises InputError for what is no recording, and for
+    several radars.
     """
     if not recordings:
         raise InputError("which recordings? give one or more")
@@ -90,16 +95,27 @@ def calibrate(
         findings += [fit(evidence) for fit in SIGNAL_FITS]
     else:
         findings.append(Finding(title="IF response, noise, leakage, antennas, chirps, drift", text="it takes a signal"))
+    if target is not None and evidence:
+        findings += fit_target(evidence, target)
+    else:
+        findings += unknown_targets()
     if clouds:
         findings.append(fit_elevation(clouds, config, body_z_m))
+        if not any("gain_db" in one.fields for one in findings):
+            findings += fit_levels(clouds, config, _firmware(radar), doing or DOING)
     else:
-        findings.append(Finding(title="elevation offset", text="it takes point clouds of people"))
+        findings.append(Finding(title="elevation offset, CFAR threshold", text="they take point clouds of people"))
     findings += NEVER_SEEN
     fields = {field: value for one in findings for field, value in one.fields.items()}
     missed = tuple(f"{one.title}: {one.text}" for one in findings if not one.is_found)
     names = ", ".join(_name_of(source) for source in recordings)
     board = Board(name=name or f"board of {names}"[:200], made_from=names[:1000], notes=missed, **fields)
     return Calibration(board=board, findings=tuple(findings))
+
+
+def _firmware(radar: str | Path | RadarConfig | None) -> FirmwareSettings:
+    """The settings of TI's point cloud that a preset or .cfg has, else its defaults."""
+    return FirmwareSettings() if radar is None or isinstance(radar, RadarConfig) else load_firmware(str(radar))
 
 
 def _cloud_of(source: Any) -> PointCloud | None:

@@ -12,6 +12,8 @@ EXAMPLES = """examples:
   mmweaver calibrate adc.npy --radar radar.json --axes frame,loop,tx,rx,sample --out board.json
   mmweaver calibrate near.csv middle.csv far.csv --radar iwr1443_mars --out board.json       # clouds of people
   mmweaver calibrate cloud.csv --radar iwr1443_mars --body-z -0.15 --out board.json
+  mmweaver calibrate reflector.bin --radar profile.cfg --target 2.50,-3.2 --out board.json    # a corner reflector
+  mmweaver calibrate squats.csv --radar iwr1443_mars --doing "a person squats" --out board.json
   mmweaver generate --demo --radar profile.cfg --board board.json --out like_mine/
 """
 
@@ -37,6 +39,14 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "--body-z", type=number, metavar="M", dest="body_z_m",
         help="the true mean height of the people in point clouds over the radar's level, in metres",
     )  # fmt: skip
+    raw.add_argument(
+        "--doing", metavar="TEXT", help="a sentence that says what the people in point clouds did (default: they wave)"
+    )
+    raw.add_argument(
+        "--target", type=target, metavar="RANGE[,DBSM]",
+        help="true distance in metres of the strongest echo near it, straight ahead, and its cross section: gives range"
+        " bias, and gain",
+    )  # fmt: skip
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, required=True, metavar="JSON", help="the board's file")
     output.add_argument("--overwrite", action="store_true", help="replace a file that is there")
@@ -45,17 +55,27 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     return parser
 
 
+def target(word: str) -> tuple[float, ...]:
+    """A range in metres, and perhaps a cross section in dBsm."""
+    parts = tuple(map(number, word.split(",")))
+    if len(parts) > 2:
+        raise argparse.ArgumentTypeError(f"{word!r} is no RANGE or RANGE,DBSM")
+    return parts
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Calibrates, writes and prints. Raises InputError."""
     import json
 
     from mmweaver.calibration.calibrate import calibrate
+    from mmweaver.calibration.target_fits import KnownTarget
     from mmweaver.core.output_checks import check_output_file
 
     check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=arguments.recordings)
     found = calibrate(
         *arguments.recordings, radar=arguments.radar, layout=arguments.layout, axes=arguments.axes,
-        iq_order=arguments.iq_order, tx_order=arguments.tx_order, body_z_m=arguments.body_z_m, name=arguments.out.stem,
+        iq_order=arguments.iq_order, tx_order=arguments.tx_order, body_z_m=arguments.body_z_m, doing=arguments.doing,
+        target=None if arguments.target is None else KnownTarget(*arguments.target), name=arguments.out.stem,
     )  # fmt: skip
     found.board.save(arguments.out)
     if arguments.json:

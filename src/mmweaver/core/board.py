@@ -27,7 +27,7 @@ LIMITS = {
     "coupling_real": 10.0, "coupling_imag": 10.0, "leakage_range_m": 20.0, "leakage_level_db": 300.0,
     "leakage_phase_deg": 720.0, "elevation_phase_deg": 360.0, "range_bias_m": 2.0, "gain_db": 100.0,
     "first_chirp_amplitude_percent": 50.0, "first_chirp_phase_mrad": 3200.0, "drift_ppm": 100.0,
-    "noise_figure_db": 100.0, "element_spacing_m": 1.0,
+    "noise_figure_db": 100.0, "element_spacing_m": 1.0, "cfar_threshold": 65535.0,
 }  # fmt: skip
 
 
@@ -63,8 +63,14 @@ class Board:
     gain_db: float = 0.0  # of echoes, over what the radar's power and gains give
     noise_figure_db: float | None = None  # None: the radar's
     element_spacing_m: float | None = None  # between antennas that the radar puts half a wavelength apart; None: so
+    cfar_threshold: float | None = None  # of a TI demo's CFAR in range, in its counts; None: the settings'
 
     def __post_init__(self) -> None:
+        self._check_sizes()
+        self._check_shapes()
+
+    def _check_sizes(self) -> None:
+        """Raises InputError for a number beyond its limit; rounds tables to what their file holds."""
         for each in dataclasses.fields(self):
             value = getattr(self, each.name)
             if each.name in LIMITS and value is not None:
@@ -72,7 +78,10 @@ class Board:
                 if array.size and not (np.abs(array) <= LIMITS[each.name]).all():
                     raise self._impossible(f"{each.name} must be within {LIMITS[each.name]:g}")
                 if isinstance(value, np.ndarray):
-                    object.__setattr__(self, each.name, np.round(array, 6))  # what its file holds
+                    object.__setattr__(self, each.name, np.round(array, 6))
+
+    def _check_shapes(self) -> None:
+        """Raises InputError for tables that do not go together."""
         share, taps = self.if_share, self.leakage_range_m
         same = [
             ("if_share, if_gain_db and if_phase_deg", [share, self.if_gain_db, self.if_phase_deg]),
@@ -91,8 +100,9 @@ class Board:
             raise self._impossible(f"leakage_range_m must be a list of at most {MOST_TAPS} ranges from 0 on")
         if len(taps) != len(self.leakage_level_db) or (len(taps) and self.leakage_level_db.ndim != 3):
             raise self._impossible("leakage_level_db must be a list of (tx, rx) tables, one a leakage_range_m")
-        if self.element_spacing_m is not None and self.element_spacing_m <= 0:
-            raise self._impossible("element_spacing_m must be above 0")
+        for name in ("element_spacing_m", "cfar_threshold"):
+            if (getattr(self, name) or 1.0) <= 0:
+                raise self._impossible(f"{name} must be above 0")
         _ = self.pairs
 
     def _impossible(self, why: str) -> InputError:

@@ -1,6 +1,6 @@
 """Point-cloud settings of a TI out-of-box demo's .cfg: CFAR, peak grouping, clutter removal, beamforming."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mmweaver.core.errors import InputError
 
@@ -67,6 +67,12 @@ class FirmwareSettings:
             raise InputError(f"multiObjBeamForming's threshold must lie in 0 to 1, not {self.second_peak:g}")
         if self.most_objects is not None and self.most_objects < 1:
             raise InputError(f"the most objects a frame must be at least 1, not {self.most_objects}")
+
+    def with_threshold(self, threshold: int | float | None) -> "FirmwareSettings":
+        """The same with this threshold of the CFAR in range, in counts; None, or no such CFAR, leaves it."""
+        if threshold is None or self.range_cfar is None:
+            return self
+        return replace(self, range_cfar=replace(self.range_cfar, threshold=round(threshold)))
 
 
 # By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal
