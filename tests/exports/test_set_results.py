@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
+from mmweaver.datasets import RadarDataset
 from mmweaver.datasets.activity_store import read_activity_set
+from mmweaver.datasets.room_sequences import read_labelled
 from mmweaver.stored_result import read_result
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
@@ -27,13 +29,27 @@ def test_a_set_becomes_folders_and_folders_the_same_set(activity_set: Path, tmp_
     assert main(["dataset", str(again), "--from-results", str(folders), "--activities", activities]) == 0
     back = read_activity_set(again)
     assert back.label_names == stored.label_names
-    for name in ("label", "label_name", "text", "subject", "draw", "heading", "height", "split", "split_sentence"):
+    for name, values in stored.columns.items():
         if name != "split_sentence":  # sentences have no numbers there
-            np.testing.assert_array_equal(back.columns[name], stored.columns[name], err_msg=name)
+            np.testing.assert_array_equal(back.columns[name], values, err_msg=name)
     np.testing.assert_array_equal(back.cube(7).values, stored.cube(7).values)
     np.testing.assert_array_equal(back.joints_m, stored.joints_m)
     assert json.loads((again / "leaks.json").read_text())["of"]["start_place"]["sequences"] == len(stored)
     assert main(["verify", str(again)]) == 0
+
+
+def test_a_data_set_of_rooms_becomes_folders_and_they_a_labelled_set(tiny_signals: Path, tmp_path: Path):
+    folders, again = tmp_path / "folders", tmp_path / "again"
+    assert main(["export", str(tiny_signals), "--to", "results", "--out", str(folders)]) == 0
+    stored = read_labelled(tiny_signals)
+    assert main(["dataset", str(again), "--from-results", str(folders)]) == 0
+    back = read_activity_set(again)
+    for name in ("text", "subject", "split"):
+        np.testing.assert_array_equal(back.columns[name], stored.columns[name])
+    np.testing.assert_allclose(back.columns["height"], stored.columns["height"], rtol=1e-6)
+    assert len(set(back.columns["room"])) == len(set(stored.columns["room"]))
+    np.testing.assert_array_equal(back.cube(1).values, stored.cube(1).values)
+    np.testing.assert_array_equal(RadarDataset(again, ["rd"])[1]["rd"], RadarDataset(tiny_signals, ["rd"])[1]["rd"])
 
 
 def test_a_set_in_other_formats(activity_set: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):  # noqa: F811

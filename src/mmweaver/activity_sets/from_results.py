@@ -31,6 +31,7 @@ from mmweaver.features import point_table
 from mmweaver.stored_result import StoredResult, read_result
 
 SAME_PLACE_M = 0.05
+OWN = ("room", "place", "split")  # what an export of a set says of each sequence
 
 
 def result_folders(folder: Path) -> list[Path]:
@@ -42,20 +43,22 @@ def result_folders(folder: Path) -> list[Path]:
 
 
 def set_of_results(
-    source: Path, out: Path, *, activities: ActivityList | None = None, split_by: str = "subject", seed: int = 0,
+    source: Path, out: Path, *, activities: ActivityList | None = None, split_by: str | None = None, seed: int = 0,
     command: str,
 ) -> dict[str, Any]:  # fmt: skip
     """Writes the set into `out` and returns its leak report.
 
-    `activities`: labels with their sentences (default: each sentence is a label). Raises InputError for folders of
-    several radars, lengths or people, without joints, or with a sentence that is no activity's.
+    `activities`: labels with their sentences (default: each sentence is a label). `split_by`: what is held out; by
+    default the splits of the set that the folders were exported from are kept, else people are held out. Raises
+    InputError for folders of several radars, lengths or people, without joints, or with a sentence that is no
+    activity's.
     """
     folders = result_folders(source)
     first = read_result(folders[0])
     config, shape = first.cube.config, first.cube.values.shape
     label_of = _labels(folders, activities)
     names = tuple(activities.labels) if activities is not None else tuple(dict.fromkeys(label_of))
-    columns: dict[str, list[Any]] = {name: [] for name in ("text", "subject", "draw", "heading", "height")}
+    columns: dict[str, list[Any]] = {name: [] for name in (*OWN, "text", "subject", "draw", "heading", "height")}
     joints, points, point_frame, counts, scales = [], [], [], [], []
     with staged_folder(out) as stage:
         for number, folder in enumerate(folders):
@@ -67,6 +70,8 @@ def set_of_results(
             columns["draw"].append(own.get("draw", result.meta.get("seed", number)))
             columns["heading"].append(placed.get("heading_rad") or _heading(pose.joints_m))
             columns["height"].append(pose.height_m)
+            for name in OWN:
+                columns[name].append(own.get(name))
             joints.append(pose.joints_m.astype(np.float32))
             points.append(point_table(result.points))
             point_frame.append(result.points.frame.astype(np.int32))
@@ -76,14 +81,17 @@ def set_of_results(
         start_m = np.stack([one[0, joint("pelvis"), :2] for one in joints]).astype(np.float64)
         every = {
             **numbers, "text": columns["text"], "label": [names.index(label) for label in label_of],
-            "label_name": label_of, "place": _places(start_m), "room": [0] * len(folders),
+            "label_name": label_of, "room": _numbered(columns["room"]),
+            "place": _places(start_m) if None in columns["place"] else _numbered(columns["place"]),
         }  # fmt: skip
         groups = {
-            "subject": numbers["subject"].tolist(), "place": every["place"], "room": every["room"],
+            "subject": numbers["subject"].tolist(), "room": every["room"],
+            "place": list(zip(every["room"], every["place"], strict=True)),
             "sentence": every["text"],
         }  # fmt: skip
         splits = {f"split_{key}": split_of(groups[key], key, seed) for key in SPLIT_KEYS}
-        every |= splits | {"split": splits[f"split_{split_by}"]}
+        is_split = split_by is None and all(isinstance(one, str) and one for one in columns["split"])
+        every |= splits | {"split": columns["split"] if is_split else splits[f"split_{split_by or 'subject'}"]}
         signals = (packed_iq(read_result(folder).cube)[0] for folder in folders)  # one cube at a time in memory
         write_set(stage, config, names, every, {
             "joints_m": np.stack(joints), "points": np.concatenate(points).astype(np.float32),
@@ -137,6 +145,14 @@ def _numbers(values: list[Any], name: str, source: Path) -> np.ndarray:
         return np.array(values, np.float64 if name in ("heading", "height") else np.int64)
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{source}: a meta.json has a {name} that is no number; generate the results again") from None
+
+
+def _numbered(values: list[Any]) -> list[int]:
+    """Numbers as they are where all are; else a number for each different value."""
+    if all(type(value) is int and 0 <= value < 2**31 for value in values):
+        return values
+    known = sorted({str(value) for value in values})
+    return [known.index(str(value)) for value in values]
 
 
 def _places(start_m: np.ndarray) -> list[int]:

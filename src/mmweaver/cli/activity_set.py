@@ -122,7 +122,7 @@ def _run_from_results(arguments: argparse.Namespace) -> int:
     check_output_folder(arguments.out, overwrite=False, inputs=[arguments.from_results])
     activities = None if arguments.activities is None else read_activities(arguments.activities)
     report = set_of_results(
-        arguments.from_results, arguments.out, activities=activities, split_by=arguments.split_by or "subject",
+        arguments.from_results, arguments.out, activities=activities, split_by=arguments.split_by,
         seed=arguments.seed, command=_command(),
     )  # fmt: skip
     if arguments.json:

@@ -35,7 +35,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Exports one result or many. Raises InputError."""
     from mmweaver.core.errors import InputError
-    from mmweaver.datasets.activity_store import is_activity_set
+    from mmweaver.datasets.room_sequences import is_set
     from mmweaver.exports.export import FORMATS, export_result, export_set, is_of_two_radars
 
     if arguments.list:
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("give a result folder, --to FORMAT and --out DIR; mmweaver export --list names the formats")
     if arguments.to not in FORMATS:
         raise InputError(f"unknown format {arguments.to!r}; known: {', '.join(FORMATS)}")
-    if is_activity_set(arguments.folder):
+    if is_set(arguments.folder):
         every = export_set(arguments.folder, arguments.to, arguments.out, overwrite=arguments.overwrite)
         return _say({str(out): what for out, what in every}, arguments)
     together = is_of_two_radars(arguments.folder, arguments.to)

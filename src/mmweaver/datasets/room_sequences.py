@@ -12,8 +12,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.datasets.activity_store import SET_FILE, ActivitySet, is_activity_set, read_activity_set
-from mmweaver.datasets.dataset_plan import ACTIVITIES
-from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_radar, read_rooms
+from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M
+from mmweaver.datasets.dataset_store import PLAN_FILE, StoredRoom, plan_text, read_radar, read_rooms
 from mmweaver.dsp.points import point_cloud
 
 
@@ -40,7 +40,7 @@ class RoomSequences:
 
     @cached_property
     def columns(self) -> dict[str, np.ndarray]:
-        """Along the sequences: label, label_name, text, split, subject, room (a name) and seed."""
+        """Along the sequences: label, label_name, text, split, subject, height, room (a name) and seed."""
         rows = self._places
         unknown = {room.activity[index] for room, index in rows} - set(self.label_names)
         if unknown:
@@ -53,6 +53,7 @@ class RoomSequences:
             "text": np.array([room.text[index] for room, index in rows]),
             "split": np.array([room.split[index] for room, index in rows]),
             "subject": np.array([int(room.person[index]) for room, index in rows]),
+            "height": np.array([PEOPLE_HEIGHT_M[int(room.person[index])] for room, index in rows]),
             "room": np.array([f"{room.kind}_{room.layout}" for room, _ in rows]),
             "seed": np.array([int(room.seed[index]) for room, index in rows]),
         }
@@ -70,6 +71,11 @@ class RoomSequences:
     def cloud(self, index: int) -> PointCloud:
         """The point cloud of one sequence, detected now: such a set stores none."""
         return point_cloud(self.cube(index))
+
+
+def is_set(folder: Path) -> bool:
+    """Whether a folder holds a labelled set or a data set of rooms, complete or not."""
+    return is_activity_set(folder) or (folder / PLAN_FILE).is_file()
 
 
 LabelledData = ActivitySet | RoomSequences

@@ -53,7 +53,7 @@ FORMATS = {
     "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap"),
     "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun"),
     "results": Format(
-        what="a result folder, of each sequence of a labelled set", module="set_results", function="write_results"
+        what="a result folder, of each sequence of a set", module="set_results", function="write_results"
     ),
     "mp4": Format(what="video, H.264", module="videos", function="write_mp4"),
     "webm": Format(what="video, VP9", module="videos", function="write_webm"),
@@ -84,12 +84,13 @@ def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite
 def export_set(
     folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False
 ) -> Iterator[tuple[Path, str]]:
-    """Writes every sequence of a labelled set into a folder of its own below `out`, and gives each with what it holds.
+    """Writes every sequence of a set, labelled or of rooms, into a folder of its own below `out`; gives each with what
+    it holds.
 
     Raises InputError for a format that needs raw samples, which a set does not keep, and for what is no set.
     """
     if FORMATS[kind].needs_samples:
-        raise InputError(f"{kind} needs raw samples, which a labelled set does not keep; generate results with --bin")
+        raise InputError(f"{kind} needs raw samples, which a set does not keep; generate results with --bin")
     for name, result in results_of_set(Path(folder)):
         yield Path(out) / name, export_stored(result, kind, Path(out) / name, overwrite=overwrite)
 

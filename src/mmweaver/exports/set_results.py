@@ -1,4 +1,7 @@
-"""Sequences of a labelled set as results, for every format; and the format "results": a result folder of each."""
+"""Sequences of a labelled set, or of a data set of rooms, as results, for every format.
+
+And the format "results": a result folder of each.
+"""
 
 import json
 from collections.abc import Iterator
@@ -7,7 +10,7 @@ from typing import Any
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.version import __version__
-from mmweaver.datasets.activity_store import read_activity_set
+from mmweaver.datasets.room_sequences import read_labelled
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
 from mmweaver.result_folder import FILES, META_VERSION, plain, radar_meta
 from mmweaver.stored_result import StoredResult
@@ -16,8 +19,8 @@ OF_SEQUENCE = ("label_name", "split", "room", "place", "draw")
 
 
 def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
-    """Each sequence of a labelled set with a name for its folder, its number. Raises InputError for what is no set."""
-    stored = read_activity_set(folder)
+    """Each sequence of a set with a name for its folder, its number. Raises InputError for what is no set."""
+    stored = read_labelled(folder)
     columns = stored.columns
     for index in range(len(stored)):
         cube = stored.cube(index)
@@ -28,8 +31,11 @@ def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
         meta: dict[str, Any] = {
             "schema_version": META_VERSION, "made_by": "mmweaver export", "version": __version__,
             "text": str(columns["text"][index]), "frames": len(cube.values), "fps": 1 / cube.config.frame_period_s,
-            "placed": {"heading_rad": float(columns["heading"][index]), "subject": int(columns["subject"][index])},
-            "sequence": {"index": index, **{name: columns[name][index] for name in OF_SEQUENCE}},
+            "placed": {
+                "heading_rad": float(columns["heading"][index]) if "heading" in columns else None,
+                "subject": int(columns["subject"][index]),
+            },
+            "sequence": {"index": index, **{name: columns[name][index] for name in OF_SEQUENCE if name in columns}},
             **radar_meta(cube.config),
         }  # fmt: skip
         name = f"{index:06d}"
