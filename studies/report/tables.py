@@ -268,6 +268,16 @@ KITML = MetricTable(
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
+UNREAD_PROMPTS = MetricTable(
+    sources=("unread_prompts/reading",),
+    columns=KITML.columns,
+    lines=(
+        ("understood", "understood, of all (frozen grammar)"),
+        ("wrong", "wrong by hand without a word, of the understood (mended since)"),
+        ("said", "shown otherwise or in part, which is said, of the same"),
+        ("understood_today", "understood by the grammar that the faults found have changed"),
+    ),
+)  # fmt: skip
 STRANGERS = MetricTable(
     sources=("strangers/default",),
     columns=(("200 sentences", "{label}"), ("share", "{metric:percent.1}")),
@@ -422,6 +432,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
+    "unread_prompts": UNREAD_PROMPTS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render,
