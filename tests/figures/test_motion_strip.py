@@ -1,5 +1,7 @@
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 from mmweaver.figures.motion_strip import draw_sheet, draw_strip
@@ -13,3 +15,16 @@ def test_a_strip_and_a_sheet_are_drawn(tmp_path: Path):
     one, many = Image.open(tmp_path / "one.png"), Image.open(tmp_path / "all.png")
     assert one.size[1] < many.size[1]
     assert len(one.convert("RGB").getcolors(1 << 24) or []) > 10, "something is drawn"
+
+
+def test_a_strip_is_the_same_wherever_the_body_faces(tmp_path: Path):
+    pose = act_out("a person bows", duration_s=1.5).pose
+    cos, sin = np.cos(2.0), np.sin(2.0)
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    turned = replace(pose, joints_m=pose.joints_m @ turn.T)
+    pictures = []
+    for name, shown in (("one.png", pose), ("turned.png", turned)):
+        draw_strip(shown, tmp_path / name, count=2)
+        pictures.append(np.asarray(Image.open(tmp_path / name).convert("L"), float))
+    assert pictures[0].shape == pictures[1].shape
+    assert np.abs(pictures[0] - pictures[1]).mean() < 1.0

@@ -1,5 +1,6 @@
 """A motion as a strip: the shaded body at evenly spaced times, side by side; left limbs blue, right limbs red."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,6 +9,7 @@ from jaxtyping import Float
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import PoseSequence
+from mmweaver.core.skeleton import joint
 from mmweaver.figures.body_rasteriser import Body, CapsulesInPicture, bodies_of, rasterise, seen_width
 from mmweaver.figures.theme import STYLE
 from mmweaver.geometry.body_capsules import CAPSULES
@@ -21,6 +23,7 @@ AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
 TILT = 0.18  # upward shift per metre of distance
 PX_PER_M = 110.0
 BELOW_M, ABOVE_M = 0.25, 0.12  # shown below the floor and above the highest point
+LEAST_HIPS_M = 0.1  # distance of the hips on the floor plan from which a facing is read
 SHADOW_HEIGHT_M = 0.2  # limbs so high above the floor darken it by a third of what they do on it
 
 
@@ -48,7 +51,8 @@ def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: 
 
 
 def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
-    """Draws each instant at its own place along the strip; locomotion is removed."""
+    """Draws each instant at its own place along the strip, seen half from the front; locomotion is removed."""
+    pose = _facing_the_radar(pose)
     instants = np.linspace(0, len(pose.time_s) - 1, count).round().astype(int)
     floor_m = float(np.percentile(pose.joints_m[..., 2].min(axis=1), 5))
     bodies = bodies_of(pose, instants)
@@ -69,6 +73,17 @@ def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
     axes.imshow(picture, extent=(left_m, right_m, -BELOW_M, top_m), alpha=(picture < 255).any(axis=2).astype(float))
     axes.set(xlim=(left_m, right_m), ylim=(-BELOW_M, top_m))
     axes.set_aspect("equal")
+
+
+def _facing_the_radar(pose: PoseSequence) -> PoseSequence:
+    """The motion turned about the vertical so that it begins facing -y: seen from its side a body hides what it does."""
+    across = (pose.joints_m[0, joint("left_hip")] - pose.joints_m[0, joint("right_hip")])[:2]
+    length_m = float(np.hypot(*across))
+    if length_m < LEAST_HIPS_M:  # lying on a side: the hips do not say where it faces
+        return pose
+    cos, sin = across / length_m
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return replace(pose, joints_m=pose.joints_m @ turn.T)
 
 
 def _paint(picture: np.ndarray, body: Body, origin_m: Float[np.ndarray, "3"], origin_px: Float[np.ndarray, "2"]):

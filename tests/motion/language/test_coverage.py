@@ -100,8 +100,11 @@ def test_what_stays_unknown_is_refused() -> None:
         ("a person moves along a clockwise path", ["walk"]),
         ("touches back of head with right hand", ["comb"]),
         ("raise both arms in the air", ["raise"]),
+        ("a person falls forward from a chair", ["fall_off"]),
+        ("a person stumbles but does not fall", ["stumble"]),
+        ("a person jogs in place for eight seconds, then stretches", ["jog", "stretch"]),
     ],
 )
-def test_words_that_unread_prompts_had_in_another_meaning(sentence: str, keys: list[str]) -> None:
+def test_words_with_more_than_one_meaning(sentence: str, keys: list[str]) -> None:
     """Facing forward is no turn, and the back of the head no direction."""
     assert [step.upper or step.lower for step in parse(sentence).steps] == keys

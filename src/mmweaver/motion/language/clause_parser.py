@@ -238,7 +238,7 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
             return not jumped and "chair" not in texts
         return not lifted and word.text not in ("leg", "foot", "knee") and "on" not in texts
     if word.text == "eight":
-        return bool(texts & {"step", "steps", "times", "meters", "metres", "m"})
+        return bool(texts & {"step", "steps", "times", "meters", "metres", "m", "second", "seconds"})
     if word.text in ("floor", "ground"):
         return bool(lemmas & FLOOR_VERBS) or not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
     if word.text == "ball":

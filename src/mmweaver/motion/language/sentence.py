@@ -294,7 +294,8 @@ def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False
             try:
                 steps[-1:] = _joined(steps[-1], first)
             except InputError:
-                if not one_by_one or steps[-1].posture != first.posture:
+                arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
+                if not one_by_one or (steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
                 parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")

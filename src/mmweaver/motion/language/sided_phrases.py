@@ -22,6 +22,7 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\btwist(?:s|ing)?(?: {_OWN}body)?(?: (?:from )?(?:side to side|left and right|left to right)| (?:at|from|in) the waist)", " twist_trunk "),
     (rf"\btwist(?:s|ing) {_OWN}body\b", " twist_trunk "),
     (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
+    (r",? (?:but|and|yet|without)? ?(?:does|did|do|is)(?: not|n't) (?:fall|falling)(?: down| over)?\b", " "),  # true of all but falls
     # where somebody faces who walks anyway, and from where somebody gets up
     (r"\b(?:is |are )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)(?= and\b| then\b|,)", " stands "),
     (r"(?:,? (?:while|but|and))? (?:still |always |is )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)\b", " "),
