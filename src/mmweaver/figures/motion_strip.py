@@ -76,7 +76,7 @@ def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
 
 
 def _facing_the_radar(pose: PoseSequence) -> PoseSequence:
-    """The motion turned about the vertical so that it begins facing -y: seen from its side a body hides what it does."""
+    """The motion turned about the vertical to begin facing -y: a body seen from its side hides what it does."""
     across = (pose.joints_m[0, joint("left_hip")] - pose.joints_m[0, joint("right_hip")])[:2]
     length_m = float(np.hypot(*across))
     if length_m < LEAST_HIPS_M:  # lying on a side: the hips do not say where it faces
