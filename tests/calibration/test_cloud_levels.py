@@ -65,6 +65,12 @@ def few_points(intensity: float, frames: int = 30) -> FirmwareCloud:
     )  # fmt: skip
 
 
+def test_frames_without_points_count_unless_the_recording_was_interrupted():
+    made = few_points(100.0)
+    spread = replace(made, frame=np.repeat(np.array([0, 1, 4, 5, 5000, 5001] * 5), 8))
+    assert sorted(cloud_levels._frames_of(spread)) == [0, 1, 2, 3, 4, 5, 5000, 5001]
+
+
 def test_clouds_that_do_not_show_it_say_why(monkeypatch: pytest.MonkeyPatch):
     made = few_points(100.0)
     plain = made.select(np.arange(len(made.frame)))

@@ -24,6 +24,7 @@ DOING = "a person waves with both hands"
 SECONDS, PLACES, SEED = 3.0, 2, 0
 FEWEST_FRAMES, FEWEST_POINTS = 20, 100
 MOST_AHEAD_M = 6.0
+LONGEST_GAP_FRAMES = 10  # without points; a longer one is no recording
 ROUNDS, BLOCKS = 2, 6
 THRESHOLDS, STEP = (50, 4000), 24  # counts: between which it is looked for, and how finely
 LARGEST_GAIN_DB = 60.0
@@ -98,7 +99,8 @@ def fit_levels(
 def _recorded(clouds: Sequence[PointCloud]) -> tuple[list[tuple[np.ndarray, int]], np.ndarray]:
     """Intensities and number of frames of stretches, and places (place, 2) where people were, near to far.
 
-    Frames without points count where they lie between others. Raises ValueError with a reason.
+    Frames without points count where they lie between others, unless a recording was interrupted there. Raises
+    ValueError with a reason.
     """
     stretches, middles = [], []
     for cloud in clouds:
@@ -107,7 +109,7 @@ def _recorded(clouds: Sequence[PointCloud]) -> tuple[list[tuple[np.ndarray, int]
             raise ValueError("the clouds have no intensities")
         if not len(cloud.frame):
             continue
-        for part in np.array_split(np.arange(cloud.frame.min(), cloud.frame.max() + 1), BLOCKS):
+        for part in np.array_split(_frames_of(cloud), BLOCKS):
             among = np.isin(cloud.frame, part)
             if len(part):
                 stretches.append((np.asarray(intensity)[among & (intensity > 0)], len(part)))
@@ -121,6 +123,13 @@ def _recorded(clouds: Sequence[PointCloud]) -> tuple[list[tuple[np.ndarray, int]
     if chosen[:, 1].max() > MOST_AHEAD_M or chosen[:, 1].min() < 0.5:
         raise ValueError(f"people must be 0.5 to {MOST_AHEAD_M:g} m ahead")
     return stretches, chosen
+
+
+def _frames_of(cloud: PointCloud) -> np.ndarray:
+    """Numbers of its frames, those without points too, but for gaps too long for a person to be unseen."""
+    there = np.unique(cloud.frame)
+    short = np.flatnonzero((np.diff(there) > 1) & (np.diff(there) <= LONGEST_GAP_FRAMES))
+    return np.sort(np.concatenate([there, *(np.arange(there[at] + 1, there[at + 1]) for at in short)]))
 
 
 class _Reference:

@@ -2,7 +2,7 @@
 
 Millimetres, and yet what a radar sees of a standing person: clutter removal suppresses only what is truly static.
 Amplitudes are those of posturography (centre of mass 3 to 5 mm rms fore and aft, 2 to 3 mm sideways, 4 to 6 mm/s), of
-physiological tremor (8 to 12 Hz, some 0.1 mm at the hand) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
+physiological tremor (8 to 12 Hz, some 0.1 mm at a hand held out) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
 breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
 """
 
@@ -15,6 +15,8 @@ from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS, joint
 
 CENTRE_OF_MASS = 0.55  # of the height; sway amplitudes are given there
 SEATED, STANDING = 0.36, 0.48  # pelvis above the feet, of the height: a seated body sways about the pelvis
+# A seated body rests on the seat, its hands on the thighs: how far it wavers and trembles compared with a standing one.
+SEATED_WAVER, SEATED_TREMOR = 0.5, 0.25
 # Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
 WAVER = {"knee": 0.4, "spine1": 0.2, "spine3": 0.2, "head": 0.5, "shoulder": 0.3, "elbow": 0.6, "wrist": 0.8}
 WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
@@ -77,7 +79,8 @@ class MicroMotion:
         """Joints (time, 22, 3) in metres with sway, wavering and tremor added; times (time,) in seconds."""
         if not (self.settings.sway_m or self.settings.waver_m or self.settings.tremor_m):
             return joints_m
-        lever = _height_over_support(joints_m, height_m) / (CENTRE_OF_MASS * height_m)
+        stands = _stands(joints_m, height_m)
+        lever = _height_over_support(joints_m, stands) / (CENTRE_OF_MASS * height_m)
         right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
         right = right[:, :2] / np.maximum(np.linalg.norm(right[:, :2], axis=1, keepdims=True), 1e-6)
         front = np.stack([-right[:, 1], right[:, 0]], axis=1)
@@ -85,7 +88,11 @@ class MicroMotion:
         level = sway[:, :1] * front + 0.6 * sway[:, 1:] * right
         moved = joints_m.astype(float)
         moved[..., :2] += lever[..., None] * level[:, None]
-        own = self.settings.waver_m * self.waver.at(time_s) + self.settings.tremor_m * self.tremor.at(time_s)
+        waver_m, tremor_m = (
+            amplitude * (seated + (1 - seated) * stands)[..., None]
+            for amplitude, seated in ((self.settings.waver_m, SEATED_WAVER), (self.settings.tremor_m, SEATED_TREMOR))
+        )
+        own = waver_m * self.waver.at(time_s) + tremor_m * self.tremor.at(time_s)
         return moved + self.size[1] * _along_limbs(own)
 
     def chest_m(self, time_s: np.ndarray) -> np.ndarray:
@@ -96,13 +103,21 @@ class MicroMotion:
         return out + self.settings.heart_m * self.size[3] / 2 * (np.sin(heart) + 0.5 * np.sin(2 * heart + 1.0))
 
 
-def _height_over_support(joints_m: np.ndarray, height_m: float) -> np.ndarray:
+def _lower_foot_m(joints_m: np.ndarray) -> np.ndarray:
+    """Height (time, 1) of the lower foot."""
+    return np.minimum(joints_m[:, joint("left_foot"), 2], joints_m[:, joint("right_foot"), 2])[:, None]
+
+
+def _stands(joints_m: np.ndarray, height_m: float) -> np.ndarray:
+    """How much a body stands (time, 1): 1, and 0 where its pelvis is as low as a seated one's."""
+    pelvis = joints_m[:, [joint("pelvis")], 2] - _lower_foot_m(joints_m)
+    share = np.clip((pelvis / height_m - SEATED) / (STANDING - SEATED), 0, 1)
+    return share**2 * (3 - 2 * share)
+
+
+def _height_over_support(joints_m: np.ndarray, stands: np.ndarray) -> np.ndarray:
     """Height (time, 22) in metres above the lower foot, of a seated body above the pelvis; never below 0."""
-    z = joints_m[..., 2]
-    foot = np.minimum(z[:, joint("left_foot")], z[:, joint("right_foot")])[:, None]
-    pelvis = z[:, joint("pelvis")][:, None]
-    stands = np.clip(((pelvis - foot) / height_m - SEATED) / (STANDING - SEATED), 0, 1)
-    stands = stands**2 * (3 - 2 * stands)
+    z, foot, pelvis = joints_m[..., 2], _lower_foot_m(joints_m), joints_m[:, [joint("pelvis")], 2]
     return stands * np.maximum(z - foot, 0) + (1 - stands) * np.maximum(z - pelvis, 0)
 
 
