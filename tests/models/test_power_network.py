@@ -23,7 +23,7 @@ WIDE = torch.tensor([0.06, 0.2, 0.06, 0.2])
 class _Blob(PowerNetwork):
     """A network whose person is a blob at a known place, and whose room is empty."""
 
-    def person_level(self, written: torch.Tensor, pelvis: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
+    def person_level(self, written: torch.Tensor, body: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
         return -2.0 - ((at - BLOB) / WIDE).square().sum(-1) / 2
 
     def room_level(self, code: PowerEncoding, at: torch.Tensor) -> torch.Tensor:

@@ -12,7 +12,6 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.dsp.point_response import PointResponse
-from mmweaver.paths.mean_echoes import MeanEchoes
 
 REFERENCE = (0.05, 0.275, 0.125, 0.25)  # of a cell: m, m/s, cosine along x, cosine along z
 NEAREST_M, FARTHEST_M = 0.3, 4.2
@@ -95,21 +94,3 @@ class CellSizes:
 def _cosines(step: float) -> Tensor:
     count = int(1 / step)
     return step * torch.arange(-count, count + 1)
-
-
-def density(echoes: MeanEchoes, at: Tensor, chance: Tensor) -> tuple[Tensor, Tensor]:
-    """Cross section (m2) in the reference cell about places (place, 4), of echoes (echo,), both (place,).
-
-    Each echo is shared out by tents a cell wide to either side, whose sum over any raster of cells is the echo. Also
-    returns the sum of `chance` (echo,) over the echoes that are within a cell's size in all axes.
-    """
-    order = echoes.range_m.argsort()
-    echoes, chance = echoes[order], chance[order]
-    own = torch.stack([echoes.range_m, echoes.velocity_mps, *echoes.direction.unbind(-1)], -1)
-    first = torch.searchsorted(echoes.range_m, at[:, 0] - REFERENCE[0])
-    last = torch.searchsorted(echoes.range_m, at[:, 0] + REFERENCE[0])
-    index = first[:, None] + torch.arange(int((last - first).max().clamp(min=1)))
-    is_near, index = index < last[:, None], index.clamp(max=len(own) - 1)
-    off = (at[:, None] - own[index]).abs() / at.new_tensor(REFERENCE)
-    tent = (1 - off).clamp(min=0).prod(-1) * is_near
-    return (tent * echoes.cross_section_m2[index]).sum(-1), ((tent > 0) * chance[index]).sum(-1)

@@ -38,7 +38,16 @@ class PowerField(nn.Module):
         self.expand = nn.ModuleList(nn.Linear(CODE, 2 * WIDTH, bias=False) for _ in range(LAYERS))
         self.narrow, self.widen = nn.Linear(WIDTH, RANK, bias=False), nn.Linear(RANK, WIDTH, bias=False)
         self.norm, self.out = nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 1)
+        self.straight = nn.Linear(size, 1, bias=False)
         nn.init.constant_(self.out.bias, FAINTEST_LOG)
+        nn.init.zeros_(self.straight.weight)
+
+    def begin_with(self, level: float, slopes: dict[int, float], count: int) -> None:
+        """Before training: a level, and slopes over some of the last `count` encoded values."""
+        nn.init.constant_(self.out.bias, level)
+        with torch.no_grad():
+            for index, slope in slopes.items():
+                self.straight.weight[0, index - count] = slope
 
     def forward(self, encoded: Tensor, written: Tensor) -> Tensor:
         *codes, composed = written.split([CODE] * LAYERS + [RANK], dim=-1)
@@ -49,7 +58,7 @@ class PowerField(nn.Module):
                 z = z + self.widen(self.narrow(h) * composed[:, None])
             gamma, shift = expand(code)[:, None].chunk(2, dim=-1)
             h = nn.functional.gelu(z * (1 + gamma) + shift)
-        return self.out(self.norm(h))[..., 0]
+        return (self.out(self.norm(h)) + self.straight(encoded))[..., 0]
 
 
 class FieldWriter(nn.Module):

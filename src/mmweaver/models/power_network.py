@@ -16,11 +16,21 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.skeleton import joint
 from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.power_anchors import (
+    BODY_VALUES,
+    HEADS,
+    SURFACE_VALUES,
+    BodyNearness,
+    body_points,
+    nearness,
+    seen_surface,
+    surface_values,
+    surface_volume,
+)
 from mmweaver.models.power_cells import REACH, WIDEST, CellSizes
 from mmweaver.models.power_field import FieldWriter, PowerField, octave_size, octaves
 from mmweaver.models.precision import in_full_precision
@@ -37,7 +47,9 @@ MOST_MOVING = 1024  # cells of a frame, the strongest
 BLOCK = (2, 2, 2, 2)  # cells that are first looked at together
 LIKELY_BLOCKS = 384  # of a frame, whose cells are looked at one by one
 LARGEST_LOG = 6.0
-EDGE_PIXELS = 2  # to either side, over which a surface's normal is measured
+# what fields say before training: levels and slopes of the last values, read off eight training rooms
+ROOM_LOG, ROOM_SLOPES = -12.5, {0: 1.6, 1: 0.8, 3: 1.2, 6: 1.6}
+PERSON_LOG, PERSON_SLOPES = -7.3, {**dict.fromkeys(range(HEADS), 0.7), **dict.fromkeys(range(HEADS, 2 * HEADS), 0.3)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +59,7 @@ class PowerEncoding:
     view: SceneTensors
     z_env: Tensor  # (room, 512)
     surface: Tensor  # (room, 3, row, column): distance of the surface, cosine of incidence, whether it is known
+    volume: Tensor  # (room, SURFACE_VALUES, ...) of `surface_volume`
     written: Tensor  # (room, NUM_WRITTEN)
     sizes: CellSizes
     static: MeanEchoes  # (room, cell)
@@ -63,21 +76,21 @@ class PowerNetwork(EchoNetwork):
         self.is_anchored = is_anchored
         self.environment, self.pose = EnvironmentEncoder(), PoseEncoder()
         self.room_writer, self.person_writer = FieldWriter(Z_ENV), FieldWriter(Z_ENV + Z_POSE)
-        self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES)
-        self.person = PowerField(octave_size(PERSON_OCTAVES) + PERSON_FEATURES)
-
-    def code_of(self, view: SceneTensors, sizes: CellSizes | None = None) -> PowerEncoding:
-        """Rooms (room, ...) -> their code, without echoes; `sizes`: of the cells that will be looked at."""
-        z_env, _ = self.environment(view.image)
-        return PowerEncoding(
-            view=view, z_env=z_env, surface=_surfaces(view), written=self.room_writer(z_env),
-            sizes=sizes or CellSizes(), static=_no_echoes(z_env),
-        )  # fmt: skip
+        self.nearness = BodyNearness()
+        self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES + SURFACE_VALUES)
+        self.person = PowerField(octave_size(PERSON_OCTAVES) + PERSON_FEATURES + BODY_VALUES)
+        if is_anchored:
+            self.room.begin_with(ROOM_LOG, ROOM_SLOPES, SURFACE_VALUES)
+            self.person.begin_with(PERSON_LOG, PERSON_SLOPES, BODY_VALUES)
 
     def encode_room(self, view: SceneTensors, sizes: CellSizes | None = None) -> PowerEncoding:
-        """The same with echoes of all cells at rest (room, cell)."""
-        code = self.code_of(view, sizes)
-        cells = code.sizes.room_cells().to(code.z_env.device)[None].expand(len(code.z_env), -1, -1)
+        """Rooms (room, ...) -> their code, with echoes of all cells at rest (room, cell); `sizes`: of cells."""
+        z_env, _ = self.environment(view.image)
+        code = PowerEncoding(
+            view=view, z_env=z_env, surface=_surfaces(view), volume=surface_volume(view),
+            written=self.room_writer(z_env), sizes=sizes or CellSizes(), static=_no_echoes(z_env),
+        )  # fmt: skip
+        cells = code.sizes.room_cells().to(z_env.device)[None].expand(len(z_env), -1, -1)
         level = self.room_level(code, cells)
         static = MeanEchoes(
             range_m=cells[..., 0], velocity_mps=torch.zeros_like(level), direction=cells[..., 1:],
@@ -98,12 +111,12 @@ class PowerNetwork(EchoNetwork):
         z_env = code.z_env[:, None].expand(-1, z_pose.shape[1], -1)
         return self.person_writer(torch.cat([z_env, z_pose], dim=-1))
 
-    def person_level(self, written: Tensor, pelvis: Tensor, at: Tensor) -> Tensor:
+    def person_level(self, written: Tensor, body: Tensor, at: Tensor) -> Tensor:
         """Logarithm of the cross section (m2) of reference cells at (field, place, 4) -> (field, place).
 
-        `pelvis` (field, 4): its range, radial velocity and direction cosines.
+        `body` (field, part, 4): range, radial velocity and direction cosines of its parts, the pelvis first.
         """
-        return _bounded(self.person(self._person_coordinates(pelvis, at), written))
+        return _bounded(self.person(self._person_coordinates(body, at), written))
 
     def moving(
         self, code: PowerEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None
@@ -111,29 +124,27 @@ class PowerNetwork(EchoNetwork):
         """Joints and velocities (room, frame, 22, 3), one motion for each room -> the strongest cells (room, frame,
         cell). `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
         """
-        written = self.write_person(code, joints_m, velocity_mps)
-        pelvis = pelvis_of(joints_m, velocity_mps)
+        written, body = self.write_person(code, joints_m, velocity_mps), body_points(joints_m, velocity_mps)
         if frames is not None:
-            written, pelvis = (chosen_frames(part, frames) for part in (written, pelvis))
-        fields = zip(written.flatten(0, 1), pelvis.flatten(0, 1), strict=True)
-        each = [self._cells(code.sizes, *field) for field in fields]
-        return CellEchoes.stack(each).map(lambda tensor: tensor.unflatten(0, written.shape[:2]))
-
-    def _cells(self, sizes: CellSizes, written: Tensor, pelvis: Tensor) -> CellEchoes:
-        """The strongest cells (cell,) of one field: blocks first, then the cells of the likely ones."""
-        blocks, inside = (part.to(pelvis.device) for part in sizes.boxes(pelvis.cpu(), BLOCK))
-        with torch.no_grad():
-            likely = _strength(self.person_level(written[None], pelvis[None], blocks[None])[0], blocks)
-        likely = likely.topk(min(LIKELY_BLOCKS, len(likely))).indices
-        cells = (blocks[likely][:, None] + inside).flatten(0, 1)
-        level = self.person_level(written[None], pelvis[None], cells[None])[0]
-        best = _strength(level, cells).topk(min(MOST_MOVING, len(cells))).indices
-        cells, there = cells[best], _is_ahead(cells[best])
-        return CellEchoes(
-            range_m=cells[:, 0].clamp(min=0.1), velocity_mps=cells[:, 1],
-            direction=cells[:, 2:] * there[:, None], cell=sizes.numbers(cells),
-            cross_section_m2=level[best].exp() * there * sizes.moving_share,
+            written, body = (chosen_frames(part, frames) for part in (written, body))
+        shape = written.shape[:2]
+        written, body = written.flatten(0, 1), body.flatten(0, 1)
+        cells = torch.stack([self._cells(code.sizes, one) for one in body])
+        level, there = self.person_level(written, body, cells), _is_ahead(cells)
+        echoes = CellEchoes(
+            range_m=cells[..., 0].clamp(min=0.1), velocity_mps=cells[..., 1],
+            direction=cells[..., 2:] * there[..., None], cell=code.sizes.numbers(cells),
+            cross_section_m2=level.exp() * there * code.sizes.moving_share,
         )  # fmt: skip
+        return echoes.map(lambda tensor: tensor.unflatten(0, shape))
+
+    def _cells(self, sizes: CellSizes, body: Tensor) -> Tensor:
+        """The cells (cell, 4) nearest to a body (part, 4): blocks first, then the cells of the likely ones."""
+        with torch.no_grad():
+            blocks, inside = (part.to(body.device) for part in sizes.boxes(body[0].cpu(), BLOCK))
+            likely = nearness(body, blocks).topk(min(LIKELY_BLOCKS, len(blocks))).indices
+            cells = (blocks[likely][:, None] + inside).flatten(0, 1)
+            return cells[nearness(body, cells).topk(min(MOST_MOVING, len(cells))).indices]
 
     def _room_coordinates(self, code: PowerEncoding, at: Tensor) -> Tensor:
         distance, cosine, known = _seen(code, at[..., 1:]).unbind(1)
@@ -143,48 +154,34 @@ class PowerNetwork(EchoNetwork):
         axes = ((at[..., 0] - MIDDLE_M) / MIDDLE_M, behind, at[..., 1], at[..., 2])
         flash = (10 * cosine - 9).clamp(min=0)  # a surface that faces the radar
         parts = [octaves(axis, count) for axis, count in zip(axes, ROOM_OCTAVES, strict=True)]
-        return torch.cat([*parts, torch.stack([known, distance / 4, cosine, flash], -1)], -1)
+        seen = torch.stack([known, distance / 4, cosine, flash], -1)
+        return torch.cat([*parts, seen, self._known(surface_values(code.volume, at))], -1)
 
-    def _person_coordinates(self, pelvis: Tensor, at: Tensor) -> Tensor:
-        distance, speed, x, _ = pelvis[:, None].unbind(-1)
+    def _known(self, values: Tensor) -> Tensor:
+        return values if self.is_anchored else 0 * values
+
+    def _person_coordinates(self, body: Tensor, at: Tensor) -> Tensor:
+        distance, speed, x, _ = body[:, :1].unbind(-1)
         range_m, velocity, cosine_x, cosine_z = at.unbind(-1)
         if self.is_anchored:
             axes = [(range_m - distance) / REACH[0], (velocity - speed) / REACH[1], (cosine_x - x) / REACH[2], cosine_z]
         else:
             axes = [(range_m - MIDDLE_M) / MIDDLE_M, velocity / REACH[1], cosine_x, cosine_z]
         parts = [octaves(axis, count) for axis, count in zip(axes, PERSON_OCTAVES, strict=True)]
-        return torch.cat([*parts, torch.stack([range_m / 4, cosine_x], -1)], -1)
-
-
-def pelvis_of(joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
-    """Range, radial velocity and direction cosines (..., 4) of the pelvis."""
-    place, velocity = (part[..., joint("pelvis"), :] for part in (joints_m, velocity_mps))
-    distance = place.norm(dim=-1, keepdim=True).clamp(min=0.1)
-    unit = place / distance
-    return torch.cat([distance, (unit * velocity).sum(-1, keepdim=True), unit[..., [0, 2]]], dim=-1)
+        place = torch.stack([range_m / 4, cosine_x], -1)
+        return torch.cat([*parts, place, self._known(self.nearness(body, at))], -1)
 
 
 def chosen_frames(values: Tensor, frames: Tensor) -> Tensor:
     """Of values (room, frame, size) those at indices (room, chosen)."""
-    return values.gather(1, frames[..., None].expand(-1, -1, values.shape[-1]))
+    index = frames.reshape(*frames.shape, *[1] * (values.dim() - 2))
+    return values.gather(1, index.expand(-1, -1, *values.shape[2:]))
 
 
 def _surfaces(view: SceneTensors) -> Tensor:
     """Of each pixel (room, 3, row, column): distance of its surface, cosine of incidence, and whether it is known."""
-    rows, columns = view.depth_m.shape[-2:]
-    fx, fy, cx, cy = view.camera[:, :, None, None].unbind(1)
-    x = (torch.arange(columns, device=fx.device) - cx) / fx
-    y = (torch.arange(rows, device=fx.device)[:, None] - cy) / fy
-    ray = torch.stack([x.expand(-1, rows, -1), y.expand(-1, -1, columns), torch.ones_like(view.depth_m)], 1)
-    point = ray * view.depth_m[:, None]
-    wide = nn.functional.pad(point, [EDGE_PIXELS] * 4, mode="replicate")
-    step = slice(EDGE_PIXELS, -EDGE_PIXELS)
-    across = wide[:, :, step, 2 * EDGE_PIXELS :] - wide[:, :, step, : -2 * EDGE_PIXELS]
-    down = wide[:, :, 2 * EDGE_PIXELS :, step] - wide[:, :, : -2 * EDGE_PIXELS, step]
-    normal = nn.functional.normalize(torch.linalg.cross(across, down, dim=1), dim=1)
-    distance = point.norm(dim=1)
-    cosine = (normal * point).sum(1).abs() / distance.clamp(min=0.05)
-    return torch.stack([distance, cosine, (view.depth_m > 0).float()], 1)
+    point, cosine = seen_surface(view)
+    return torch.stack([point.norm(dim=1), cosine, (view.depth_m > 0).float()], 1)
 
 
 @in_full_precision
@@ -206,13 +203,8 @@ def _seen(code: PowerEncoding, direction: Tensor) -> Tensor:
 
 
 def _is_ahead(cells: Tensor) -> Tensor:
-    """Whether cells (cell, 4) lie where an antenna hears anything."""
-    return (cells[:, 2:].square().sum(-1) < WIDEST) & (cells[:, 0] > 0.1)
-
-
-def _strength(level: Tensor, cells: Tensor) -> Tensor:
-    """How strong cells (cell, 4) are received, up to a constant, as a logarithm."""
-    return torch.where(_is_ahead(cells), level - 4 * cells[:, 0].clamp(min=0.1).log(), -torch.inf)
+    """Whether cells (..., 4) lie where an antenna hears anything."""
+    return (cells[..., 2:].square().sum(-1) < WIDEST) & (cells[..., 0] > 0.1)
 
 
 def _bounded(level: Tensor) -> Tensor:

@@ -184,7 +184,7 @@ def card_of(trainer: Trainer, dataset_sha256: str, **more: str) -> WeightsCard:
     )  # fmt: skip
 
 
-def compare_with_start(trainer: Trainer, start: WeaverNetwork) -> Figures:
+def compare_with_start(trainer: Trainer, start: EchoNetwork) -> Figures:
     """Mean map differences in dB on the validation batches: network, initial weights, and empty maps."""
     learner = trainer.learner
     assert isinstance(learner, NetworkLearner)
