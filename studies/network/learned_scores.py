@@ -10,8 +10,9 @@ Ground truth is the simulator in the true room, and every method is given the ex
 simulator with other surface micro-phases of room and person: the oracle for methods that cannot know them.
 `realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the room without the
 person. `static_mean` is that of the ground truth itself, `training_mean` that of the rooms trained on. `paper` is the
-paper's own network (study `train_paper`), `paper_power` the same idea with power as its target; `energy_db`, the energy
-of a cube over that of the ground truth, shows whether it has collapsed. Intervals: bootstrap over rooms.
+paper's own network (study `train_paper`), `paper_power` the same idea with power as its target, also shown another
+room's photo, and before training; `energy_db`, the energy of a cube over that of the ground truth, shows whether it has
+collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -40,6 +41,7 @@ from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.power_training import PowerRecipe, initial_power_network
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method
@@ -51,6 +53,7 @@ COLUMNS = (
     "magnitude_nmse_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m",
 )  # fmt: skip
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
+POWER_ROWS = ("paper_power", "paper_power_wrong_photo", "paper_power_untrained")
 SAME_M = 1e-4
 OTHER = 1000  # added to a person's number for other skin
 
@@ -283,11 +286,13 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         power, power_card = load_network(options.power)
         methods["paper_power"] = learned(power, lambda case: case.room)
         methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
+        recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))
+        methods["paper_power_untrained"] = learned(initial_power_network(recipe).eval(), lambda case: case.room)
         about["paper_power"] = power_card.__dict__
     if options.only:
         methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    of = dict.fromkeys(("paper_power", "paper_power_wrong_photo"), options.power) | {"paper": options.paper}
+    of = dict.fromkeys(POWER_ROWS, options.power) | {"paper": options.paper}
     caches = {
         name: RoomCache(options.runs, {"data_plan": plan, "row": name, "weights": digest(of.get(name) or weights)})
         for name in methods

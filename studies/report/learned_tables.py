@@ -23,6 +23,8 @@ POWER = RowTable(
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
         "paper_power": "`paper_power`",
+        "paper_power_wrong_photo": "`paper_power`, shown another room's photo",
+        "paper_power_untrained": "`paper_power` before training: its coordinates alone",
         "weaver": "`weaver`",
         "physics_in_photographed_room": "physics, from the photo",
         "realization": "the true room, random phases (oracle)",
