@@ -72,7 +72,8 @@ fields of radar cross section out, implicit neural representations that a hypern
 radar; each cell becomes a scatterer of sampled phase. Kept to be compared with; recipe weaver is nearer to the truth.
 
     mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --weights . --out walk/""",
-    limits="""- What the photo does not show is hardly there, and the person's reflections in walls are not.
+    limits="""- Read together with photo and joints, from which its coordinates are counted; radars at the camera alone.
+- The person's reflections in walls are not there.
 - Details finer than 5 cm, 0.28 m/s and an eighth of a cosine are smooth, whatever radar reads them.
 - One radar ({radar}); others read the same fields and have not been evaluated.""",
 )
