@@ -139,10 +139,17 @@ def _compress_cube(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         print(
             f"{'added to' if is_appended else 'wrote'} {arguments.out}: {size:,} bytes for {frames} frames,"
-            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s; error"
-            f" {errors['signal_error_db']:.1f} dB in cells with signal, {errors['all_error_db']:.1f} dB in all"
+            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s; {_said(errors)}"
         )
     return 0
+
+
+def _said(errors: dict[str, float]) -> str:
+    from mmweaver.compression.rate_search import EXACT_DB
+
+    if errors["all_error_db"] <= EXACT_DB:
+        return "without loss"
+    return f"error {errors['signal_error_db']:.1f} dB in cells with signal, {errors['all_error_db']:.1f} dB in all"
 
 
 def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dict[str, float]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.lattice import PHASES, Phase, known_neighbours
-from mmweaver.compression.symbol_model import Batches, SignedModel
+from mmweaver.compression.symbol_model import ALWAYS, Batches, SignedModel
 
 Integers = np.ndarray  # int64; called thousands of times a cube
 
@@ -127,52 +127,64 @@ class LevelCoder:
         place = beam * self.shape[3] + group.column
         real: Integers | None = None
         for plane in planes:
-            trend = self._trend(plane, group, strides) // factor
+            trend = self._trend(plane, group, strides)
+            trend = None if trend is None else trend // factor
             wanted = plane[at] // factor
             values = np.concatenate(
                 [
-                    self._numbers(stream, known.some(batch, real), trend[batch], place[batch], wanted[batch])
+                    self._numbers(
+                        stream,
+                        known.some(batch, real),
+                        None if trend is None else trend[batch],
+                        place[batch],
+                        wanted[batch],
+                    )
                     for batch in batches.of(len(at))
                 ]
             )
             plane[at] = values * factor
             real = np.abs(values)
 
-    def _numbers(self, stream, known: KnownSizes, trend: Integers, place: Integers, wanted: Integers) -> Integers:
-        expected = _expected(known, len(trend))
-        towards = np.abs(trend)
-        is_far = towards >= FAR
-        by_trend = np.where(is_far, NUM_TRENDS - 1, np.searchsorted(TREND_BOUNDS, towards, side="right"))
-        digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
-        shift = np.maximum(digits - (DIGITS_IN_3 if stream.is_version_3 else DIGITS), 0)
-        scaled = np.zeros_like(shift) if stream.is_version_3 else shift
-        unknown = np.full(len(trend), NUM_REAL - 1)
-        by_real = unknown if known.real is None else np.minimum(known.real >> scaled, NUM_REAL - 2)
-        by_wide = np.searchsorted(WIDE_BOUNDS, known.wide >> scaled, side="right")
+    def _numbers(
+        self, stream, known: KnownSizes, trend: Integers | None, place: Integers, wanted: Integers
+    ) -> Integers:
+        expected = _expected(known, len(wanted))
+        shift, scaled = self._shifts(stream, expected)
+        by_real = NUM_REAL - 1 if known.real is None else np.minimum(known.real >> scaled, NUM_REAL - 2)
         contexts = [
-            np.searchsorted(SIZE_BOUNDS, expected >> scaled, side="right"),
-            _class_of(known.own, scaled) * NUM_REAL + by_real,
-            _class_of(known.other, scaled) * NUM_WIDE + by_wide,
+            SIZE_BOUNDS.searchsorted(expected >> scaled, "right"),
+            _class_of(known.own, scaled, len(wanted)) * NUM_REAL + by_real,
+            _class_of(known.other, scaled, len(wanted)) * NUM_WIDE
+            + WIDE_BOUNDS.searchsorted(known.wide >> scaled, "right"),
             place,
         ]
+        if trend is None:
+            contexts = [context * NUM_TRENDS for context in contexts]
+            return self.levels.code(stream, contexts, shift, wanted, ALWAYS)
+        towards = np.abs(trend)
+        is_far = towards >= FAR
+        by_trend = np.where(is_far, NUM_TRENDS - 1, TREND_BOUNDS.searchsorted(towards, "right"))
+        contexts = [context * NUM_TRENDS + by_trend for context in contexts]
         up = np.where(trend < 0, -1, 1)
         offset = np.where(is_far, (towards + 4) // 8, 0)
-        deviation = self.levels.code(
-            stream,
-            [context * NUM_TRENDS + by_trend for context in contexts],
-            shift,
-            wanted * up - offset,
-            by_trend == 0,
-        )
-        return (deviation + offset) * up
+        return (self.levels.code(stream, contexts, shift, wanted * up - offset, by_trend == 0) + offset) * up
 
-    def _trend(self, plane: Integers, group: PhaseGroup, strides) -> Integers:
-        """Level predicted by the windows' correlation, in eighths of a fine step."""
+    def _shifts(self, stream: BitStream, expected: Integers) -> tuple[Integers | None, Integers | int]:
+        """Low bits of levels that are uniform, None where there are none, and by how much contexts are scaled."""
+        most = DIGITS_IN_3 if stream.is_version_3 else DIGITS
+        if int(expected.max()) >> 3 < 1 << most:
+            return None, 0
+        digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
+        shift = np.maximum(digits - most, 0)
+        return shift, 0 if stream.is_version_3 else shift
+
+    def _trend(self, plane: Integers, group: PhaseGroup, strides) -> Integers | None:
+        """Level predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
         at, (_, row, column) = group.at, strides
         along = bool(group.phase[1]) and self.correlated[0] and group.stride == 1
         across = bool(group.phase[2]) and self.correlated[1] and group.stride == 1
         if not (along or across):
-            return np.zeros(len(at), np.int64)
+            return None
         zero = np.zeros(len(at), np.int64)
         rows = plane[at - row] + plane[at + row] if along else zero
         columns = plane[at - column] + plane[at + column] if across else zero
@@ -195,8 +207,8 @@ def _expected(known: KnownSizes, num: int) -> Integers:
     return total // weight if weight else total + 5
 
 
-def _class_of(size: Integers | None, shift: Integers) -> Integers:
-    return np.full(len(shift), UNKNOWN) if size is None else np.searchsorted(SIZE_BOUNDS, size >> shift, side="right")
+def _class_of(size: Integers | None, shift: Integers | int, num: int) -> Integers:
+    return np.full(num, UNKNOWN) if size is None else SIZE_BOUNDS.searchsorted(size >> shift, "right")
 
 
 def _groups(

@@ -13,7 +13,7 @@ from mmweaver.compression.chunk_transform import choices_of
 from mmweaver.compression.mmw_codec import LEAST_BYTES, check_request, check_writable, scale_of
 from mmweaver.compression.mmw_container import MAX_RATIO
 from mmweaver.compression.mmw_writer import MmwWriter
-from mmweaver.compression.rate_search import Progress
+from mmweaver.compression.rate_search import Progress, ratio_db
 from mmweaver.compression.segment import COARSER, SHORT_CHUNK, chunk_encoder, some_frames, split
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.default_precision import single_precision
@@ -60,7 +60,7 @@ class ErrorSums:
     def in_db(self) -> dict[str, float]:
         """As `mmw_codec.errors_db`."""
         pairs = {"signal_error_db": (self.active_error, self.active_signal), "all_error_db": (self.error, self.signal)}
-        return {name: round(10 * float(np.log10(max(e, 1e-300) / max(s, 1e-300))), 2) for name, (e, s) in pairs.items()}
+        return {name: round(ratio_db(*pair), 2) for name, pair in pairs.items()}
 
 
 def compress_recording(

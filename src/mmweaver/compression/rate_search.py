@@ -29,6 +29,7 @@ SPARE = 1.25  # times the bytes: an even coder by the estimate has no less error
 MOST_PRICE, PRICES = 1000.0, 10  # squared steps a bit, where a quality jumps; how many are tried
 WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
 
+EXACT_DB = -300.0  # said of a cube without any error
 LEAST_ERROR = 1e-30  # relative to the squared peak
 SAME_ERROR = 0.1  # difference of log(error) within which an estimate is trusted
 CLOSE_ERROR = 1.01  # times the error allowed that is as good
@@ -402,5 +403,10 @@ def _values_of(coded: list[CodedChunk], cube) -> CubeValues:
 
 def error_db(truth: CubeValues, ours: CubeValues, is_active: np.ndarray) -> float:
     """Error-to-signal ratio in dB in some cells (frame, range, doppler)."""
-    error = np.sum(np.abs(truth - ours)[is_active] ** 2)
-    return float(10 * np.log10(max(error, 1e-300) / max(np.sum(np.abs(truth)[is_active] ** 2), 1e-300)))
+    error, signal = (float(np.sum(np.abs(values)[is_active] ** 2)) for values in (truth - ours, truth))
+    return ratio_db(error, signal)
+
+
+def ratio_db(error: float, signal: float) -> float:
+    """Error-to-signal ratio in dB of two energies; EXACT_DB where there is no error."""
+    return 10 * math.log10(error / max(signal, LEAST_ERROR)) if error else EXACT_DB

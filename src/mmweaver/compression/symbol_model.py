@@ -19,6 +19,7 @@ ESCAPE = 2 * HALF + 1
 SIZE = ESCAPE + 1
 MOST_BITS = 30
 FIRST_BATCH = 16
+ALWAYS = np.ones(1, bool)  # all numbers of a batch are as likely as their negatives
 
 
 class Batches:
@@ -60,7 +61,7 @@ class MixedModel:
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
         """Codes symbols (n,) with one context (n,) per table, then learns them.
 
-        Where `mirrored` (n,) is set, a number and its negative are learned alike.
+        Where `mirrored` (n,) is set, or for ALWAYS, a number and its negative are learned alike.
         """
         places = [first + context for first, context in zip(self._first, contexts, strict=True)]
         rows = self._weighted[places[0]]
@@ -83,9 +84,14 @@ class MixedModel:
             self.counts[seen] += np.bincount((first + symbols).ravel(), minlength=size).reshape(-1, self.size)
         else:
             other = np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
-            weights = np.tile(np.where(mirrored, 0.5, 1.0), len(first))
-            self.counts[seen] += np.bincount((first + symbols).ravel(), weights, size).reshape(-1, self.size)
-            self.counts[seen] += np.bincount((first + other).ravel(), 1.0 - weights, size).reshape(-1, self.size)
+            own, turned = (first + symbols).ravel(), (first + other).ravel()
+            if mirrored is ALWAYS:
+                self.counts[seen] += (0.5 * np.bincount(own, minlength=size)).reshape(-1, self.size)
+                self.counts[seen] += (0.5 * np.bincount(turned, minlength=size)).reshape(-1, self.size)
+            else:
+                weights = np.tile(np.where(mirrored, 0.5, 1.0), len(first))
+                self.counts[seen] += np.bincount(own, weights, size).reshape(-1, self.size)
+                self.counts[seen] += np.bincount(turned, 1.0 - weights, size).reshape(-1, self.size)
         self.totals += counts
         old = self.totals > MEMORY
         if old.any():
@@ -113,9 +119,16 @@ class SignedModel:
         self.escapes = MixedModel([np.ones((1, MOST_BITS))])
 
     def code(
-        self, stream: BitStream, contexts: list[Integers], shift: Integers, values: Integers, mirrored
+        self, stream: BitStream, contexts: list[Integers], shift: Integers | None, values: Integers, mirrored
     ) -> Integers:
-        """Codes values (n,); `mirrored` (n,): a value and its negative are equally likely."""
+        """Codes values (n,). `shift` (n,), None for none; `mirrored`: see `MixedModel.code`."""
+        if shift is None:
+            symbol = np.where(np.abs(values) <= HALF, values + HALF, ESCAPE)
+            symbol = self.symbols.code(stream, contexts, symbol, mirrored)
+            out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
+            if len(far):
+                out[far] = self._far(stream, values[far])
+            return out
         if shift.max(initial=0) > MOST_BITS:
             raise ValueError("a number too large: the stream is damaged")
         half = (1 << shift) >> 1
@@ -126,10 +139,9 @@ class SignedModel:
         out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
         if len(far) and not stream.is_version_3:
             out[far] = self._far(stream, high[far])
-        if shift.any():
-            has_low = (symbol < ESCAPE) | (not stream.is_version_3)
-            low = stream.uniform(np.where(has_low, 1 << shift, 1), np.where(has_low, low, 0))
-            out = (out << shift) - half + low
+        has_low = (symbol < ESCAPE) | (not stream.is_version_3)
+        low = stream.uniform(np.where(has_low, 1 << shift, 1), np.where(has_low, low, 0))
+        out = (out << shift) - half + low
         if len(far) and stream.is_version_3:
             out[far] = self._far(stream, values[far])
         return out
