@@ -22,7 +22,7 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     summary = json.loads(capsys.readouterr().out)
     assert summary["bytes"] == out.stat().st_size <= 3000
     assert summary["frames"] == 3
-    assert -60 < summary["signal_error_db"] <= summary["all_error_db"] < -10
+    assert -70 < summary["signal_error_db"] <= summary["all_error_db"] < -10
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "3000"]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert main(["compress", str(recording), "-o", str(out), "--quality", "15", "--overwrite"]) == 0
