@@ -128,9 +128,11 @@ class CollisionMap:
         """
         samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).without_repeats()
         worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m)[0])
-        for seat in dict.fromkeys(seats_m):
-            worst = max(worst, self._beyond_seat_m(samples, seat, margin_m))
-        return worst
+        return max(worst, self.beyond_seats_m(samples, seats_m, margin_m=margin_m))
+
+    def beyond_seats_m(self, body: BodySamples, seats_m: Sequence[Place], *, margin_m: float) -> float:
+        """`penetration_m` into what is near the seats of a sitter but no part of them."""
+        return max((self._beyond_seat_m(body, seat, margin_m) for seat in dict.fromkeys(seats_m)), default=0.0)
 
     def estimates_m(
         self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float

@@ -5,7 +5,7 @@ animating them: their bodies are estimated by moving the first one along their p
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -19,7 +19,8 @@ from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
-MOST_TESTED, MOST_ANIMATED = 5, 1  # of an attempt's placements: compared closely, and of those that move animated
+KEPT_M = 0.01  # of the margin: a placement that keeps as much is taken without comparing others
+MOST_TESTED, MOST_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
 # A stool that is invented though there is a seat counts as much: a seat is better where the body gets into little.
@@ -60,6 +61,7 @@ class _Tested:
     trunk_cost_m: float
     legs_cost_m: float
     pose: PoseSequence | None = None  # where it was animated
+    samples: BodySamples | None = None  # where it was estimated
 
     @property
     def cost_m(self) -> float:
@@ -114,7 +116,7 @@ class _Ranking:
         best = better_than
         if best is None:
             best = self._animated(placements[0])
-            if best.cost_m <= 0:
+            if best.cost_m <= -KEPT_M:
                 return best
             placements = placements[1:]
         animations = MOST_ANIMATED
@@ -128,13 +130,13 @@ class _Ranking:
                 animations -= 1
                 tested = self._animated(estimate.placement)
             best = tested if tested.cost_m < best.cost_m or tested.is_clear else best
-            if tested.cost_m <= 0:
+            if tested.cost_m <= -KEPT_M:
                 break
         return best
 
     def _refined(self, estimates: Sequence[_Tested]) -> Iterator[_Tested]:
         """Estimates with what is ahead of a sitter: as they come where they stay, the best first where they move."""
-        refined = (self._moved(estimate.placement) for estimate in estimates)
+        refined = (self._with_what_is_ahead(estimate) for estimate in estimates)
         if all(estimate.placement.is_still for estimate in estimates):
             return refined
         return iter(_sorted(list(refined)))
@@ -147,11 +149,14 @@ class _Ranking:
         seats = [placement.seats_m for placement in placements]
         depths_m = self._obstacles.estimates_m(bodies, seats, margin_m=MARGIN_M) - MARGIN_M
         trunk_m, legs_m = self._occlusion_costs_m(bodies, seats)
-        costs = zip(placements, depths_m, trunk_m, legs_m, strict=True)
+        costs = zip(placements, depths_m, trunk_m, legs_m, bodies, strict=True)
         estimates = [
-            _Tested(placement=each, penetration_m=float(depth), trunk_cost_m=float(trunk), legs_cost_m=float(legs))
-            for each, depth, trunk, legs in costs
-        ]
+            _Tested(
+                placement=each, penetration_m=float(depth), trunk_cost_m=float(trunk), legs_cost_m=float(legs),
+                samples=body,
+            )
+            for each, depth, trunk, legs, body in costs
+        ]  # fmt: skip
         return _sorted(estimates)
 
     def _sketch(self, placement: Placement) -> BodySamples:
@@ -170,11 +175,14 @@ class _Ranking:
             self._sketches[_key(placement)] = sketch.without_repeats() if is_still else sketch.every_second_time()
         return self._tested(placement, samples, pose)
 
-    def _moved(self, placement: Placement) -> _Tested:
-        """The body estimated for a placement, tested in full."""
-        return self._tested(placement, self._sketch(placement).along(placement.path), None)
+    def _with_what_is_ahead(self, estimate: _Tested) -> _Tested:
+        """An estimate that counts what is ahead of a sitter, too; of others it has all there is."""
+        if estimate.samples is None or not estimate.placement.seats_m:
+            return estimate
+        ahead_m = self._obstacles.beyond_seats_m(estimate.samples, estimate.placement.seats_m, margin_m=MARGIN_M)
+        return replace(estimate, penetration_m=max(estimate.penetration_m, ahead_m - MARGIN_M))
 
-    def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence | None) -> _Tested:
+    def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence) -> _Tested:
         # Beyond the margin all are equally good.
         penetration_m = self._obstacles.penetration_m(samples, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
         trunk_m, legs_m = self._occlusion_costs_m([samples], [placement.seats_m])

@@ -25,7 +25,7 @@ from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
-MOST_TRIES, TRIES, ENOUGH = 140, 40, 16  # candidates tried for the first, for all, and found, at most
+MOST_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
 _SMALL_M2, MOST_TRIES_WHERE_SMALL = 0.5, 40  # so little floor is soon searched
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
