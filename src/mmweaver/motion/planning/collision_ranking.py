@@ -19,7 +19,7 @@ from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
-KEPT_M = 0.01  # of the margin: a placement that keeps as much is taken without comparing others
+
 MOST_TESTED, MOST_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
@@ -116,7 +116,7 @@ class _Ranking:
         best = better_than
         if best is None:
             best = self._animated(placements[0])
-            if best.cost_m <= -KEPT_M:
+            if best.cost_m <= 0:
                 return best
             placements = placements[1:]
         animations = MOST_ANIMATED
@@ -130,7 +130,7 @@ class _Ranking:
                 animations -= 1
                 tested = self._animated(estimate.placement)
             best = tested if tested.cost_m < best.cost_m or tested.is_clear else best
-            if tested.cost_m <= -KEPT_M:
+            if tested.cost_m <= 0:
                 break
         return best
 
