@@ -10,15 +10,19 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
 from mmweaver.generation import Room
 from mmweaver.result_folder import file_digest
-from mmweaver.scene.photo.capture_photo import read_capture_photo
+from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
 from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.photo_files import RoomFiles
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
 from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
 from mmweaver.scene.whole_room.view_file import read_views
+
+VIEWS_FILE = "views.json"
 
 
 class RoomReader:
@@ -109,6 +113,24 @@ class RoomReader:
             settings = ("eye", "look_deg", "unit", "up")
             inputs |= {name: how[name] for name in settings if how.get(name) is not None}
         return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
+
+    def open_room(self, path: str | Path) -> Room:
+        """The room of whatever lies there: a folder with rgb.png and depth.png (and camera.json), views.json or a
+        folder with it, a scan or a capture folder (its first photo), a RealSense .bag, or a mesh.
+
+        Raises InputError for anything else.
+        """
+        place = Path(path)
+        if place.suffix.lower() in MESH_SUFFIXES:
+            return self.read_mesh(place)
+        for views in (place, place / VIEWS_FILE):
+            if views.name == VIEWS_FILE and views.is_file():
+                return self.read_views(views)
+        is_capture = any(place.glob(f"*/{DEPTH}")) or (place / DEPTH).is_file()
+        if is_bag(place) or is_capture or scan_kind(place) is not None:
+            return self.read_capture(place)
+        files = RoomFiles.in_folder(place)
+        return self.read_room(files.rgb, files.depth, files.camera)
 
     def sample_room(self) -> Room:
         """The bundled sample room."""

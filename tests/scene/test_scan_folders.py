@@ -179,6 +179,26 @@ def test_a_room_of_a_scan(tmp_path: Path):
     assert set(room.inputs) >= {"photo", "rgb", "depth"}
 
 
+def test_a_room_is_opened_whatever_it_is(tmp_path: Path):
+    """One photo of a scan, the same as views.json, and the same as plain files."""
+    polycam(tmp_path / "scan", 0)
+    weaver = Weaver()
+    scan = weaver.open_room(tmp_path / "scan")
+    photo, plain = scan.scene.photo, tmp_path / "plain"
+    save(plain / "rgb.png", photo.rgb)
+    save(plain / "depth.png", np.nan_to_num(photo.depth_m), 0.001)
+    camera = {name: getattr(photo.intrinsics, name) for name in ("fx", "fy", "cx", "cy", "width", "height")}
+    (plain / "camera.json").write_text(json.dumps(camera))
+    named = {"rgb": "rgb.png", "depth": "depth.png", "camera": "camera.json"}
+    (tmp_path / "views").mkdir()
+    views = {"photos": [{name: f"../plain/{file}" for name, file in named.items()}]}
+    (tmp_path / "views" / "views.json").write_text(json.dumps(views))
+    for place in (plain, tmp_path / "views", tmp_path / "views" / "views.json"):
+        assert weaver.open_room(place).scene.floor_z_m == pytest.approx(scan.scene.floor_z_m, abs=0.005)
+    with pytest.raises(InputError, match="colour picture is missing"):
+        weaver.open_room(tmp_path)
+
+
 def test_others_are_refused_in_one_line(tmp_path: Path):
     assert scan_kind(tmp_path) is None
     with pytest.raises(InputError, match="is no scan of"):

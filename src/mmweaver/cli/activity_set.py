@@ -35,8 +35,8 @@ def add_activity_options(group: Options) -> None:
     )  # fmt: skip
     group.add_argument(
         "--room", type=Path, action="append", metavar="DIR",
-        help="a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders); once more for each"
-        " further room",
+        help="a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders), views.json, a scan,"
+        " a capture folder, a RealSense .bag or a mesh; once more for each further room",
     )  # fmt: skip
     group.add_argument("--rgb", type=Path, metavar="PNG", help="instead of --room: colour picture of the room")
     group.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
@@ -155,8 +155,6 @@ def _command() -> str:
 
 
 def _rooms(arguments: argparse.Namespace, weaver: Any) -> list[Any]:
-    from mmweaver.scene.photo_files import RoomFiles
-
     if arguments.room and arguments.rgb:
         raise InputError("give --room folders or --rgb and --depth, not both")
     if arguments.rgb is not None:
@@ -165,5 +163,4 @@ def _rooms(arguments: argparse.Namespace, weaver: Any) -> list[Any]:
         return [weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)]
     if not arguments.room:
         raise InputError("which room? give --room DIR with rgb.png and depth.png, or --rgb and --depth")
-    files = [RoomFiles.in_folder(folder) for folder in arguments.room]
-    return [weaver.read_room(one.rgb, one.depth, one.camera) for one in files]
+    return [weaver.open_room(place) for place in arguments.room]
