@@ -189,6 +189,7 @@ def draw_azimuth_profile(axes: "Axes", view: FigureData) -> None:
 
 
 Line = tuple[str, np.ndarray, str]  # name, power, colour
+LEGEND_SHARE = 0.2  # of the scale, above it: no curve runs through the names
 
 
 def _moving_line(view: FigureData, power: np.ndarray) -> list[Line]:
@@ -204,7 +205,9 @@ def _profiles(axes: "Axes", view: FigureData, along: np.ndarray, lines: list[Lin
         axes.plot([along[0], along[-1]], [scale.noise_db] * 2, color=INK, linewidth=0.8, linestyle=":")
         entries.append(("noise", INK))
     half = float(along[1] - along[0]) / 2 if len(along) > 1 else 0.5
-    axes.set(xlim=(float(along[0]) - half, float(along[-1]) + half), ylim=(scale.low_db, scale.high_db))
+    peak_db = max((float(np.max(scale.decibels(power), initial=scale.low_db)) for _, power, _ in lines))
+    top_db = max(scale.high_db, peak_db) + LEGEND_SHARE * (scale.high_db - scale.low_db)
+    axes.set(xlim=(float(along[0]) - half, float(along[-1]) + half), ylim=(scale.low_db, top_db))
     legend(axes, entries)
 
 
