@@ -1,9 +1,9 @@
 """Recorded and simulated point clouds of the same poses, frame by frame: the MARS recordings.
 
-The simulator is driven by the joints of the Kinect and its samples pass through the firmware's detection chain. Six
+The simulator is driven by the joints of the Kinect and its samples pass through the firmware's detection chain. Seven
 global parameters are unknown and are estimated on `validate`: the position of the radar in the Kinect's frame (3), the
-receiver's gain, the CFAR threshold and the person's height. That clutter removal was on and peak grouping off follows
-from the recordings. `test` is only scored.
+receiver's gain, the CFAR threshold, the phase offset of the elevation transmitter and the person's height. That clutter
+removal was on and peak grouping off follows from the recordings. `test` is only scored.
 
     python -m studies run mars --data shared/data/pointclouds/mars/subject1
 """
@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from mmweaver.core.board import Board
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube, PointCloud
@@ -28,6 +29,7 @@ from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
 from mmweaver.dsp.points import point_cloud
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
@@ -44,6 +46,7 @@ from studies.study import Reads
 PIECE_FRAMES, PIECES = 20, 20
 HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
 THRESHOLDS = (400, 2000)
+ELEVATIONS_DEG = (0.0, -12.0, -8.0, -4.0, 4.0, 8.0, 12.0)  # as far as boards were seen to be off (docs/board.md)
 PIECES_TO_ESTIMATE = 12
 Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
 
@@ -55,6 +58,7 @@ class Setup:
     shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the Kinect's frame to the radar's
     gain_db: float = 0.0  # against the preset's receiver
     threshold: int = 768
+    elevation_deg: float = 0.0  # phase of the elevated transmitter
     height_m: float = 1.75
 
 
@@ -153,7 +157,7 @@ def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant
         settings = replace(settings, group_range=True, group_doppler=True)
     clouds: Clouds = []
     for adc, piece in zip(adcs, pieces, strict=True):
-        louder = replace(adc, samples=adc.samples * np.float32(10 ** (setup.gain_db / 20)))
+        louder = received(adc, setup)
         if variant.chain == "cfar":
             cloud = point_cloud(remove_static(radar_cube(louder)), max_points_per_frame=64)
         else:
@@ -163,19 +167,29 @@ def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant
     return clouds
 
 
+def received(adc: AdcCube, setup: Setup) -> AdcCube:
+    """Samples with the estimated gain, by a board with the estimated phase of the elevated transmitter."""
+    samples = adc.samples * np.float32(10 ** (setup.gain_db / 20))
+    channels = BoardEffects(Board(elevation_phase_deg=setup.elevation_deg), adc.config).channels
+    if channels is not None:
+        samples *= channels.diagonal().reshape(adc.config.num_tx, adc.config.num_rx, 1).numpy()
+    return replace(adc, samples=samples)
+
+
 # estimation ---------------------------------------------------------------------------------------------------------
 def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print) -> Setup:
     """The global parameters, from `validate` alone.
 
     Position from the median distance of the centroids of the clouds; gain from the median intensity and threshold from
-    the mean number of points; height from the Chamfer distance, as the beam fixes the height of the centroid wherever
-    the body is.
+    the mean number of points; height, then the elevation's phase, from the Chamfer distance, as the beam fixes the
+    height of the centroid wherever the body is.
     """
     real: Clouds = [piece.clouds for piece in pieces]
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     x, y, _ = setup.shift_m
     setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
+    setup = _elevated(pieces, setup, real, report)
     setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     report(f"estimated: {setup}")
     return setup
@@ -185,6 +199,16 @@ def _best(tried: list[Setup], pieces: list[MarsStretch], real: Clouds, report: C
     distance = [score(_simulated(pieces, setup, MarsVariant()), real).value("chamfer_m") for setup in tried]
     for setup, found in zip(tried, distance, strict=True):
         report(f"Chamfer {found:.3f} m: {setup}")
+    return tried[int(np.argmin(distance))]
+
+
+def _elevated(pieces: list[MarsStretch], setup: Setup, real: Clouds, report: Callable[[str], object]) -> Setup:
+    """The phase of the elevated transmitter, of one simulation."""
+    adcs = simulate(pieces, setup, MarsVariant())
+    tried = [replace(setup, elevation_deg=degrees) for degrees in ELEVATIONS_DEG]
+    distance = [score(detect(adcs, pieces, one, MarsVariant()), real).value("chamfer_m") for one in tried]
+    for one, found in zip(tried, distance, strict=True):
+        report(f"Chamfer {found:.3f} m: elevation {one.elevation_deg:+g} degrees")
     return tried[int(np.argmin(distance))]
 
 

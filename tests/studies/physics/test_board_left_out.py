@@ -42,3 +42,9 @@ def test_two_people_walk_through_the_recorded_places():
         assert abs(np.linalg.norm(at) - 2.93) < 0.05
         assert abs(np.degrees(np.arctan2(at[0], at[1])) - degrees) < 1.0
         assert abs(float(pose.joints_m[..., 2].min()) - scene.floor_z_m) < 1e-5
+
+
+def test_nobody_walks_behind_a_wall():
+    for pose in walkers(scene_of((floor(), back_wall(2.5))), 0):
+        at = [np.interp(0.0, pose.time_s, pose.joints_m[:, 0, axis]) for axis in range(2)]
+        assert 1.9 < at[1] < 2.1

@@ -1,6 +1,7 @@
 """The comparison with MARS, on tables that are made up: what must hold whatever the recordings say."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,17 @@ def test_a_swaying_person_gives_points_on_the_body(pieces: list[MarsStretch]):
     assert 1.5 < np.median(range_m) < 2.1
     speeds = np.concatenate([np.abs(cloud.radial_velocity_mps) for cloud in every])
     assert 0.1 < speeds.mean() < 0.9
+
+
+def test_the_elevated_transmitter_moves_points_up_and_down(pieces: list[MarsStretch]):
+    adcs = simulate(pieces, HERE, MarsVariant())
+    heights = []
+    for degrees in (-12.0, 0.0, 12.0):
+        clouds = detect(adcs, pieces, replace(HERE, elevation_deg=degrees), MarsVariant())
+        heights.append(np.median(np.concatenate([cloud.z_m for piece in clouds for cloud in piece])))
+    # rows are half a wavelength apart: 12 degrees are a sine of 0.067, at 1.8 m some 12 cm
+    assert heights[0] - heights[1] == pytest.approx(0.12, abs=0.06)
+    assert heights[1] - heights[2] == pytest.approx(0.12, abs=0.06)
 
 
 def test_the_chains_and_variants_differ(pieces: list[MarsStretch]):
