@@ -21,6 +21,7 @@ from mmweaver.models.weights import WeightsCard, save_weights
 pytest.importorskip("zarr")
 
 
+@pytest.mark.usefixtures("blank_training_pictures")
 def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "generated"
     assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
