@@ -17,6 +17,9 @@ from mmweaver.motion.language.sentence import parse
         ("a person walks through the door", "through the door"),
         ("a person walks quickly and angrily", "angrily"),
         ("a person does a side kick", "the side"),
+        ("a person walks from the door to the table", "from the door"),
+        ("a person stands in front of the sofa facing the window", "facing the window"),
+        ("a person walks with the hands behind the back", "behind the back"),
     ],
 )
 def test_what_no_step_shows_is_named(sentence: str, what: str) -> None:
@@ -102,6 +105,9 @@ def test_what_stays_unknown_is_refused() -> None:
         ("raise both arms in the air", ["raise"]),
         ("a person falls forward from a chair", ["sit", "fall_off"]),
         ("a person stumbles but does not fall", ["stumble"]),
+        ("a person falls backwards while walking", ["walk", "fall"]),
+        ("a person rotates the head slowly", ["look_around"]),
+        ("a person squats and stays down", ["crouch"]),
         ("a person jogs in place for eight seconds, then stretches", ["jog", "stretch"]),
     ],
 )

@@ -70,6 +70,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (rf"\bswing(?:s|ing) {_OWN}({_SIDE} )?leg\b(?: (?:back and forth|forwards? and backwards?|around|in circles?|out|forwards?))*", r"raises the \1 leg", "a swinging leg is shown as a leg that is raised"),
         (rf"\b(?:put|plac|set)(?:s|es|ting|ing) (?:it|them) (?:back(?! down| to)|on|onto|in|into) (?!(?:the )?(?:floor|ground)\b)(?:{_OWN}[a-z]+(?: side)?)?(?=$|[ ,.])", "reaches for something", "is shown as reaching out with a hand"),
         (r"\b(fall|slip|tumble)(?:s|ing)? (?:forwards?|backwards?|over) (?:off|from|out of) (?:the |a |an |his |her |their )?(chair|stool|sofa|couch|bed|bench|seat|armchair)", r"\1s off the \2", "falling off a seat is shown as falling to its side"),
+        (rf"(?:,? (?:with|holding|keeping))? {_OWN}({_SIDE} )?(?:hands?|arms?) (?:folded |clasped |held |crossed )?(?:behind|on|at) (?:his|her|its|their|the) backs?\b", "", "hands behind the back are not shown"),
         (r"\bskip(?:s|ping|ped)? (?=forward|ahead|along|to|away|back)", "jumps ", "skipping is shown as jumping"),
         (r"\b(?:did|does|do|performs?|makes?) (?:an? )?(?:kick[- ]spin|spin(?:ning)?[- ]kick|roundhouse(?:[- ]kick)?|tornado kick)\b", "kicks, then turns 360 degrees", "kick and turn are shown one after the other"),
         (rf"\bmov(?:es|ing) (?:his or her |{_OWN})({_SIDE} )?(?:hands?|arms?)(?: [a-z]+){{0,7}}? (?:in )?(?:an? |the form of an? )?(?:[a-z-]+ )?circles?\b", r"stirs the soup with the \1 hand", "a circling hand is shown as stirring"),

@@ -39,6 +39,7 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     lost = [f"{text!r} is not shown" for text in texts if text in MANNERS]
     lost += [f"the number {text!r} is not kept" for text in _lost_numbers(words, steps)]
     lost += [f"{place!r} is not shown" for place in _lost_places(texts, steps)]
+    lost += _lost_aims(texts, steps)
     if _side_of_a_limb(texts) and not any(step.hand or step.foot for step in steps):
         lost.append("which hand or foot it is is not shown")
     elif _SIDES & set(texts) and not any(_has_side(step) for step in steps):
@@ -59,6 +60,19 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     if any(step.foot and step.lower not in _WITH_ONE_FOOT for step in steps):
         lost.append("which foot it is is not shown")
     return list(dict.fromkeys(lost))
+
+
+def _lost_aims(texts: list[str], steps: Sequence[Step]) -> list[str]:
+    """What is faced, where somebody goes who is shown on the spot, and how high the hands are."""
+    lost = []
+    for i, text in enumerate(texts):
+        if text in ("facing", "faces") and not any(step.facing or step.lower == "turn" for step in steps):
+            lost.append(f"{' '.join(texts[i : i + 3])!r} is not shown")
+    if "pacing_to_and_fro" in texts and not any(step.moves for step in steps):
+        lost.append("where it goes is not shown")
+    if {"above", "overhead", "over"} & set(texts) and any(step.upper in ("clap", "wave") for step in steps):
+        lost.append("how high the hands are is not shown")
+    return lost
 
 
 def _side_of_a_limb(texts: list[str]) -> bool:
@@ -126,13 +140,12 @@ def _lost_numbers(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
 
 def _lost_places(texts: list[str], steps: Sequence[Step]) -> list[str]:
     """Phrases like "through the door" and "to the window" of a walk that goes nowhere in particular."""
-    if not any(step.moves for step in steps) or any(step.target or step.place or step.uses_seat for step in steps):
+    if not any(step.moves for step in steps):
         return []
-    if any(step.upper or step.direction == "seat" for step in steps):
-        return []  # the thing is what the hands are at, or the seat
+    goes = any(step.target or step.place or step.uses_seat or step.upper or step.direction == "seat" for step in steps)
     lost = []
     for i, text in enumerate(texts):
-        if text not in PASSED:
+        if text != "from" and (goes or text not in PASSED):  # the thing is where it goes, or what the hands are at
             continue
         noun = next((k for k in range(i + 1, min(i + 5, len(texts))) if texts[k] in TARGETS), None)
         if noun is not None:

@@ -155,7 +155,7 @@ PRONOUNS = words_in(
 NEGATIONS = words_in(
     """
     not never no without cannot cant dont doesnt didnt isnt wont wasnt nor neither instead except refuses refuse
-    avoids hardly barely nobody none rather
+    avoid avoids avoiding hardly barely nobody none rather
     """
 )
 MANY = words_in(

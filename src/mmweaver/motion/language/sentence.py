@@ -344,6 +344,8 @@ def _joined(one: Step, other: Step) -> list[Step]:
         return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
     if {one.lower, other.lower} == {"turn", "stumble"}:
         return [one, other]
+    if more.lower == "fall" and walk.moves:  # "falls while walking"
+        return [walk, more]
     return [overlay(one, other)]
 
 
