@@ -7,7 +7,14 @@ import pytest
 
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.recognition.performance import PerformancePrior, perform, performer, task_variation
+from mmweaver.recognition.performance import (
+    PerformancePrior,
+    lingering,
+    perform,
+    performer,
+    task_variation,
+    with_feet_apart,
+)
 from mmweaver.recognition.task_file import Mount
 from mmweaver.recognition.train_pose import POSE_PRIOR
 
@@ -49,3 +56,43 @@ def test_the_feet_of_pose_networks_people_are_farther_apart():
         found.append(np.linalg.norm(apart_m[:, :2], axis=-1))
     np.testing.assert_allclose(found[1] - found[0], 0.3, atol=0.03)
     assert PRIOR.wider_m == (0.0, 0.0)
+
+
+def drawn_stance(apart_m: float) -> np.ndarray:
+    """Joints (1, 22, 3) of somebody who faces the radar, with the ankles this far apart on the floor."""
+    joints_m = np.zeros((1, 22, 3))
+    joints_m[0, :, 2] = 1.0
+    for side, sign in (("left", 0.5), ("right", -0.5)):
+        joints_m[0, joint(f"{side}_hip")] = (0.2 * sign, 2.0, 0.9)
+        for part, height in (("knee", 0.5), ("ankle", 0.08), ("foot", 0.02)):
+            joints_m[0, joint(f"{side}_{part}")] = (apart_m * sign, 2.0, height)
+    return joints_m
+
+
+def test_legs_that_are_apart_already_are_not_spread():
+    np.testing.assert_array_equal(with_feet_apart(drawn_stance(0.6), 0.2), drawn_stance(0.6))
+
+
+def test_the_body_is_over_the_foot_that_stands():
+    both = np.repeat(drawn_stance(0.2), 2, axis=0)
+    both[1, [joint("left_ankle"), joint("left_foot")], 2] += 0.3
+    wider = with_feet_apart(both, 0.2)
+    standing = wider[:, joint("right_ankle"), 0] - wider[:, joint("pelvis"), 0]
+    np.testing.assert_allclose(standing - both[:, joint("right_ankle"), 0], (-0.1, 0.0), atol=1e-9)
+    np.testing.assert_allclose(wider[:, joint("right_ankle")], wider[:1, joint("right_ankle")].repeat(2, 0))
+
+
+def test_who_lingers_stays_longer_where_the_movement_begins():
+    time_s = np.arange(0.0, 12.0, 0.05)
+    joints_m = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
+    high = 0.5 - 0.5 * np.cos(2 * np.pi * time_s / 3)
+    joints_m[:, joint("left_wrist"), 2] += 1.5 * high
+    low_s = [
+        np.gradient(lingering(time_s, joints_m, linger))[high < 0.3].sum() for linger in (0.0, 3.0)
+    ]  # the time spent low
+    assert low_s[1] > 1.3 * low_s[0]
+    warped_s = lingering(time_s, joints_m, 3.0)
+    assert (np.diff(warped_s) > 0).all()
+    np.testing.assert_allclose(warped_s[[0, -1]], time_s[[0, -1]])
+    still = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
+    np.testing.assert_array_equal(lingering(time_s, still, 3.0), time_s)

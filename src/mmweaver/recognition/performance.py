@@ -13,6 +13,7 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Joints
 from mmweaver.core.skeleton import joint
+from mmweaver.motion.animation.profiles import rise
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
@@ -35,6 +36,8 @@ AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may 
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
 REST_S = (0.2, 0.8)  # before and after a single performance
+CLOSE_M, FAR_APART_M = 0.2, 0.5  # between the ankles of who stands, and of who stands with the legs apart
+LIFTED_M, LEAST_MOVED_M = 0.06, 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,8 +47,9 @@ class PerformancePrior:
     `on_spot` and `on_way`: the usual tempo of what is done in place, and of walks and runs in a room, relative to the
     motion library; `single` that of a single performance, which people repeat briskly and widely. `sway_mps`: speed of
     slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one gesture, or altogether.
-    `heading_deg`: standard deviation from facing the radar. `wider_m`: how much farther apart than in the motion
-    library the feet of who stays in place are, uniform.
+    `heading_deg`: standard deviation from facing the radar, `heading_of_performance_deg` that of one performance from
+    the person's usual. `wider_m`: how much farther apart than in the motion library narrow feet of who stays in place
+    are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform.
     """
 
     tempo_of_person: float = 0.2
@@ -60,7 +64,9 @@ class PerformancePrior:
     sway_mps: Span = (0.01, 0.25)
     calm_sway_mps: Span = (0.003, 0.04)
     heading_deg: float = 15.0
+    heading_of_performance_deg: float = 5.7
     wider_m: Span = (0.0, 0.0)
+    linger: Span = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +79,7 @@ class Performer:
     amplitude: float
     heading_rad: float
     wider_m: float
+    linger: float
 
 
 def task_variation(mount: Mount) -> Variation:
@@ -106,6 +113,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),
         wider_m=float(rng.uniform(*prior.wider_m)),
+        linger=float(rng.uniform(*prior.linger)),
     )
 
 
@@ -139,11 +147,12 @@ def perform(
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
     x, y = now.start_m
     distance = float(np.hypot(x, y))
+    turned_rad = np.radians(prior.heading_of_performance_deg)
     window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
     pose = compose(
         scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
         start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person,
-        heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + 0.1 * rng.normal()),
+        heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
     ).pose  # fmt: skip
     if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
@@ -153,7 +162,10 @@ def perform(
     is_calm = once or all(step.lower in HELD and not step.upper for step in plan.steps)
     sway = float(np.exp(rng.uniform(*np.log(prior.calm_sway_mps if is_calm else prior.sway_mps))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
-    time_s = time_warped(pose.time_s - lead_s, float(tempo), now.hurry if moves else 0.0, rng)
+    even_s = pose.time_s if moves or once else lingering(pose.time_s, joints_m, who.linger)
+    time_s = time_warped(
+        even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
+    )
     pose = replace(pose, time_s=time_s, joints_m=joints_m)
     if not once:
         return Performance(pose=pose, lasts_s=seconds, surroundings=now)
@@ -165,15 +177,45 @@ def perform(
 
 
 def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
-    """Joints (frame, joint, 3) with the feet `wider_m` farther apart, and the knees half as much."""
+    """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
+
+    Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.
+    """
     across = joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]
     across = across * (1.0, 1.0, 0.0)
     across = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-6)
+    feet = joints_m[:, [joint("left_ankle"), joint("right_ankle")]]
+    apart_m = float(np.median(((feet[:, 0] - feet[:, 1]) * across).sum(axis=-1)))
+    half_m = 0.5 * wider_m * float(np.clip((FAR_APART_M - apart_m) / (FAR_APART_M - CLOSE_M), 0.0, 1.0))
     wider = joints_m.copy()
-    for side, sign in (("left", 0.5), ("right", -0.5)):
+    for side, sign in (("left", 1.0), ("right", -1.0)):
         for part, share in (("knee", 0.5), ("ankle", 1.0), ("foot", 1.0)):
-            wider[:, joint(f"{side}_{part}")] += sign * share * wider_m * across
-    return wider
+            wider[:, joint(f"{side}_{part}")] += sign * share * half_m * across
+    height_m = feet[..., 2] - feet[..., 2].min(axis=0)
+    lifted = rise(height_m / LIFTED_M)  # (frame, side)
+    over_m = half_m * (lifted[:, 1] - lifted[:, 0])
+    feet_of = [joint(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
+    knees = [joint("left_knee"), joint("right_knee")]
+    share = np.ones(joints_m.shape[1])
+    share[knees] = 0.5
+    share[feet_of] = 0.0
+    return wider + share[:, None] * (over_m[:, None] * across)[:, None]
+
+
+def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray:
+    """Times (time,) of a movement on the spot that is slow near the pose it begins in, and faster far from it.
+
+    The tempo at the far end is 1 + `linger` times that at the near end; the whole lasts as long. Movements of less than
+    3 cm (rms over joints) keep their times.
+    """
+    local = joints_m - joints_m[:, :1] * (1.0, 1.0, 0.0)
+    far_m = np.sqrt(((local - local[0]) ** 2).sum(axis=-1).mean(axis=-1))
+    near, most = np.percentile(far_m[time_s >= LEAD_S], (5, 95))
+    if most - near < LEAST_MOVED_M:
+        return time_s
+    slower = 1 / (1 + linger * ((far_m - near) / (most - near)).clip(0, 1))
+    gone = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
+    return time_s[0] + gone * (time_s[-1] - time_s[0]) / gone[-1]
 
 
 def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:

@@ -26,7 +26,12 @@ HELD_OUT = 8  # one person in so many
 # Amplitudes of the motion library; those of recognisers are smaller (decision 231), but joints are learned here.
 # Feet: people stand and squat with their heels 0.2 to 0.5 m apart; the library's are always close.
 POSE_PRIOR = PerformancePrior(
-    usual_amplitude=1.0, amplitude_of_person=0.1, amplitude_of_performance=0.05, wider_m=(0.0, 0.3)
+    usual_amplitude=1.0,
+    amplitude_of_person=0.1,
+    amplitude_of_performance=0.05,
+    wider_m=(0.0, 0.3),
+    heading_of_performance_deg=15.0,
+    linger=(0.0, 3.0),
 )
 
 

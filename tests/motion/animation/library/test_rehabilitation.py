@@ -64,6 +64,16 @@ def test_a_front_lunge_leaves_the_leg_behind_straight_and_is_repeated():
     assert np.degrees(np.arccos(cosine[deepest])) > 145
 
 
+def test_some_keep_both_feet_where_they_are_between_front_lunges():
+    steps = []
+    for seed in range(8):
+        joints = _pose("does three front lunges with the left leg", seed)
+        in_between = slice(len(joints) // 4, 3 * len(joints) // 4)
+        steps.append(float(np.ptp(joints[in_between, 7, :2], axis=0).max()))
+    assert min(steps) < 0.02
+    assert max(steps) > 0.3
+
+
 def test_who_opens_a_door_steps_back_and_returns():
     joints = _pose("opens the door", 0)
     feet = joints[:, (7, 8), :2]

@@ -141,16 +141,23 @@ def hopping_on_one_leg(context: StepContext) -> Controls:
 def lunging(context: StepContext) -> Controls:
     """A long step ahead with one leg, down until the thigh is nearly level, and back.
 
-    A front lunge leaves the leg behind straight and goes less deep, again and again; as the first subject of MARS does.
+    A front lunge leaves the leg behind straight and goes less deep, again and again; half of those who do it keep both
+    feet where they are in between, and many turn to the side of the leg ahead, as the first subject of MARS does.
     """
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     side, is_front = leg_side(context), context.step.style == "frontlunge"
     long, deep = vary(context, 0.38, 0.06), 0.165
-    ahead, heel_rad = 0.5, 0.75
+    ahead, heel_rad, stays = 0.5, 0.75, False
     if is_front:
         long, deep, ahead, heel_rad = vary(context, 0.36, 0.06), vary(context, 0.068, 0.1), 0.68, 0.1
-        context = _repeated(context, 3.0)
-    for k, (begin, lasts) in enumerate(repeats(context, 3.0 if is_front else 2.2, 1.6, 3.6)):
+        context, stays = _repeated(context, 3.0), context.rng.random() < 0.5
+        if context.step.foot:
+            _turn_aside(controls, context, side)
+    every = repeats(context, 3.0 if is_front else 2.2, 1.6, 3.6)
+    if stays:
+        _from_planted_feet(controls, context, every, side if context.step.foot else RIGHT, 0.85 * long * h, deep * h)
+        return controls
+    for k, (begin, lasts) in enumerate(every):
         acting = side if k % 2 == 0 or context.step.foot else 1 - side
         gone = plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
         air = plateau(time_s, begin, begin + 0.3 * lasts, 0.14 * lasts, 0.14 * lasts)
@@ -162,6 +169,32 @@ def lunging(context: StepContext) -> Controls:
         controls.foot_rad[:, 1 - acting, 1] += heel_rad * down
         controls.spine_rad[:, 1] += 0.06 * down
     return controls
+
+
+def _turn_aside(controls: Controls, context: StepContext, side: int) -> None:
+    """Turns the body to the side of the leg that goes ahead, by up to 45 degrees, while the step lasts."""
+    turned = context.rng.uniform(0.0, 0.8) * plateau(context.time_s, context.start_s, context.end_s, 0.5, 0.5)
+    controls.heading_rad[:] += OUTWARD[side] * turned
+    controls.foot_rad[:, :, 0] += OUTWARD[side] * turned[:, None]
+
+
+def _from_planted_feet(
+    controls: Controls, context: StepContext, every: list[tuple[float, float]], side: int, long_m: float, deep_m: float
+) -> None:
+    """One step ahead; then the weight goes from between the feet over the leg ahead, again and again, and back."""
+    time_s, step_s = context.time_s, min(0.6, 0.15 * context.duration_s)
+    start_s, end_s = context.start_s, context.end_s
+    gone = plateau(time_s, start_s, end_s, step_s, step_s)
+    air = sum(plateau(time_s, at, at + step_s, 0.5 * step_s, 0.5 * step_s) for at in (start_s, end_s - step_s))
+    over = np.zeros_like(time_s)
+    for begin, lasts in every:
+        over += plateau(time_s, begin + 0.1 * lasts, begin + 0.95 * lasts, 0.4 * lasts, 0.4 * lasts)
+    over *= gone
+    shift_foot(controls, side, long_m * gone, 0.0, 0.03 * context.body.height_m * air)
+    lift_weight(controls, side, np.asarray(air))
+    shift_pelvis(controls, long_m * (0.5 * gone + 0.35 * over), 0.0, -deep_m * (0.2 * gone + 0.9 * over))
+    controls.foot_rad[:, 1 - side, 1] += 0.15 * over
+    controls.spine_rad[:, 1] += 0.06 * over
 
 
 def _repeated(context: StepContext, each_s: float) -> StepContext:
