@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,6 +63,7 @@ def test_workers_and_copies_make_the_same(both: tuple[ActivitySet, ActivitySet])
     torch.testing.assert_close(copy, alone["iq"][2], rtol=1e-5, atol=1e-9)
 
 
+@pytest.mark.slow  # the tests above call another method in the same way
 def test_physics_makes_its_signals_on_demand(tmp_path: Path):
     (tmp_path / "a.toml").write_text('[activities]\nwave = "a person waves"\nstand = "a person stands"\n')
     weaver = Weaver("physics")
@@ -101,6 +103,22 @@ def test_what_cannot_be_made_again_is_refused(tmp_path: Path):
                 tmp_path / "set", read_activities(tmp_path / "a.toml"), [where], weaver, replace(FEW, iq="none"),
                 command="", activities_text=ACTIVITIES,
             )  # fmt: skip
+
+
+@pytest.mark.parametrize("victim", ["seed/c/0", "motion_m/c/0/0/0/0", "room_0/photo_rgb/c/0/0/0", "zarr.json"])
+@pytest.mark.parametrize("how", ["deleted", "flipped"])
+def test_damage_of_what_signals_are_made_from_is_refused(
+    both: tuple[ActivitySet, ActivitySet], tmp_path: Path, victim: str, how: str
+):
+    shutil.copytree(both[0].files.folder, tmp_path / "set")
+    file = tmp_path / "set" / "sequences.zarr" / "geometry" / victim
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 4
+    file.write_bytes(data)
+    if how == "deleted":
+        file.unlink()
+    with pytest.raises(InputError):
+        read_activity_set(tmp_path / "set").cube(0)
 
 
 def test_moving_power_leaves_out_what_stands_still(both: tuple[ActivitySet, ActivitySet]):
