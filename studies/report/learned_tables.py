@@ -32,12 +32,13 @@ POWER = RowTable(
     columns=(("made by", "{label}"), ("rooms", "{n}"), *SCORES.columns[1:]),
 )
 SUMMARY = RowTable(
-    sources=("peer_scores/test_room", "learned_scores/test_room"),
+    sources=("diffusion_scores/test_room", "peer_scores/test_room", "learned_scores/test_room"),
     labels={
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
         "rf_genesis_as_released": "RF-Genesis as released, 27 of the rooms ([peers](docs/peers.md))",
         "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room, the same 27",
+        "diffusion_from_noise": "RF-Diffusion's kind, a small one, from noise, 16 other rooms",
         "weaver": "the network, from the photo",
         "physics_in_photographed_room": "physics, from the photo",
         "realization": "the true room, random phases (oracle for a photo)",
@@ -67,6 +68,23 @@ PEERS = RowTable(
         ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
         ("PSNR, dB", "{metrics.psnr_db:fixed.1}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
         ("CPU, s", "{metrics.cpu_s:fixed.1}"),
+    ),
+)  # fmt: skip
+DIFFUSION = RowTable(
+    sources=("diffusion_scores/test_room",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "training_mean": "the mean of the training rooms (baseline)",
+        "nearest_training_pose": "the training sequence of the nearest poses (baseline)",
+        "diffusion_from_noise": "the diffusion, from noise",
+        "truth_with_noise": "the ground truth at weight 0.925 with noise, no network (baseline of the next row)",
+        "diffusion_truth_given": "the diffusion, from there (the published protocol)",
+        "realization": "the true room, random phases (oracle)",
+    },
+    columns=(
+        ("made by", "{label}"), ("rooms", "{n}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"),
+        ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
     ),
 )  # fmt: skip
 PEER_CLUTTER = RowTable(
@@ -200,6 +218,7 @@ COST = MatrixTable(
 )  # fmt: skip
 LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
+    "diffusion_scores": DIFFUSION,
     "whole_room": WHOLE_ROOM,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
