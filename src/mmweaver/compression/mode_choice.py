@@ -18,7 +18,8 @@ FIT_STAGES, LAST_STEPS, LEAST_GAIN = 20, 6, 12.0
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
 FREE_MODES = ("transforms", "scatterers", "low rank", "noise layer", "DCT of ranges")
-EFFORTS = {"full": (), "fast": ("scatterers",)}  # modes that are not tried: the fit takes most of the time
+# what is not tried: the fit takes most of the time, and a file with all cells alike tells what error they may have
+EFFORTS = {"full": (), "fast": ("scatterers", "trial of all cells alike")}
 
 
 class ModeChooser:

@@ -219,7 +219,7 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
     step = _step_of_size(plain, SPARE * num_bytes / factor, 1, *bounds)
     if own_error <= sum(sample.at(step, 1).all_error for sample in plain):
         return None
-    even, even_factor = _even_error(segment, num_bytes, plain)
+    even, even_factor = _even_error(segment, num_bytes, plain, factor)
     allowed = even * 10 ** (EVEN_DB / 10)
     if own_error <= allowed:
         return None
@@ -298,8 +298,14 @@ def _noise_steps(
     return noise_step, step
 
 
-def _even_error(segment: SegmentEncoder, num_bytes: int, plain: list[CellSample]) -> tuple[float, float]:
-    """Error of a coder of so many bytes that treats all cells alike and has no layers; bytes in estimated ones."""
+def _even_error(segment: SegmentEncoder, num_bytes: int, plain: list[CellSample], factor: float) -> tuple[float, float]:
+    """Error of a coder of so many bytes that treats all cells alike and has no layers; bytes in estimated ones.
+
+    Where such a file is not tried it is estimated, with `factor` bytes in estimated ones.
+    """
+    if "trial of all cells alike" in segment.without:
+        step = _step_of_size(plain, num_bytes / factor, 1, segment.finest_step, segment.coarsest_step)
+        return sum(sample.at(step, 1).all_error for sample in plain), factor
     step = _step_of_size(plain, num_bytes, 1, segment.finest_step, segment.coarsest_step)
     seen: list[tuple[float, float]] = []  # logarithms of size and error
     while True:
