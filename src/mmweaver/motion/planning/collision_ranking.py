@@ -28,6 +28,7 @@ _INVENTED_SEAT_M = 0.06
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
+_WORTH_M = 0.005  # estimates are no better than that: what promises less is not animated
 _SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
 
@@ -114,6 +115,7 @@ class _Ranking:
     def best_of(self, placements: Sequence[Placement], *, better_than: _Tested | None = None) -> _Tested:
         """The first clear one, else the one of least cost, `better_than` included."""
         best = better_than
+        placements = sorted(placements, key=lambda placement: placement.invents_seat)  # stools last
         if best is None:
             best = self._animated(placements[0])
             if best.cost_m <= 0:
@@ -121,7 +123,7 @@ class _Ranking:
             placements = placements[1:]
         animations = MOST_ANIMATED
         for estimate in self._refined(self._estimated(placements)[:MOST_TESTED]):
-            if estimate.cost_m >= best.cost_m and not estimate.is_clear:
+            if estimate.cost_m > best.cost_m - _WORTH_M and not estimate.is_clear:
                 continue
             tested = estimate
             if not estimate.placement.is_still:
