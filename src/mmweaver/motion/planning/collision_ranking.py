@@ -28,7 +28,7 @@ _INVENTED_SEAT_M = 0.06
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
-_WORTH_M = 0.005  # estimates are no better than that: what promises less is not animated
+_WORTH_M = 0.003  # estimates are no better than that: what promises less is not animated
 _SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
 
