@@ -1,5 +1,6 @@
 """The static paths of a room: diffuse surfaces, specular reflections and edges."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +13,7 @@ from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
-from mmweaver.paths.materials import MATERIALS, mean_reflectivity
+from mmweaver.paths.materials import MATERIALS, mean_reflectivity, transmission
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
 from mmweaver.paths.room_patches import RoomPatches
 from mmweaver.paths.room_room_paths import room_room_paths
@@ -22,6 +23,8 @@ AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
 EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
 EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
 NEAREST_M = 0.15
+THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is the whole wall: furniture has other faces behind
+SAME_WALL_M = 0.3  # nearer behind a wall lies the same one: a photo's bumps, the other face of a scan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,12 +35,58 @@ class Propagation:
     clutter: bool = False  # whether there is static clutter that photo and mesh do not resolve
     slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
     straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
+    through_walls: bool = True  # whether what lies behind a thin wall returns through it
 
 
 # What the network is given of a room: of the orders that it has learned.
-FIRST_ORDER = Propagation(bounces=1, slab_echoes=1)
+FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False)
 # What the network has learned from, and what studies published before there was a second order were computed with.
-AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1, straight_edges=False)
+AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1, straight_edges=False, through_walls=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Struck:
+    """Rays of the radar and the faces that they meet."""
+
+    direction: np.ndarray  # (ray, 3) unit
+    distance_m: np.ndarray  # (ray,)
+    normal: np.ndarray  # (ray, 3) unit, of either sign
+    cos: np.ndarray  # (ray,) of incidence
+    material: np.ndarray  # (ray,) index into the scene's material_names
+    solid_angle: np.ndarray  # (ray,)
+
+    @classmethod
+    def of(
+        cls, scene: Scene, direction: np.ndarray, distance: np.ndarray, face: np.ndarray, solid_angle: np.ndarray
+    ) -> "_Struck":
+        """Rays that meet faces of these indices."""
+        corners = scene.vertices_m[scene.faces[face]].astype(float)
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+        return cls(
+            direction=direction, distance_m=distance, normal=normal, cos=np.abs((normal * direction).sum(axis=1)),
+            material=scene.face_material[face], solid_angle=solid_angle,
+        )  # fmt: skip
+
+    def __getitem__(self, which: np.ndarray) -> "_Struck":
+        return _Struck(**{name: getattr(self, name)[which] for name in self.__dataclass_fields__})
+
+    @property
+    def place_m(self) -> np.ndarray:
+        """(ray, 3)."""
+        return self.direction * self.distance_m[:, None]
+
+    @property
+    def cross_section_m2(self) -> np.ndarray:
+        """(ray,) of perfectly diffuse patches, by Lambert's law."""
+        return 4 * self.cos * self.distance_m**2 * self.solid_angle
+
+    def kinds(self, num_materials: int) -> Iterator[tuple[int, np.ndarray, str]]:
+        """Each material with its rays as a mask (ray,) and their polarisation: walls and floors are met apart."""
+        is_flat = np.abs(self.normal[:, 2]) > 0.7
+        for index in range(num_materials):
+            for flat, polarisation in ((True, "tm"), (False, "te")):
+                yield index, (self.material == index) & (is_flat == flat), polarisation
 
 
 class PreparedRoom:
@@ -79,7 +128,7 @@ class RayTracedRoom(PreparedRoom):
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.config, self.reflectors = config, specular_reflectors(scene.planes)
-        paths = StaticPaths.cat([self._diffuse(scene), self._specular(), self._edges(scene)])
+        paths = StaticPaths.cat([*self._diffuse(scene), self._specular(), self._edges(scene)])
         super().__init__(config, self.reflectors, paths, self.propagation)
         if self.propagation.bounces > 1:
             self.paths = StaticPaths.cat([paths, room_room_paths(self)])
@@ -97,8 +146,8 @@ class RayTracedRoom(PreparedRoom):
         end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
         return self.caster.is_clear(start, end, margin_m).reshape(shape[:-1])
 
-    def _diffuse(self, scene: Scene) -> StaticPaths:
-        """One path for each cell of a grid of rays: a patch that scatters by Lambert's law."""
+    def _diffuse(self, scene: Scene) -> list[StaticPaths]:
+        """One path for each cell of a grid of rays: a patch that scatters by Lambert's law; and those behind walls."""
         rng = stream(self.micro_seed, "room", "diffuse")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
         step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
@@ -111,17 +160,36 @@ class RayTracedRoom(PreparedRoom):
         ).reshape(-1, 3)  # fmt: skip
         distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
         hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        direction, distance, face = direction[hit], distance[hit], face[hit]
-        corners = scene.vertices_m[scene.faces[face]].astype(float)
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-        cos = np.abs((normal * direction).sum(axis=1))
-        cross_section = 4 * cos * distance**2 * solid_angle[hit]
-        material = scene.face_material[face]
-        cross_section *= self._diffuse_share(scene, material, cos, np.abs(normal[:, 2]) > 0.7)
-        place_m, phase = direction * distance[:, None], np.exp(2j * np.pi * cycles[hit])
-        self._patches = RoomPatches.of_surfaces(place_m, normal, cross_section, phase, material)
-        return self._scattered(direction * distance[:, None], cross_section, cycles[hit], Interaction.DIFFUSE)
+        struck = _Struck.of(scene, direction[hit], distance[hit], face[hit], solid_angle[hit])
+        cross_section = struck.cross_section_m2 * self._diffuse_share(scene, struck)
+        phase = np.exp(2j * np.pi * cycles[hit])
+        self._patches = RoomPatches.of_surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        paths = [self._scattered(struck.place_m, cross_section, cycles[hit], Interaction.DIFFUSE)]
+        return [*paths, self._behind_walls(scene, struck)] if self.propagation.through_walls else paths
+
+    def _behind_walls(self, scene: Scene, struck: "_Struck") -> StaticPaths:
+        """Patches that rays meet behind the first thin wall, fainter by the way through it and back."""
+        names = np.array(scene.material_names)
+        wall = struck[np.isin(names[struck.material], THIN)]
+        distance, face = self.caster.first_hit(wall.place_m + SAME_WALL_M * wall.direction, wall.direction)
+        distance += wall.distance_m + SAME_WALL_M
+        hit = (face >= 0) & (distance < self.config.max_range_m)
+        wall = wall[hit]
+        behind = _Struck.of(scene, wall.direction, distance[hit], face[hit], wall.solid_angle)
+        cross_section = behind.cross_section_m2 * self._diffuse_share(scene, behind) * self._passed(scene, wall) ** 2
+        cycles = stream(self.micro_seed, "room", "behind walls").random(len(cross_section))
+        return self._scattered(behind.place_m, cross_section, cycles, Interaction.DIFFUSE)
+
+    def _passed(self, scene: Scene, wall: "_Struck") -> np.ndarray:
+        """Share of the power (ray,) that passes a wall once."""
+        share = np.zeros(len(wall.cos))
+        for index, of, polarisation in wall.kinds(len(scene.material_names)):
+            material = MATERIALS[scene.material_names[index]]
+            each = [
+                transmission(material, wall.cos[of], one, polarisation=polarisation) for one in self._frequencies_hz
+            ]
+            share[of] = np.mean(np.abs(each) ** 2, axis=0)
+        return share
 
     @property
     def _frequencies_hz(self) -> np.ndarray:
@@ -133,16 +201,14 @@ class RayTracedRoom(PreparedRoom):
             else (np.array([centre_hz]))
         )
 
-    def _diffuse_share(self, scene: Scene, kind: np.ndarray, cos: np.ndarray, flat: np.ndarray) -> np.ndarray:
+    def _diffuse_share(self, scene: Scene, struck: "_Struck") -> np.ndarray:
         """|S Gamma|^2 of each patch (effective roughness)."""
-        share = np.zeros(len(cos))
-        for index, name in enumerate(scene.material_names):
-            material = MATERIALS[name]
-            for is_flat, polarisation in ((True, "tm"), (False, "te")):
-                of = (kind == index) & (flat == is_flat)
-                share[of] = material.scattering**2 * mean_reflectivity(
-                    material, cos[of], self._frequencies_hz, polarisation
-                )
+        share = np.zeros(len(struck.cos))
+        for index, of, polarisation in struck.kinds(len(scene.material_names)):
+            material = MATERIALS[scene.material_names[index]]
+            share[of] = material.scattering**2 * mean_reflectivity(
+                material, struck.cos[of], self._frequencies_hz, polarisation
+            )
         return share
 
     def _specular(self) -> StaticPaths:

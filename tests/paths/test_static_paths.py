@@ -1,0 +1,61 @@
+"""What lies behind a plasterboard wall returns faintly; behind concrete it does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.paths.materials import MATERIALS, transmission
+from mmweaver.paths.paths import Interaction, StaticPaths
+from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation, RayTracedRoom
+from tests.rooms import back_wall, scene_of
+
+ONCE = Propagation(bounces=1)
+
+
+def diffuse(planes: tuple, propagation: Propagation = ONCE) -> StaticPaths:
+    return RayTracedRoom(scene_of(planes), AWR1843, 0, propagation).paths.of_kind(Interaction.DIFFUSE)
+
+
+def power_beyond(paths: StaticPaths, range_m: float) -> float:
+    far = paths.length_m.mean(dim=(1, 2)).numpy() / 2 > range_m
+    return float((paths.amplitude.abs().numpy()[far] ** 2).sum())
+
+
+def test_a_metal_wall_returns_through_plasterboard_as_the_slab_lets_it():
+    hidden, front = back_wall(3.2, "metal"), back_wall(2.0, "plasterboard")
+    alone = diffuse((hidden,))
+    # rays of the same directions: those that meet the front wall within 3 m on either side meet both
+    behind = diffuse((front, hidden))
+    got = power_beyond(behind, 3.1) / power_beyond(alone, 3.1)
+    reach_hz = 0.4 * AWR1843.bandwidth_hz
+    frequencies_hz = AWR1843.centre_frequency_hz + np.linspace(-reach_hz, reach_hz, 9)
+    once = np.mean([np.abs(transmission(MATERIALS["plasterboard"], np.ones(1), hz)) ** 2 for hz in frequencies_hz])
+    # oblique rays lose more; straight ahead it is there and back through the slab
+    assert 0.3 * once**2 < got < 1.1 * once**2
+    assert -22 < 10 * np.log10(got) < -8
+
+
+def through(planes: tuple) -> int:
+    """Number of paths through walls."""
+    return len(diffuse(planes)) - len(diffuse(planes, replace(ONCE, through_walls=False)))
+
+
+@pytest.mark.parametrize("material", ["concrete", "metal", "wood"])
+def test_nothing_returns_through_what_is_no_thin_wall(material: str):
+    hidden = back_wall(3.2, "metal")
+    assert through((back_wall(2.0, material), hidden)) == 0
+    assert through((back_wall(2.0, "glass"), hidden)) > 1000
+
+
+def test_the_same_wall_twice_is_one_wall():
+    straight_ahead = 0.05  # oblique rays are longer between two faces
+    two = through((back_wall(2.0), back_wall(2.0 + straight_ahead)))
+    assert two < 0.01 * through((back_wall(2.0), back_wall(2.5)))
+
+
+def test_published_studies_do_not_have_it():
+    planes = (back_wall(2.0), back_wall(3.2, "metal"))
+    without = diffuse(planes, replace(ONCE, through_walls=False))
+    assert len(diffuse(planes, AS_PUBLISHED)) == len(without) < len(diffuse(planes))
