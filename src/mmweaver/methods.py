@@ -32,7 +32,10 @@ LEARNED_NOTE = UsualAssumption(
 FIELDS_NOTE = (
     "a hypernetwork wrote fields of power (recipe paper_power); each of their cells is a scatterer of sampled phase"
 )
-ELSEWHERE = "the network was trained with radars at the camera; elsewhere it is as near to the truth as physics is"
+ELSEWHERE = (
+    "the network was trained with radars at the camera; elsewhere it was measured to be about as near as physics"
+    " (docs/several_radars.md)"
+)
 FIRST_ORDER_ALONE = "one bounce off rough surfaces and off the body: no paths over both"
 RECORDED = "static clutter is that of the background recording"
 
