@@ -56,3 +56,15 @@ def test_nobody_lies_in_furniture():
     cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
     with pytest.raises(InputError, match="no room"):
         compose(plan_motion("lies down", 4.0), cell, seed=0, range_window_m=WINDOW_M)
+
+
+@pytest.mark.parametrize("text", ["walks around", "walks in a circle", "walks forward"])
+def test_a_walk_without_an_aim_begins_along_the_heading_that_is_given(text: str):
+    scene = room(boxes=((-1.6, -0.7, 1.2, 1.8), (0.8, 1.8, 1.5, 2.2)))
+    for heading_rad in (-2.5, 0.1, 1.6):
+        pose = compose(
+            plan_motion(text, 4.0), scene, seed=3, range_window_m=WINDOW_M, heading_rad=heading_rad
+        ).pose  # fmt: skip
+        across = pose.joints_m[:5, joint("left_hip"), :2] - pose.joints_m[:5, joint("right_hip"), :2]
+        faces_rad = np.arctan2(-across[:, 0], across[:, 1]).mean()
+        assert np.cos(faces_rad - heading_rad) > np.cos(np.radians(25))

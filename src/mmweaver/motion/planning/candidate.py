@@ -207,7 +207,13 @@ class CandidateSampler:
             facing = _facing_rad(first.facing, spot) + float(self.rng.normal(0, 0.05))
         if self.heading_rad is not None:
             facing = self.heading_rad
-        return Trajectory(floor=self.floor, rng=self.rng, position_m=spot, heading_rad=facing), None
+        return Trajectory(
+            floor=self.floor,
+            rng=self.rng,
+            position_m=spot,
+            heading_rad=facing,
+            heading_is_given=self.heading_rad is not None,
+        ), None
 
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
         """The seat in front of which the body stands: of the motion before, or of the room."""

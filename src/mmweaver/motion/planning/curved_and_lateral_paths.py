@@ -55,7 +55,8 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
     """A bend through the requested angle, as wide as time and room allow."""
     direction = direction_rad
     if direction is None or step.direction in ("left", "right"):
-        direction = float(trajectory.rng.uniform(0, 2 * np.pi)) if first else trajectory.heading_rad
+        chosen = first and not trajectory.heading_is_given
+        direction = float(trajectory.rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     backwards = step.direction == "backwards"
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)

@@ -65,6 +65,7 @@ class Trajectory:
     last_direction_rad: float | None = None
     invents_seat: bool = False  # though the room has a seat that can be reached
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
+    heading_is_given: bool = False  # the caller said where the body faces first; a walk without an aim begins that way
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.position_m[0]), float(self.position_m[1]))
@@ -188,8 +189,13 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
     for _ in range(40):
         left = step.end_s - time
-        direction, free = _open_direction(trajectory, speed * left, keep_heading=not first and time == step.start_s)
-        begin = face_along(trajectory, step, direction, time, first=begun)
+        faces_already = time == step.start_s and (not first or trajectory.heading_is_given)
+        direction, free = _open_direction(trajectory, speed * left, keep_heading=faces_already)
+        if begun and trajectory.heading_is_given:
+            begin = time + trajectory.turn_to(direction, time)
+            begun = begin == time
+        else:
+            begin = face_along(trajectory, step, direction, time, first=begun)
         left = step.end_s - begin
         final = free >= 0.75 * speed * (left - ramp_s / 2)
         if final:
@@ -233,7 +239,8 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
     """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
     rng = trajectory.rng
     side = float(np.sign(step.arc_deg)) if step.arc_deg and step.style != "either" else float(rng.choice([-1.0, 1.0]))
-    direction = trajectory.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
+    chosen = first and not trajectory.heading_is_given
+    direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     speed = min(preferred_speed_mps(step, rng), 1.6 if step.lower == "jog" else 1.1)
@@ -265,4 +272,4 @@ def _rounds(step: Step, usual: float) -> float:
     if step.count:
         return usual  # the paces are counted
     asked = abs(step.arc_deg) / 360
-    return asked if asked > 1 else max(1.0, round(usual))
+    return asked if asked > 1 else max(1.0, float(round(usual)))
