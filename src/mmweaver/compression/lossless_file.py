@@ -118,7 +118,12 @@ class LosslessFile:
         return sum(self.block_frames)
 
     def decompress(self, out: Path | str, frames: slice = slice(None), progress: Progress = lambda _: None) -> int:
-        """Writes the recording, or a stretch of its frames, as a .bin, and returns its size."""
+        """Writes the recording, or a stretch of its frames, as a .bin, and returns its size.
+
+        Raises InputError where it was cut before its first whole block.
+        """
+        if self.cut_short and not self.num_frames:
+            raise self._damaged("it was cut short before its first whole block")
         chosen = range(self.num_frames)[frames]
         is_whole = len(chosen) == self.num_frames
         if chosen.step != 1 or not (len(chosen) or is_whole):
