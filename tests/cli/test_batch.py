@@ -97,6 +97,18 @@ def test_a_store_in_place_of_folders(texts: Path, tmp_path: Path, capsys: pytest
     for more, says in ((["--bin"], "leave out --bin"), (["--fps", "5"], "leave out --fps")):
         assert main([*words, *more, "--out", str(tmp_path / "other")]) == 2
         assert says in capsys.readouterr().err
+    assert main(["generate", "--demo", "--iq", "none", "--out", str(tmp_path / "other")]) == 2
+    assert "--iq is for --store" in capsys.readouterr().err
+
+
+def test_a_store_without_signals_makes_them_when_they_are_read(texts: Path, tmp_path: Path):
+    pytest.importorskip("zarr")
+    words = ["generate", "--demo", "--frames", "2", "--texts", str(texts), "--store", "--quiet", "--iq"]
+    cubes = []
+    for kind in ("float32", "none"):
+        assert main([*words, kind, "--out", str(tmp_path / kind)]) == 0
+        cubes.append(read_activity_set(tmp_path / kind).cube(0).values)
+    assert np.allclose(*cubes, rtol=1e-5, atol=1e-6 * np.abs(cubes[0]).max())
 
 
 def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

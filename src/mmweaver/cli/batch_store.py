@@ -20,7 +20,11 @@ NOT_STORED = ("fps", "html")
 
 
 def check_store(arguments: argparse.Namespace) -> None:
-    """Raises InputError for options that a stored set does not have."""
+    """Raises InputError for options that a stored set does not have, and for `--iq` without one."""
+    if not arguments.store:
+        if arguments.iq is not None:
+            raise InputError("--iq is for --store; result folders hold complex64")
+        return
     if arguments.texts is None:
         raise InputError("--store is for --texts; a single sequence becomes a store with: mmweaver export --to zarr")
     for name in NOT_STORED:
@@ -51,6 +55,8 @@ def run_store(
         raise InputError(f"none of the sentences could be made; the first: {next(iter(refused.values()))}")
     frames = requests[kept[0]].frames
     options = SetOptions(each=arguments.repeat, seconds=frames * weaver.radar.frame_period_s, seed=arguments.seed)
+    if arguments.iq is not None:
+        options = replace(options, iq=arguments.iq)
     if arguments.board is not None:
         options = replace(options, board=str(arguments.board))
     command = shlex.join(["mmweaver", *sys.argv[1:]]) if sys.argv[1:2] == ["generate"] else "mmweaver generate"

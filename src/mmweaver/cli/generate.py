@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
     texts, out = _check_inputs(arguments)
     check_motion_options(arguments)
-    if arguments.store:
+    if arguments.store or arguments.iq is not None:
         from mmweaver.cli.batch_store import check_store
 
         check_store(arguments)

@@ -163,6 +163,10 @@ def _add_sentence_options(person: Options) -> None:
         " sentence is a label"),
     )  # fmt: skip
     person.add_argument(
+        "--iq", choices=("float16", "float32", "none"),
+        help=Rare("with --store: how signals are stored (default float16); none: what they are made from"),
+    )  # fmt: skip
+    person.add_argument(
         "--at", type=place, action="append", metavar="X,Y",
         help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
         " the first --at is the first one's",
