@@ -333,3 +333,14 @@ def test_the_person_has_the_errors_of_the_background_recording(room: Room):
     found = board.channel_phase_deg.mean(axis=0)
     assert found[1] - found[2] == pytest.approx(110, abs=25)
     assert weaver.board_of(weaver.request(TEXT, frames=2, board="ideal"), known)[0].is_ideal
+
+
+def test_the_network_looks_at_a_room_once_though_boards_differ(room: Room, monkeypatch: pytest.MonkeyPatch):
+    from mmweaver.models import learned_paths
+
+    seen: list[Room] = []
+    view = learned_paths.given_room
+    monkeypatch.setattr(learned_paths, "given_room", lambda *given: (seen.append(room), view(*given))[1])
+    weaver = Weaver("weaver")
+    boards = {weaver.generate(room, TEXT, frames=1, seed=seed).meta["board"]["name"] for seed in (0, 1)}
+    assert (len(boards), len(seen)) == (2, 1)

@@ -21,7 +21,8 @@ from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.paths.static_paths import Propagation
 
 if TYPE_CHECKING:
-    from mmweaver.models.learned_paths import LearnedRoom
+    from mmweaver.models.learned_paths import EchoNetwork, LearnedRoom
+    from mmweaver.models.scene_tensors import SceneTensors
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -162,6 +163,8 @@ class Learned:
     def __init__(self, weights: Path | None = None) -> None:
         self.weights = weights
         self._encoded = _Latest(self._encode)
+        # what the network sees of a room is the same for every board, and boards differ by seed
+        self._viewed = _Latest(lambda scene, config, background, board: _view(scene, config))
 
     @cached_property
     def reads_fields(self) -> bool:
@@ -204,10 +207,22 @@ class Learned:
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> "LearnedRoom":
         from mmweaver.models.learned_paths import LearnedRoom
+
+        view = self._viewed.get(scene, config, None, None)
+        return LearnedRoom(self._network, view, config, background=background, board=board)
+
+    @cached_property
+    def _network(self) -> "EchoNetwork":
         from mmweaver.models.weights import load_network, shipped_weights
 
-        network, _ = load_network(self.weights or shipped_weights())
-        return LearnedRoom(network, scene, config, background=background, board=board)
+        return load_network(self.weights or shipped_weights())[0]
+
+
+def _view(scene: Scene, config: RadarConfig) -> "SceneTensors":
+    from mmweaver.models.learned_paths import given_room
+    from mmweaver.models.scene_tensors import SceneTensors
+
+    return SceneTensors.of(scene, config, given_room(scene, config))
 
 
 RoomT = TypeVar("RoomT")
