@@ -4,7 +4,6 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -334,12 +333,3 @@ def test_the_person_has_the_errors_of_the_background_recording(room: Room):
     found = board.channel_phase_deg.mean(axis=0)
     assert found[1] - found[2] == pytest.approx(110, abs=25)
     assert weaver.board_of(weaver.request(TEXT, frames=2, board="ideal"), known)[0].is_ideal
-
-
-def test_the_network_looks_at_a_room_once_though_boards_differ(room: Room):
-    weaver = Weaver("weaver")
-    method: Any = weaver.method
-    made = [(weaver.generate(room, TEXT, frames=1, seed=seed), method._viewed._kept) for seed in (0, 1)]
-    (first, view), (second, view_again) = made
-    assert first.meta["board"]["name"] != second.meta["board"]["name"]
-    assert view is view_again is not None
