@@ -225,6 +225,12 @@ def interval(values: np.ndarray, rooms: list[str], seed: int = 0) -> tuple[float
     return float(np.nanmean(means)), float(np.percentile(draws, 2.5)), float(np.percentile(draws, 97.5))
 
 
+def generic_scene_of(rooms: list[StoredRoom], plan: dict[str, Any]) -> Scene:
+    """The scene of some other room, the same for all: the first office."""
+    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
+    return make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+
+
 def cases_of(
     rooms: list[StoredRoom], split: str, each: int, plan: dict[str, Any], seed: int, most: int | None = None
 ) -> list[Case]:
@@ -265,8 +271,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     network, card = load_weights(weights)
     rooms, plan = read_rooms(options.data), read_plan(options.data)
     cases = cases_of(rooms, options.split, options.each, plan, 0, options.most)
-    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
-    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    generic_scene = generic_scene_of(rooms, plan)
     methods: dict[str, Method] = {
         "weaver": learned(network, lambda case: case.room),
         "weaver_with_background": learned(network, lambda case: case.room, recorded=True),

@@ -27,10 +27,9 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
-from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
-from studies.network.learned_scores import OTHER, Case, cases_of, interval
+from studies.network.learned_scores import OTHER, Case, cases_of, generic_scene_of, interval
 from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
@@ -109,8 +108,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     network, card = load_weights(weights)
     rooms, plan = read_rooms(options.data), read_plan(options.data)
     cases = cases_of(rooms, SPLIT, 1, plan, 0, options.most)
-    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
-    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    generic_scene = generic_scene_of(rooms, plan)
     poses = {name: pose.words for name, pose in POSES.items()}
     cache = RoomCache(options.runs, {"data_plan": plan, "weights": digest(weights), "poses": poses})
     each = [cache.figures(case.room.folder.name, partial(scores_of, case, network, generic_scene)) for case in cases]

@@ -44,6 +44,7 @@ from studies.network.learned_scores import (
     Method,
     _row,
     cases_of,
+    generic_scene_of,
     scored,
     simulated,
 )
@@ -187,8 +188,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     network, card = load_weights(weights)
     rooms, plan = read_rooms(options.data), read_plan(options.data)
     cases = cases_of(rooms, SPLIT, 1, plan, 0, options.most)
-    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
-    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    generic_scene = generic_scene_of(rooms, plan)
     methods = methods_of(network, generic_scene)
     methods = {name: methods[name] for name in options.only or methods}
     cache = RoomCache(options.runs, {"data_plan": plan, "weights": digest(weights), "rows": sorted(methods)})
