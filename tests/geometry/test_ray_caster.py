@@ -19,7 +19,7 @@ def test_distance_is_the_closed_form_from_both_sides(wall: RayCaster):
     target = np.stack([generator.uniform(-1.9, 1.9, 500), np.full(500, 3.0), generator.uniform(-1.9, 1.9, 500)], 1)
     length = np.linalg.norm(target - start, axis=1)
     distance = wall.distance_m(start, (target - start) / length[:, None])
-    np.testing.assert_allclose(distance, length, atol=1e-4)
+    np.testing.assert_allclose(distance, length, atol=1e-9)  # Embree alone: 1e-6, at grazing incidence 1e-4
     assert distance.dtype == np.float64
 
 

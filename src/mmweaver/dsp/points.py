@@ -136,7 +136,8 @@ def _azimuth_peaks(
         return np.arange(len(signal)), np.zeros(len(signal)), np.zeros(len(signal))
     cosine = np.linspace(-1, 1, NUM_DIRECTION_COSINES)
     direction = np.stack([cosine, np.zeros_like(cosine), np.zeros_like(cosine)])
-    spectrum = np.abs(signal[:, row] @ steering(cube, row, direction)) ** 2
+    # Not BLAS: on some processors a row of its product depends on how many rows there are.
+    spectrum = np.abs(np.einsum("ca,ad->cd", signal[:, row], steering(cube, row, direction))) ** 2
     inner = spectrum[:, 1:-1]
     is_peak = (inner >= spectrum[:, :-2]) & (inner > spectrum[:, 2:])
     level = np.where(is_peak, inner, 0)
