@@ -17,8 +17,9 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
+from mmweaver.paths.board_effects import as_built
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.paths.static_paths import Propagation, RayTracedRoom
 
 if TYPE_CHECKING:
     from mmweaver.models.learned_paths import EchoNetwork, LearnedRoom
@@ -87,10 +88,10 @@ class Physics:
 
     def __init__(self, propagation: Propagation | None = None) -> None:
         self.propagation = propagation or Propagation(clutter=True)
-        self._prepared = _Latest(
-            lambda scene, config, background, board: Simulator(
-                scene, config, background=background, board=board, propagation=self.propagation
-            )
+        self._prepared = _Latest(self._prepare)
+        # rays are the same for every board with the same places of antennas, and boards differ by seed
+        self._traced = _Latest(
+            lambda scene, config, background, board: RayTracedRoom(scene, config, 0, self.propagation)
         )
 
     def __call__(
@@ -127,6 +128,13 @@ class Physics:
             adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
             assumptions=(*ASSUMPTIONS, *order, *several, *_of_background(simulator.background)),
         )
+
+    def _prepare(
+        self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
+    ) -> Simulator:
+        built = config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
+        room = self._traced.get(scene, built, None, None)
+        return Simulator(scene, config, background=background, board=board, propagation=self.propagation, room=room)
 
 
 def physics_with(method: Method, bounces: int | None, clutter: str | None) -> Physics:

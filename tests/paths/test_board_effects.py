@@ -7,19 +7,22 @@ import pytest
 import torch
 
 from mmweaver.core.board import Board
+from mmweaver.core.boards import typical_board
 from mmweaver.core.presets import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
+from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import cube_values, radar_cube
+from mmweaver.methods import Physics
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments, Receiver
-from mmweaver.paths.static_paths import scattered_paths
+from mmweaver.paths.static_paths import Propagation, RayTracedRoom, scattered_paths
 from tests.paths.test_cube_rendering import BPM, error_db, sampled
-from tests.rooms import back_wall, floor, scene_of
+from tests.rooms import back_wall, floor, scene_of, standing_person
 
 FEW_LOOPS = replace(AWR1843, name="few", num_loops=2)
 
@@ -148,3 +151,25 @@ def test_the_first_chirp_of_a_frame_differs():
     ratio = (first * later.conj()).sum() / (np.abs(later) ** 2).sum()
     assert ratio == pytest.approx(1.005 * np.exp(2e-3j), abs=1e-5)
     np.testing.assert_array_equal(adc.samples[0, 0, 1], adc.samples[0, 5, 1])
+
+
+def test_a_room_is_traced_once_for_boards_that_differ_by_seed(monkeypatch: pytest.MonkeyPatch):
+    scene, pose = scene_of((back_wall(3.0), floor())), standing_person((0.2, 2.0, -1.2))
+    made: list[RayTracedRoom] = []
+
+    def traced(*args: object, **options: object) -> RayTracedRoom:
+        made.append(RayTracedRoom(*args, **options))  # type: ignore[arg-type]
+        return made[-1]
+
+    monkeypatch.setattr("mmweaver.methods.RayTracedRoom", traced)
+    method = Physics(Propagation(bounces=1))
+    for seed in (1, 2):
+        board = typical_board(AWR1843, seed)
+        values = method(
+            scene, (pose,), AWR1843, num_frames=1, seed=seed, keep_adc=False, stages=Stages(), board=board
+        ).cube.values  # fmt: skip
+        alone = Simulator(scene, AWR1843, board=board, propagation=method.propagation).run(
+            pose, num_frames=1, seed=seed
+        )  # fmt: skip
+        np.testing.assert_array_equal(values, radar_cube(alone.adc).values)
+    assert len(made) == 1

@@ -66,9 +66,11 @@ class Simulator:
     def __init__(
         self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
         background: RadarCube | None = None, board: Board | None = None, propagation: Propagation | None = None,
+        room: RayTracedRoom | None = None,
     ):  # fmt: skip
         """`board`: whose errors all signals have (default: those of `impairments` alone). `propagation`: which paths
-        there are. `background`: a recording by this radar with nobody present, whose static clutter and noise are used.
+        there are. `room`: the scene as it was traced for another board with the same places of antennas.
+        `background`: a recording by this radar with nobody present, whose static clutter and noise are used.
 
         Raises InputError for the recording of another radar.
         """
@@ -78,7 +80,7 @@ class Simulator:
         built = config if self.board is None else self.board.radar
         self.synthesis = AdcSynthesis(built, board=self.board)
         self.clock = self.synthesis.clock
-        self.room = RayTracedRoom(scene, built, micro_seed, propagation)
+        self.room = (room or RayTracedRoom(scene, built, micro_seed, propagation)).for_radar(built)
         if self.room.propagation.clutter:
             self.room.paths = StaticPaths.cat([self.room.paths, unresolved_clutter(built, micro_seed)])
         if self.board is not None:

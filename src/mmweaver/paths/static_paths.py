@@ -1,6 +1,7 @@
 """The static paths of a room: diffuse surfaces, specular reflections and edges."""
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -132,6 +133,12 @@ class RayTracedRoom(PreparedRoom):
         super().__init__(config, self.reflectors, paths, self.propagation)
         if self.propagation.bounces > 1:
             self.paths = StaticPaths.cat([paths, room_room_paths(self)])
+
+    def for_radar(self, config: RadarConfig) -> "RayTracedRoom":
+        """The same rays for a radar that differs in its noise figure alone; its paths may be replaced."""
+        other = copy(self)
+        other.config = config
+        return other
 
     @cached_property
     def patches(self) -> RoomPatches:
