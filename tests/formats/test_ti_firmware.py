@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
+from mmweaver.dsp.firmware_cfar import counts_per_db, noise_level
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.ti_firmware import read_ti_firmware
 
@@ -74,6 +76,23 @@ def test_sdk_3_has_thresholds_in_db(tmp_path: Path):
     assert settings.range_cfar.threshold == round(15 / 6.0206 * 256 * 8)
     assert settings.doppler_cfar.threshold == round(12 / 6.0206 * 256 * 8)
     assert (settings.group_range, settings.group_doppler) == (True, False)
+
+
+@pytest.mark.parametrize("mode", [0, 1, 2])
+def test_noise_of_an_sdk_3_cfar_is_the_mean_of_the_cells_it_takes(tmp_path: Path, mode: int):
+    """TI: the divisor of CA counts both sides, that of CASO and CAGO the one side they take."""
+    shift = 4 if mode == 0 else 3
+    text = SDK2.replace("cfarCfg -1 0 2 8 4 4 0 5120", f"cfarCfg -1 0 {mode} 8 4 {shift} 0 15 1")
+    cfar = read_ti_firmware(written(tmp_path, text)).range_cfar
+    assert cfar is not None
+    assert np.all(noise_level(np.full((64, 1), 30_000), cfar, cfar.window) == 30_000)
+
+
+def test_boards_at_60_ghz_have_the_firmware_of_sdk_3():
+    settings = load_firmware("iwr6843isk")
+    assert settings.range_cfar is not None
+    assert settings.device == "xwr16xx"
+    assert settings.range_cfar.threshold == round(15 * counts_per_db("xwr16xx", load_radar("iwr6843isk").num_antennas))
 
 
 def test_missing_lines_are_off_or_the_demos_defaults(tmp_path: Path):

@@ -75,10 +75,21 @@ class FirmwareSettings:
         return replace(self, range_cfar=replace(self.range_cfar, threshold=round(threshold)))
 
 
+# The out-of-box demo of SDK 3 for boards with three transmitters: 15 dB in range and in Doppler, one object a peak.
+SDK3_COUNTS = 7654  # 15 dB of twelve antennas in Q8
+SDK3 = FirmwareSettings(
+    device="xwr16xx",
+    range_cfar=FirmwareCfar(average="caso", window=8, guard=4, noise_shift=4, threshold=SDK3_COUNTS),
+    doppler_cfar=FirmwareCfar(average="ca", window=4, guard=2, noise_shift=3, cyclic=True, threshold=SDK3_COUNTS),
+)
+
 # By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal
 # are the 3D profile's. MARS: what stands still is missing from the recordings, so clutter removal was on; neighbours in
 # range and in Doppler are both there, so grouping was off; the rest is the 3D profile's.
 FIRMWARE = {
     "iwr1443_radhar": FirmwareSettings(group_range=False),
+    "iwr6843isk": SDK3,
+    "iwr6843aop": SDK3,
+    "iwr6843ods": SDK3,
     "iwr1443_mars": FirmwareSettings(static_removal=True, group_range=False, group_doppler=False),
 }

@@ -77,6 +77,8 @@ def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar |
     if not 0 <= average < len(AVERAGE_MODES):
         raise InputError(f"line {line.number}: cfarCfg has average mode {average}; known are 0, 1 and 2")
     in_db = len(line.values) >= SDK3_CFAR_LENGTH
+    if in_db and average != 0:
+        shift += 1  # SDK 3 divides the one side that CASO and CAGO take by 2^shift, older ones by half of that
     return FirmwareCfar(
         average=AVERAGE_MODES[average],
         window=window,
