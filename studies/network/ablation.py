@@ -1,13 +1,15 @@
 """What each part of the network, of its loss and of its training contributes, in rooms of the validation kind.
 
     python -m studies run ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
+    python -m studies run ablation --data OTHER --runs RUNS --called ablation_power --only whole "hypernetwork and INR"
 
 Every variant (`ablation_variants`) is trained for the same short time, from the same seed, in the same rooms, and
 continues where it was stopped; each writes a file of its own. Test splits are not used: this table is for choosing.
 
 Scores are those of signals with random phases, as in `learned_scores`, and differences of expected power maps, which do
 not depend on phases, of everything and of the person alone: ghosts lie 15 to 20 dB below the person and below most
-rooms, and show only there. `physics_in_photographed_room` and `realization` are given for comparison.
+rooms, and show only there. `physics_in_photographed_room` and `realization` are given for comparison. With `--called`
+some rows are measured anew in another data set, next to a *whole* of their own.
 """
 
 import argparse
@@ -24,7 +26,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, Representations
+from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
@@ -36,7 +40,7 @@ from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, 
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
-from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
+from studies.network.ablation_variants import VARIANTS, AblationVariant
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache
 from studies.result_rows import complete_rows, dataset_of
@@ -113,8 +117,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
     recipe = replace(recipe, **dict(variant.recipe))
     rooms, unseen = material.sampled if variant.is_sampled else material.mean
     torch.manual_seed(recipe.seed)
-    network = WeaverNetwork(without=variant.without)
-    learner = _PartOfLoss(network, rooms[0].room.config, excluded=variant.terms_without)
+    learner = _PartOfLoss(network_of(variant), rooms[0].room.config, excluded=variant.terms_without)
     if recipe.steps > 0:
         trainer = Trainer(
             learner, recipe, out, train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
@@ -123,6 +126,22 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
         trainer.run()
     learner.eval()
     return learner
+
+
+def network_of(variant: AblationVariant) -> EchoNetwork:
+    """The variant's network before training."""
+    if variant.power:
+        return PowerNetwork(is_anchored=variant.power == "anchored")
+    return WeaverNetwork(without=variant.without)
+
+
+class OtherMotion(Case):
+    """A case whose joints are those of the room's next sequence, while the ground truth is its own."""
+
+    @property
+    def joints(self) -> tuple[np.ndarray, np.ndarray]:
+        other = (self.index + 1) % len(self.room.split)
+        return self.room.joints_m[other], self.room.joint_velocity_mps[other]
 
 
 def photo_of(case: Case, variant: AblationVariant, generic: StoredRoom) -> StoredRoom:
@@ -145,8 +164,7 @@ def sampled_scores(method: Method, case: Case) -> dict[str, float]:
 def mean_scores(learner: NetworkLearner, photo: StoredRoom, case: Case) -> dict[str, float]:
     """Differences of expected power maps in dB, of everything and of the person alone with receiver noise."""
     one = RoomExamples(case.room, "validation")
-    joints = torch.from_numpy(case.room.joints_m[case.index])[None]
-    velocity = torch.from_numpy(case.room.joint_velocity_mps[case.index])[None]
+    joints, velocity = (torch.from_numpy(values)[None] for values in case.joints)
     frames = np.unique(np.linspace(0, joints.shape[1] - 1, FRAMES).astype(int))
     whole, alone = one.maps(case.index, frames)
     assert alone is not None, "the room's geometry is stored"
@@ -186,7 +204,7 @@ def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[st
 
 def slug(name: str) -> str:
     """The name of a variant as a file name."""
-    return name.replace(",", "").replace(" ", "_")
+    return name.replace(",", "").replace("'", "").replace(" ", "_")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -196,6 +214,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rooms", type=int, default=48, help="to train in")
     parser.add_argument("--most", type=int, default=16, help="rooms to be evaluated in")
     parser.add_argument("--only", nargs="*", default=[*VARIANTS, *REFERENCES], help="rows")
+    parser.add_argument("--called", metavar="NAME", default="ablation", help="folder of the results")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
@@ -217,7 +236,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         ]
         row = row_of(name, each, rooms)
         rows = complete_rows([row], dataset=dataset_of(options.data), seeds=[0], unknown=UNKNOWN)
-        run.write("ablation", slug(name), config=about, rows=rows)
+        run.write(options.called, slug(name), config=about, rows=rows)
         figures = (f"{column} {metric['value']:.3f}" for column, metric in row["metrics"].items())
         print(f"{name:32}", *figures, flush=True)
 
@@ -232,8 +251,10 @@ def _evaluator(
 
     def recogniser(case: Case) -> dict[str, float]:
         if not made:
-            folder = runs / slug(WHOLE if variant.is_trained_as_whole else name)
-            made.append(trained(variant, material, folder, recipe))
+            shared = next(other for other, known in VARIANTS.items() if known == variant.trained_as)
+            made.append(trained(variant, material, runs / slug(shared), recipe))
+        if variant.motion == "other":
+            case = OtherMotion(case.room, case.index, case.other, case.seed_of_plan, case.lighting)
         return scores(made[0], lambda one: photo_of(one, variant, material.generic), case)
 
     return recogniser

@@ -1,6 +1,6 @@
 """Variants of the ablation: what is removed from the network, its loss, its training and its input."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 
@@ -14,6 +14,9 @@ class AblationVariant:
         recipe: changes of the training recipe.
         is_sampled: whether targets are maps of single sampled signals rather than expected maps.
         photo: whose photo is the input when it is evaluated: "own", "generic" or "shuffled".
+        motion: whose joints are the input when it is evaluated: "own", or "other", the room's next sequence.
+        power: in place of the network recipe `paper_power`, a hypernetwork that writes fields of power, with
+            coordinates counted from what is seen ("anchored") or the radar's alone ("radar").
     """
 
     without: tuple[str, ...] = ("correction",)
@@ -21,20 +24,28 @@ class AblationVariant:
     recipe: tuple[tuple[str, Any], ...] = ()
     is_sampled: bool = False
     photo: str = "own"  # or "generic", "shuffled"
+    motion: str = "own"  # or "other"
+    power: str = ""  # or "anchored", "radar"
 
     @property
-    def is_trained_as_whole(self) -> bool:
-        """Whether it is the whole network, evaluated with another photo."""
-        return self == AblationVariant(photo=self.photo)
+    def trained_as(self) -> "AblationVariant":
+        """The variant whose training it shares: the same, evaluated with its own photo and motion."""
+        return replace(self, photo="own", motion="own")
 
 
 WHOLE = "whole"
+POWER = (("frames", 3), ("learning_rate", 1.5e-3))  # as the weights of `paper_power` were trained
 VARIANTS = {
     WHOLE: AblationVariant(),
     "before training": AblationVariant(recipe=(("steps", 0),)),
     # of the whole, when it is evaluated
     "generic photo": AblationVariant(photo="generic"),
     "shuffled photo": AblationVariant(photo="shuffled"),
+    "another motion": AblationVariant(motion="other"),
+    # what the paper has in place of echoes on joints and surfaces
+    "hypernetwork and INR": AblationVariant(power="anchored", recipe=POWER),
+    "hypernetwork and INR, generic photo": AblationVariant(power="anchored", recipe=POWER, photo="generic"),
+    "hypernetwork and INR, the radar's coordinates alone": AblationVariant(power="radar", recipe=POWER),
     # anchors and what physics says
     "no ghosts": AblationVariant(without=("ghosts", "correction")),
     "no echoes between joints": AblationVariant(without=("between joints", "correction")),

@@ -36,6 +36,7 @@ from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
+from studies.network.clutter import CLUTTER, clutter_of, third_of
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned
 from studies.network.room_cache import RoomCache, digest
 from studies.peers.rf_genesis import RfGenesis, Triangles
@@ -46,7 +47,6 @@ COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim"
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
 ROOMS = 48  # sampled as those of learned_scores
-CLUTTER = ("low", "medium", "high")
 LEAST_ROOMS_BY_CLUTTER = 12
 CLUTTER_ROWS = (
     "zeros", "generic_room_physics", "rf_genesis_repaired_photographed_room", "weaver", "physics_in_photographed_room",
@@ -125,15 +125,6 @@ def kinds_in_turn(cases: list[Case]) -> list[Case]:
     return [case for turn in zip_longest(*of_kind.values()) for case in turn if case is not None]
 
 
-def clutter_of(case: Case) -> float:
-    """Share of the floor ahead within the radar's range on which furniture stands or hangs, of the true room."""
-    free = case.true_scene.free_space
-    x_m, y_m = np.meshgrid(free.x_m, free.y_m)
-    distance_m = np.hypot(x_m, y_m)
-    ahead = (distance_m < case.room.config.range_m[-1]) & (np.abs(np.arctan2(x_m, y_m)) < np.radians(60))
-    return float(1 - free.is_free[ahead].mean())
-
-
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="of mmweaver dataset, with signals")
     parser.add_argument("--split", default="test_room")
@@ -166,7 +157,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     if len(cases) < LEAST_ROOMS_BY_CLUTTER:
         print(f"no groups by clutter, for they need {LEAST_ROOMS_BY_CLUTTER} rooms")
         return
-    clutter = np.array([clutter_of(case) for case in cases])
+    clutter = np.array([clutter_of(case.true_scene, case.room.config) for case in cases])
     rows = [row for level in CLUTTER for row in _clutter_rows(level, clutter, each, names, options.data)]
     run.write("peer_scores", "clutter", config=settings, rows=rows)
 
@@ -175,7 +166,7 @@ def _clutter_rows(
     level: str, clutter: np.ndarray, each: list[Scores], names: list[str], data: Path
 ) -> list[dict[str, Any]]:
     """Rows of the third of the rooms with this much clutter."""
-    third = np.array_split(np.argsort(clutter, kind="stable"), len(CLUTTER))[CLUTTER.index(level)]
+    third = third_of(clutter, level)
     rows = [_row(name, [each[i] for i in third], [names[i] for i in third]) for name in CLUTTER_ROWS]
     covered = [float(clutter[third].min()), float(clutter[third].max())]
     rows = [{**row, "clutter": level, "share_of_floor_covered": covered} for row in rows]

@@ -10,14 +10,15 @@ and people (`seen`), rooms of unseen kinds (`unseen_room`), and a person never s
 A quarter of each batch is generated, in the rooms tested from their photos (`weaver`), in one room of the training set
 (`generic_room`), by RF-Genesis repaired, body alone, with its best loudness and the receiver's noise, and for the user
 test of the new person's height (`new_person`) or of people known (`known_people`). Baseline: recordings alone, the same
-number of steps. Oracle: recordings of the tested rooms or person instead of generated ones.
+number of steps. Oracle: recordings of the tested rooms or person instead of generated ones. Result `clutter` has the
+same answers in unseen rooms, by thirds of the rooms from little to much furniture.
 
 Networks: `cnn_lstm` (T x 32 x 32 range-angle images, as the paper's), trained anew each time; `ours`, range-Doppler and
 range-angle maps, convolutions trained on the recordings and a new head each time (as study `activity_gain`).
 """
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -31,10 +32,12 @@ from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead
 from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples, augmented
 from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe
 from studies.manifest import StudyRun
 from studies.network.activity_gain import few_of, seen
+from studies.network.clutter import CLUTTER, clutter_of, third_of
 from studies.network.learned_scores import interval
 from studies.network.room_cache import RoomCache, digest
 from studies.recognition.cnn_lstm import CnnLstm, range_angle_images, trained
@@ -59,6 +62,7 @@ SEEDS = (0,)
 ALONE = "recordings_alone"
 NETWORKS = ("cnn_lstm", "ours")
 ORACLES = {"unseen_room": "recordings_of_the_rooms", "unseen_user": "recordings_of_the_person"}
+CLUTTER_ROWS = (ALONE, "weaver", "generic_room", f"rf_genesis_{TRACED}", ORACLES["unseen_room"])
 
 
 @dataclass(frozen=True)
@@ -96,6 +100,16 @@ class GainData:
             "seen": (part_of(self._known, seen_part), list(self._known.room[seen_part])),
             "unseen_room": (part_of(self._rooms, room_part), list(self._rooms.room[room_part])),
             "unseen_user": (part_of(self._person, person), list(self._person.room[person])),
+        }
+
+    def clutter(self) -> dict[str, float]:
+        """{room: share of its floor that furniture covers} of the rooms of test `unseen_room`."""
+        seed, tested = read_plan(self.unseen)["seed"], set(self.tests()["unseen_room"][1])
+        rooms = {f"{room.kind}_{room.layout}": room for room in read_rooms(self.unseen)}
+        return {
+            name: clutter_of(make_room(room.kind, room.layout, seed).scene(room.lighting), room.config)
+            for name, room in rooms.items()
+            if name in tested
         }
 
     def added(self) -> dict[str, Callable[[], Recordings | None]]:
@@ -221,15 +235,17 @@ def hits_of(data: GainData, base: Callable[[], ActivityNetwork], added: Recordin
     return found
 
 
-def rows_of(found: dict[str, Hits], groups: dict[str, list[str]]) -> list[dict[str, Any]]:
+def rows_of(
+    found: dict[str, Hits], groups: dict[str, list[str]], oracles: Mapping[str, str] = ORACLES
+) -> list[dict[str, Any]]:
     """A row for each network, test, and what was added; all are compared with the recordings alone."""
     rows = []
     for network in found[ALONE]:
         for test, rooms in groups.items():
             alone = np.array(found[ALONE][network][test])
-            oracle = ORACLES.get(test) if ORACLES.get(test) in found else None
+            oracle = oracles.get(test) if oracles.get(test) in found else None
             for name, hits in found.items():
-                if name in ORACLES.values() and name != oracle:
+                if name in oracles.values() and name != oracle:
                     continue
                 own = np.array(hits[network][test])
                 metrics: dict[str, dict[str, Any]] = {}
@@ -242,6 +258,24 @@ def rows_of(found: dict[str, Hits], groups: dict[str, list[str]]) -> list[dict[s
                     metrics["accuracy"]["oracle"] = {oracle: interval(best, rooms)[0]}
                 rows.append({"method": name, "network": network, "test": test, "n": len(own),
                              "num_rooms": len(set(rooms)), "metrics": metrics})  # fmt: skip
+    return rows
+
+
+def clutter_rows(found: dict[str, Hits], rooms: list[str], clutter: dict[str, float]) -> list[dict[str, Any]]:
+    """The rows of test `unseen_room`, whose sequences are of `rooms`, for each third of the rooms by clutter."""
+    rows = []
+    for level in CLUTTER:
+        third = [list(clutter)[index] for index in third_of(list(clutter.values()), level)]
+        chosen = [index for index, room in enumerate(rooms) if room in third]
+        part = {
+            name: {network: {level: [hits["unseen_room"][index] for index in chosen]} for network, hits in each.items()}
+            for name, each in found.items()
+            if name in CLUTTER_ROWS
+        }
+        covered = [clutter[name] for name in third]
+        about = {"clutter": level, "share_of_floor_covered": [min(covered), max(covered)]}
+        own = rows_of(part, {level: [rooms[index] for index in chosen]}, {level: ORACLES["unseen_room"]})
+        rows += [{**row, **about} for row in own]
     return rows
 
 
@@ -284,10 +318,14 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
                 {test: round(float(np.mean(hits)), 3) for test, hits in tests.items()},
                 flush=True,
             )
-        rows = complete_rows(
-            rows_of(found, groups), dataset=dataset_of(options.unseen), seeds=list(SEEDS),
-            unknown={
-                "seconds": "see the manifest: all rows together", "metrics.gain.baseline": "it is a difference to one",
-            },
-        )  # fmt: skip
-        run.write("recogniser_gain", "few_recordings", config={**sizes, **plans}, rows=rows)
+        _write(run, "few_recordings", rows_of(found, groups), options.unseen, {**sizes, **plans})
+    rows = clutter_rows(found, groups["unseen_room"], data.clutter())
+    _write(run, "clutter", rows, options.unseen, {**sizes, **plans})
+
+
+def _write(run: StudyRun, name: str, rows: list[dict[str, Any]], unseen: Path, config: dict[str, Any]) -> None:
+    unknown = {
+        "seconds": "see the manifest: all rows together", "metrics.gain.baseline": "it is a difference to one",
+    }  # fmt: skip
+    complete = complete_rows(rows, dataset=dataset_of(unseen), seeds=list(SEEDS), unknown=unknown)
+    run.write("recogniser_gain", name, config=config, rows=complete)

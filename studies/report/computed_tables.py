@@ -111,11 +111,11 @@ ABLATION = (
 )  # fmt: skip
 
 
-def ablation_table(results: Path) -> str:
+def ablation_table(results: Path, folder: str = "ablation") -> str:
     """A row a variant: its score, and the paired difference from the whole network with a bootstrap interval."""
-    rows = {row["method"]: row["metrics"] for row in contexts_of(results, ("ablation/*",))}
+    rows = {row["method"]: row["metrics"] for row in contexts_of(results, (f"{folder}/*",))}
     if WHOLE not in rows:
-        raise InputError(f"{results / 'ablation'} lacks the whole network; run the study first")
+        raise InputError(f"{results / folder} lacks the whole network; run the study first")
     order = [name for name in (*VARIANTS, *sorted(set(rows) - set(VARIANTS))) if name in rows]
     lines = [
         [name, *(_difference(rows[name], rows[WHOLE], column, digits) for column, _, digits in ABLATION)]

@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.models.network import PARTS
+from mmweaver.models.network import PARTS, WeaverNetwork
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.training.network_training import TrainingRecipe
 from studies.network.ablation import (
     COLUMNS,
     MEAN_COLUMNS,
     AblationMaterial,
+    OtherMotion,
     mean_scores,
+    network_of,
     photo_of,
     row_of,
     scores,
@@ -73,6 +76,19 @@ def test_each_variant_has_its_photo_and_names_known_parts(material: AblationMate
     assert photos["generic"].kind == "office"
     assert photos["shuffled"] is case.other
     assert {part for variant in VARIANTS.values() for part in variant.without} <= set(PARTS)
-    assert VARIANTS["shuffled photo"].is_trained_as_whole
-    assert VARIANTS[WHOLE].is_trained_as_whole
+    assert VARIANTS["shuffled photo"].trained_as == VARIANTS["another motion"].trained_as == VARIANTS[WHOLE]
+    assert VARIANTS["hypernetwork and INR, generic photo"].trained_as == VARIANTS["hypernetwork and INR"]
     assert len({slug(name) for name in VARIANTS}) == len(VARIANTS)
+
+
+def test_another_motion_changes_the_input_and_not_the_truth(material: AblationMaterial):
+    case = material.cases[0]
+    other = OtherMotion(case.room, case.index, case.other, case.seed_of_plan, case.lighting)
+    assert np.abs(other.joints[0] - case.joints[0]).max() > 0.1
+    assert np.array_equal(other.truth.values, case.truth.values)
+
+
+def test_a_variant_may_be_the_hypernetwork():
+    networks = [network_of(AblationVariant(power=power)) for power in ("anchored", "radar")]
+    assert [network.is_anchored for network in networks if isinstance(network, PowerNetwork)] == [True, False]
+    assert isinstance(network_of(VARIANTS[WHOLE]), WeaverNetwork)
