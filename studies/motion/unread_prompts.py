@@ -1,12 +1,14 @@
-"""How many prompts of other text-to-motion projects are understood, and how many correctly? 231 that shaped nothing.
+"""How many prompts of other text-to-motion projects are understood, and how many correctly? Two draws, read once.
 
-python -m studies run unread_prompts --prompts prompts.txt
+python -m studies run unread_prompts --prompts prompts.txt --draw second
 
-The file has one prompt a line; it is not part of the project. These are the examples of MoMask's and MoSa's demos, the
-text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a generator
-and pairs of captions that differ in one word, each prompt once, without those read to widen the grammar. The
-grammar was frozen by commit 5a2a9e6 before any was read; what it understood was judged by hand, once, as the sentences
-of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements.json, named by the prompts' sha256.
+The file has one prompt a line; it is not part of the project. First draw: 231 examples of MoMask's and MoSa's demos,
+the text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a
+generator and pairs of captions that differ in one word. Second: prompts and captions in public repositories of other
+text-to-motion projects, for models of HumanML3D and the like; none is in the first. Each prompt counts once, without
+those read to widen the grammar. Each draw was read once, after a commit had frozen the grammar; what was understood was
+judged by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
+results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
 import argparse
@@ -22,6 +24,8 @@ from studies.manifest import StudyRun
 from studies.motion.kitml import Judgements, reading_of, share
 from studies.result_rows import complete_rows
 from studies.study import Reads
+
+DRAWS = {"first": "", "second": "_second"}  # -> ending of the names of their files
 
 
 def name_of(prompt: str) -> str:
@@ -54,15 +58,17 @@ def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--draw", choices=tuple(DRAWS), default="first", help="whose judgements are counted")
     parser.add_argument("--prompts", type=Path, action=Reads, required=True, help="file with one prompt a line")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     prompts = [line for line in options.prompts.read_text(encoding="utf-8").splitlines() if line.strip()]
-    path = run.out / "unread_prompts" / "judgements.json"
+    path = run.out / "unread_prompts" / f"judgements{DRAWS[options.draw]}.json"
     judgements = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     digest = hashlib.sha256(options.prompts.read_bytes()).hexdigest()
-    row = {"dataset": {"name": "prompts of six projects", "sha256": digest}, **result_row(prompts, judgements)}
-    run.write(
-        "unread_prompts", "reading", config={}, rows=complete_rows([row], unknown={"seconds": "see the manifest"})
+    name = {"name": f"prompts of other projects, {options.draw} draw", "sha256": digest}
+    rows = complete_rows(
+        [{"dataset": name, **result_row(prompts, judgements)}], unknown={"seconds": "see the manifest"}
     )
+    run.write("unread_prompts", f"reading{DRAWS[options.draw]}", config={}, rows=rows)

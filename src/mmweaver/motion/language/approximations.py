@@ -8,6 +8,8 @@ import re
 from dataclasses import dataclass
 from functools import cache
 
+from mmweaver.motion.language.limb_approximations import INSTEAD_OF_ANOTHER, WHERE_UNKNOWN
+
 _OWN = r"(?:(?:his|her|its|their|the|both|a|an|some|one|my|own) )*"
 _SIDE = r"(?:left|right)"
 MARK = "approx_"
@@ -32,6 +34,7 @@ _THING = r"(?: +(?!and\b|then\b|while\b|with\b|before\b|after\b|,)[a-z'-]+){0,4}
 _AS = "is shown as"
 
 APPROXIMATIONS: tuple[Approximation, ...] = (
+    *(Approximation(*row, always=True) for row in INSTEAD_OF_ANOTHER),
     *(Approximation(pattern, instead, how, always=True) for pattern, instead, how in (
         (r"\b(?:turn|switch)(?:s|es|ing|ed)? (?:on|off) (?:the |a |his |her )?(?:[a-z]+ )?(?:light|lights|lamp|tv|television|radio|stove|computer|music|heating|fan)\b"
          r"|\b(?:turn|switch)(?:s|es|ing|ed)? (?:the |a )?(?:light|lights|lamp|tv|radio|stove|computer) (?:on|off)\b",
@@ -442,6 +445,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\bholding (?:an? )?(?:squat(?:ted|ting)?|crouch(?:ed|ing)?) position\b|\bstays? in (?:an? )?squat\b", "crouches", f"{_AS} crouching"),
         (r"\b(?:lift|hold|heav)(?:s|es|ing)? (?:up )?(?:an? |the |some )?(?:[a-z-]+ ){0,2}(?:item|thing|object|weight|box|bag)\b(?: \([^)]*\))?", "picks something up", f"{_AS} picking something up"),
     )),
+    *(Approximation(*row) for row in WHERE_UNKNOWN),
 )  # fmt: skip
 _pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
 _HELD = re.compile(r"<(\d+)>")

@@ -176,7 +176,11 @@ def parse_clause(clause: Clause) -> ParsedClause:
     for token in places:
         _put_at(parsed, place_of(token))
     kept = any(step.distance_m and step.lower in ("walk", "jog") for step in parsed.steps)
-    if {word.text for word in words} & DISTANCES and not kept:
+    lengths = any(
+        other.text in DISTANCES and (one.text in NUMBERS or one.text not in (*OWN, *BOTH, "the", "with"))
+        for one, other in pairwise(words)
+    )  # "ten feet", "a few metres", not "his feet"
+    if lengths and not kept:
         parsed.approximate(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
     return parsed
 
@@ -251,8 +255,8 @@ def _verbs(words: list[Word]) -> list[int]:
     found: list[int] = []
     texts = {word.text for word in words}
     for i, word in enumerate(words):
-        if word.lemma == "head" and i and (words[i - 1].text in OWN or words[i - 1].text in ("the", "with")):
-            continue
+        if word.text == "head" and i and words[i - 1].text not in ("to", "and", "then", "they"):
+            continue  # the part of the body, as in "tilts the head" and "tilts head"
         if (
             word.lemma == "reach"
             and words[i + 1 : i + 2]

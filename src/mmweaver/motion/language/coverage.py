@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import ARMS, MANNERS, NUMBERS, PASSED, SIZES, TARGETS, TIMES
 from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
 
@@ -25,6 +26,7 @@ _WITH_ARMS = words_in(
 
 # Activities in which one hand or foot is not distinguished from the other.
 _WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms hips shrug stretch hands_up breathe")
+_TO_A_SIDE = words_in("sidestep side_lunge limb_extension lean arms_out arm_extension")
 _WITH_ONE_FOOT = words_in(
     """
     limp hop_one_leg one_leg kick stomp raise_leg lunge side_lunge limb_extension kneel_down kneel_up stairs tree_pose
@@ -42,20 +44,19 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     lost += _lost_aims(texts, steps)
     if _side_of_a_limb(texts) and not any(step.hand or step.foot for step in steps):
         lost.append("which hand or foot it is is not shown")
-    elif _SIDES & set(texts) and not any(_has_side(step) for step in steps):
+    elif any(not any(_goes_to(step, side) for step in steps) for side in _sides_gone_to(texts)):
         lost.append("the side is not shown")
     if ARMS & set(texts) and not any(step.upper or step.lower in _WITH_ARMS for step in steps):
         lost.append("what the arms do is not shown")
-    if "in_circle" in texts and not any(_is_round(step) for step in steps):
+    if "in_circle" in texts and not any(goes_round(step) for step in steps):
         lost.append("the circle is not shown")
-    if "sideways" in texts and not any(_has_side(step) or step.lower == "sidestep" for step in steps):
+    if "sideways" in texts and not any(goes_aside(step) for step in steps):
         lost.append("the side is not shown")
     if {"backwards", "backward"} & set(texts) and not any(_goes_back(step) for step in steps):
         lost.append("'backwards' is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
-    handed = [step for step in steps if step.hand and (step.upper or step.lower in ("pick_up", "put_down"))]
-    if any(step.hand in _SIDES for step in steps) and all(step.upper in _WITHOUT_ONE_HAND for step in handed):
+    if any(step.hand in _SIDES for step in steps) and not any(moves_one_hand(step) for step in steps):
         lost.append("which hand or foot it is is not shown")
     if any(step.foot and step.lower not in _WITH_ONE_FOOT for step in steps):
         lost.append("which foot it is is not shown")
@@ -85,14 +86,42 @@ def _side_of_a_limb(texts: list[str]) -> bool:
     return False
 
 
-def _has_side(step: Step) -> bool:
-    """Whether a step goes, turns, looks or is done to one side, or with one hand or foot."""
+def _sides_gone_to(texts: list[str]) -> list[str]:
+    """The sides of directions, not those of limbs."""
+    limbs = ARMS | LEGS
+    return [text for i, text in enumerate(texts) if text in _SIDES and not limbs & set(texts[i + 1 : i + 3])]
+
+
+def _goes_to(step: Step, side: str) -> bool:
+    """Whether a step goes, turns, looks or is done to one side, or is done with the hand or foot of this side."""
+    return goes_aside(step) or {step.hand, step.foot} & {side, "both"} != set()
+
+
+def goes_aside(step: Step) -> bool:
+    """Whether a step goes, turns, looks or is done to one side."""
     directed = step.moves or step.lower in ("turn", "stumble", "leap", "sidestep", "walk", "jog", "lean")
-    sides = {step.direction if directed else "", step.style, step.facing, step.hand, step.foot}
+    sides = {step.direction if directed else "", step.style, step.facing}
     signed = (step.arc_deg and step.style != "either") or (step.turn_deg and step.style != "either")
-    placed = step.place is not None or step.target
-    return bool(
-        sides & {"left", "right", "both", "side", "seat"} or signed or placed or step.lower in ("sidestep", "lean")
+    placed = step.place is not None or step.target or (step.seat and step.moves)
+    to_a_side = {step.lower, step.upper} & _TO_A_SIDE and step.direction != "forwards"
+    return bool(sides & {"left", "right", "side", "seat"} or signed or placed or to_a_side)
+
+
+def sides_of(step: Step) -> set[str]:
+    """Left and right, of the directions, turns, limbs and looks of a step."""
+    way = step.direction if step.upper not in ("look_around", "point") else ""
+    sides = {way, step.style, step.facing, step.hand, step.foot} & _SIDES
+    sides |= _SIDES if "both" in (step.hand, step.foot) else set()
+    for angle_deg in (step.arc_deg, step.turn_deg):
+        if angle_deg and step.style != "either":
+            sides.add("left" if angle_deg > 0 else "right")
+    return sides
+
+
+def moves_one_hand(step: Step) -> bool:
+    """Whether a step moves a hand that may be the left or the right one."""
+    return bool(step.hand) and (
+        (bool(step.upper) and step.upper not in _WITHOUT_ONE_HAND) or step.lower in ("pick_up", "put_down")
     )
 
 
@@ -101,7 +130,7 @@ def _goes_back(step: Step) -> bool:
     return back or step.place is not None or step.lower in ("lie", "lie_down", "fall", "turn")
 
 
-def _is_round(step: Step) -> bool:
+def goes_round(step: Step) -> bool:
     return bool(
         step.direction == "circle"
         or step.arc_deg
@@ -131,7 +160,7 @@ def _lost_numbers(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     for i, word in enumerate(words):
         if word.text in TIMES or not (word.text in NUMBERS or word.text.isdigit()):
             continue
-        following = [other for other in words[i + 1 : i + 3] if other.text not in SIZES]
+        following = [other for other in words[i + 1 : i + 3] if other.text not in SIZES | _SIDES]
         counted = following and (following[0].is_activity or following[0].text in ("step", "steps", "times", "circles"))
         if counted and float(NUMBERS.get(word.text, word.text)) not in kept:
             lost.append(word.text)

@@ -50,6 +50,8 @@ NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bkneeing\b", "kneeling"), (r"\bwavs\b", "waves"), (r"\b(?:wals|wallks)\b", "walks"),
     (r"\b(?:cautious|careful|sluggish|tiny|normal|hesitant|firm|relatively|very|quick|fast) (?=(?:cautious |forward )?steps?\b)", ""),
     (r"\bforward steps\b", "steps forwards"), (r"\ba large and a small step\b", "two steps"),
+    (r"\bshak(es|ing) (?:(?:his|her|its|their|the) )?head no\b", r"shak\1 the head"), (r"\b(nods|nodding) yes\b", r"\1"),
+    (r"\b((?:both |the |his |her |their )*arms?\b[^.;]*?\b(?:rais|lift)(?:es|s|ing)) them\b", r"\1 both arms"),
     # circles
     (r"\bin (?:an? )?(quarter|half|third)(?: of)? an? (?:small |big |wide )?circle\b", r"in a \1 circle"),
     (r"\b(?:against|counter to) the clock(?:wise direction)?\b", "counterclockwise"),

@@ -24,7 +24,7 @@ def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step
     """The step as it is carried out from this posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
-    if posture in STILL and step.lower == "stand" and step.upper and not step.on_feet:
+    if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
         return [*_up_from(posture, step), step] if step.lower != "fall" else [step]

@@ -12,6 +12,8 @@ from mmweaver.motion.language.clauses import split_clauses
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.left_out import parse_with_less
+from mmweaver.motion.language.lexicon import OWN
+from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -154,9 +156,14 @@ def _note_what_is_not_shown(
         own = [step for step in steps if parsed.number in step.clauses] or steps
         for how in [*parsed.lost, *not_shown(parsed.words, own)]:
             say(parsed.number, how)
+    for after, how in risings_that_no_clause_names(steps):
+        say(after.clauses[0] if after.clauses else max(records), how)
     for how in sizes_not_shown(given_text, steps):
         size = how.split("'")[1]
         say(next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how)
+    for words, how in not_in_any_step(given_text, steps, records):
+        if not any(words in record.how for record in records.values()):
+            say(next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how)
 
 
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
@@ -170,9 +177,7 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
         elif other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
             found[-1].go_on(parsed)
         elif other is None and _once_more(found[-1].steps[-1], parsed):
-            found[-1].steps.append(
-                replace(found[-1].steps[-1], direction=parsed.about.direction, clauses=(parsed.number,))
-            )
+            found[-1].steps.append(replace(found[-1].steps[-1], direction=_own_side(parsed), clauses=(parsed.number,)))
             found[-1].forms.append("s")
         elif other is None:
             found[-1].absorb(parsed)
@@ -208,6 +213,13 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
     return parsed.link == "then" and on_the_spot and parsed.about.direction in OPPOSITE
+
+
+def _own_side(parsed: ParsedClause) -> str:
+    """The side of a movement on the spot, which is the person's own: "then to his left" is no side of the picture."""
+    side = parsed.about.direction
+    whose = any(one.text in OWN and other.text == OPPOSITE[side] for one, other in pairwise(parsed.words))
+    return OPPOSITE[side] if whose else side
 
 
 def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:

@@ -14,7 +14,7 @@ _WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
 # Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
 SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     # the trunk
-    (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b", r" lean_over \1 "),
+    (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b(?! (?:arm|hand|leg|foot|knee|elbow|wrist|hip|shoulder))", r" lean_over \1 "),
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to (?:the|one|both|each) sides?|from side to side|sideways|left and right|side to side)\b", " lean_over "),
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:far |slightly |a bit )?back(?:wards?)?\b(?! (?:on|against|in|into|to|up))", " lean_over backwards "),
     (rf"\b(?:twist|rotat|swivel|turn)(?:e?s|ing) {_OWN}(?:upper body|torso|trunk|waist|hips)\b(?: (?:from )?(?:side to side|left and right|left to right)| to (?:both sides|the left and (?:the )?right))?",
@@ -78,7 +78,8 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:throws?|throwing|performs?|performing|does|doing|makes|making|lands?) (?:an? )?(?:quick |fast |hard |short )?(left|right)"
      r"(?: forwards?| straight| quick| hard)* (punch|jab|hook|uppercut)\b", r" punches with the \1 hand \2 "),
     (r"\b(left|right) kick\b", r" kick with the \1 leg "),
-    (r"\b(with|using) (?:his|her|its|the) (left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 the \2 hand"),
+    (r"\b((?:kick|step|hop|stomp|stamp|lunge)[a-z]*(?: (?!start|begin|lead)[a-z]+){0,3}?) (?:with|using|on) (?:(?:his|her|its|their|the) )?(left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 with the \2 leg"),
+    (r"(?<!ing )(?<!starts )(?<!begins )\b(with|using) (?:(?:his|her|its|their|the) )?(left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 the \2 hand"),
     # arms
     (rf"\bwith {_OWN}(left |right )?(?:arms?|hands?) (?:up )?in(?:to)? the air\b", r" while raising \1 hands "),
     (rf"\b{_HAVING}{_OWN}((?:left |right )?)(?:arms?|hands?) (?:is |are |being )*{_HELD} {_TO_SIDES}(?! and)(?: like wings)?",

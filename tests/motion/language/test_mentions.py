@@ -1,0 +1,53 @@
+"""Limbs, sides, ways and things of the sentence's plain words that no step has are named."""
+
+import pytest
+
+from mmweaver.motion.language.plan import APPROXIMATED, DONE
+from mmweaver.motion.language.sentence import parse
+
+
+@pytest.mark.parametrize(
+    ("sentence", "what"),
+    [
+        ("a person walks and sits down and stretches out both legs", "stretched out"),
+        ("a person jumps from side to side", "side to side"),
+        ("a person hops sideways on the right foot", "the side"),
+        ("a man kicks to the side with the left leg", "the side"),
+        ("someone claps behind the back", "behind the back"),
+        ("someone picks something up from a high shelf", "shelf"),
+        ("a person hops on the left foot, then on the right", "other hand or foot"),
+        ("the person moves their head in circles", "circles"),
+        ("a man sits down and bows", "standing, after getting up"),
+        ("a person opens a drawer", "drawer"),
+        ("a person walks five steps forward, knees slightly bend", "knees"),
+        ("someone bows with hands together", "hands together"),
+    ],
+)
+def test_what_the_patterns_lose_is_named(sentence: str, what: str) -> None:
+    records = [record for record in parse(sentence).clauses if what in record.how]
+    assert records
+    assert all(record.status == APPROXIMATED for record in records)
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "a person leans to the left, then to the right",
+        "a man is pushed from the left and stumbles to the right",
+        "someone raises both arms out to the sides",
+        "a person stands up to his feet and raises the right hand",
+        "a woman walks five steps, starting with the left foot",
+        "someone shakes the head from side to side",
+        "a person kicks with the left leg, then with the right leg",
+    ],
+)
+def test_nothing_is_named_where_it_is_shown(sentence: str) -> None:
+    assert {record.status for record in parse(sentence).clauses} == {DONE}
+
+
+def test_the_person_stays_seated_and_keeps_the_side():
+    steps = parse("a person sits down on a chair, stays for two seconds and waves").steps
+    assert {step.lower for step in steps} == {"sit_down", "sit"}
+    assert [step.direction for step in parse("a man leans to his right, then to his left").steps] == ["right", "left"]
+    assert parse("a person lifts the left arm, then waves with their right").steps[-1].hand == "right"
+    assert parse("a person bends the right arm and nods").steps[-1].upper == "nod"
