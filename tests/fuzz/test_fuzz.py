@@ -11,8 +11,8 @@ from tests.fuzz.corpus import corpus
 from tests.fuzz.harness import Reader, Report, fuzz, try_case
 from tests.fuzz.readers import make_readers
 
-CASES = 40
-FEW = {"mmw": 8}  # decoding takes long
+CASES = 24
+FEW = {"mmw": 6}  # decoding takes long
 
 
 @pytest.fixture(scope="module")

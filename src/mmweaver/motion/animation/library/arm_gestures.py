@@ -112,7 +112,8 @@ def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime
         ahead = np.sqrt(np.maximum(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2))
         ahead += _ACROSS * (np.hypot(out, 0.3) - out) / 2
         target = place(ahead, _MIDDLE[0] + size * out, _MIDDLE[1] + size * up, len(up))
-        hand_to(controls, context.body, side, target, on, elbow=(-0.2, 0.5, -1.0))
+        # an elbow that pointed down would jump where the arm of a circle points down, too
+        hand_to(controls, context.body, side, target, on, elbow=(-1.0, 0.0, -0.3))
     return controls
 
 
