@@ -1,14 +1,15 @@
-"""How many prompts of other text-to-motion projects are understood, and how many correctly? Two draws, read once.
+"""How many prompts of other text-to-motion projects are understood, and how many correctly? Three draws, read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
-The file has one prompt a line; it is not part of the project. First draw: 231 examples of MoMask's and MoSa's demos,
-the text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a
-generator and pairs of captions that differ in one word. Second: prompts and captions in public repositories of other
-text-to-motion projects, for models of HumanML3D and the like; none is in the first. Each prompt counts once, without
-those read to widen the grammar. Each draw was read once, after a commit had frozen the grammar; what was understood was
-judged by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
-results/unread_prompts/judgements*.json, named by the prompts' sha256.
+The file has one prompt a line; it is not part of the project. `first`: 231 examples of MoMask's and MoSa's demos, the
+text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a generator
+and pairs of captions that differ in one word. `second`: 111 prompts of the demos of T2M, MLD, MoLA, LADiff and SMooDi
+and of an evaluation of HY-Motion. `captions`: 145 captions of HumanML3D's validation split (two stretches of its
+labels in BABEL's form, from characters 40,000 and 800,000). Each prompt counts once, without those read to widen the
+grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the
+first, 0a28cc6 before the others); what was understood was judged by hand, once, as the sentences of KIT-ML are
+(`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
 import argparse
@@ -25,7 +26,7 @@ from studies.motion.kitml import Judgements, reading_of, share
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
-DRAWS = {"first": "", "second": "_second"}  # -> ending of the names of their files
+DRAWS = {"first": "", "second": "_second", "captions": "_captions"}  # -> ending of the names of their files
 
 
 def name_of(prompt: str) -> str:

@@ -2,6 +2,7 @@
 
 import pytest
 
+from mmweaver.core.errors import InputError
 from mmweaver.motion.language.plan import APPROXIMATED, DONE
 from mmweaver.motion.language.sentence import parse
 
@@ -21,6 +22,9 @@ from mmweaver.motion.language.sentence import parse
         ("a person opens a drawer", "drawer"),
         ("a person walks five steps forward, knees slightly bend", "knees"),
         ("someone bows with hands together", "hands together"),
+        ("a person raises the right hand to his face", "to his face"),
+        ("a person dances jazz, jumping", "one after the other"),
+        ("a woman wipes the table before returning to a neutral pose", "shown as standing"),
     ],
 )
 def test_what_the_patterns_lose_is_named(sentence: str, what: str) -> None:
@@ -45,9 +49,16 @@ def test_nothing_is_named_where_it_is_shown(sentence: str) -> None:
     assert {record.status for record in parse(sentence).clauses} == {DONE}
 
 
+@pytest.mark.parametrize("sentence", ["the left hand comes to the chest", "a man puts it to face"])
+def test_a_limb_that_goes_somewhere_is_no_walk_and_a_face_no_turn(sentence: str) -> None:
+    with pytest.raises(InputError):
+        parse(sentence)
+
+
 def test_the_person_stays_seated_and_keeps_the_side():
     steps = parse("a person sits down on a chair, stays for two seconds and waves").steps
     assert {step.lower for step in steps} == {"sit_down", "sit"}
     assert [step.direction for step in parse("a man leans to his right, then to his left").steps] == ["right", "left"]
     assert parse("a person lifts the left arm, then waves with their right").steps[-1].hand == "right"
+    assert [step.lower for step in parse("a person jogs at a moderate pace").steps] == ["jog"]
     assert parse("a person bends the right arm and nods").steps[-1].upper == "nod"

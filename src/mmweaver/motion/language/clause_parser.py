@@ -23,6 +23,7 @@ from mmweaver.motion.language.lexicon import (
     NUMBERS,
     OTHER_MOVEMENT,
     OWN,
+    PRONOUNS,
     RADAR,
     SEATS,
     SIZES,
@@ -162,6 +163,8 @@ def parse_clause(clause: Clause) -> ParsedClause:
             subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
             if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
                 raise InputError(not_known(clause.text, words[at - 1].text))
+    if _limb_goes(words, verbs[0]):
+        raise InputError(not_known(clause.text, words[verbs[0]].text))
     _note_unknown(words, clause, parsed, has_verb=True)
     parsed.form = _form(words, verbs[0])
     # Words before the first verb belong to it.
@@ -183,6 +186,13 @@ def parse_clause(clause: Clause) -> ParsedClause:
     if lengths and not kept:
         parsed.approximate(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
     return parsed
+
+
+def _limb_goes(words: list[Word], at: int) -> bool:
+    """Whether it is a hand or leg that goes or turns: 'the left hand comes to the chest'."""
+    subject = {word.text for word in words[:at]}
+    limb = subject & (ARMS | LEGS) and not subject & {"with", "person", "man", "woman", *PRONOUNS}
+    return bool(limb and (words[at].is_going or words[at].lemma in ("turn", "rotate", "circle", "jump")))
 
 
 def _put_at(parsed: ParsedClause, place: Place) -> None:
@@ -278,7 +288,10 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     """'drinks a drink', 'box' as a thing, 'the hand wave': a noun after another verb of the clause."""
     word, before = words[i], words[i - 1].text if i else ""
     if word.lemma == "face":
-        return bool(found) or before in OWN or before in ("the", "a")
+        put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
+        return bool(found) or put or before in OWN or before in ("the", "a")
+    if word.lemma == "pace" and {"at", "a"} <= {other.text for other in words[max(i - 4, 0) : i]}:
+        return True  # "at a moderate pace"
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
     if word.lemma == "box" and word.form == "base":

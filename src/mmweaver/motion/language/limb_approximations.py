@@ -10,6 +10,9 @@ _ON_BODY = (
 # Also where the sentence would be understood, but as something else.
 INSTEAD_OF_ANOTHER: tuple[tuple[str, str, str], ...] = (
     (r"\bturn(?:s|ing) (?:an?|the|his|her) (?:[a-z]+ )?(?:knob|dial|handle|key|valve|screw|crank|faucet|tap)\b", "reaches for something", "is shown as reaching out with a hand"),
+    (r"\bturn(?:s|ing) (?:it|them|something|an? (?:object|item|thing))\b(?: (?:over|around|upside down|upwards?))?", "stays", "how it is turned is not shown"),
+    (r"(?:,? (?:and|then|before))* ?(?:return(?:s|ing)?|goes back|going back|comes back) to (?:an? |the |his |her |their )?(?:neutral|standing|normal|upright|rest(?:ing)?|natural|relaxed) ?(?:pose|stance|posture|position)?\b",
+     ", then stands", "the pose at the end is shown as standing"),
     (rf"(?:,? (?:and|then))* ?bend(?:s|ing) (?:it|them)(?: at {_OWN}elbows?)?{_END}|\bbend(?:s|ing) {_OWN}(?:{_SIDE} )?(?:elbows?|arms?)\b", "", "how the arm is bent is not shown"),
     (rf"\b(?:lift|rais)(?:s|es|ing) {_OWN}(?:{_SIDE} )?heels?\b(?: (?:off|from|up)[a-z ]*?)?{_END}", "stands", "raised heels are not shown"),
     (r"\b(?:does|do|doing|performs?|performing) (?:an? |some |\w+ )?(?:sit[- ]?ups?|crunch(?:es)?)\b", "sit-ups", ""),
@@ -22,6 +25,12 @@ INSTEAD_OF_ANOTHER: tuple[tuple[str, str, str], ...] = (
 
 # Tried where a sentence is not understood.
 WHERE_UNKNOWN: tuple[tuple[str, str, str], ...] = (
+    (rf",? (?:with |and )?{_OWN}arms (?:are )?(?:swinging|swing)(?: (?:slightly|freely|gently|wildly|back and forth|at (?:his|her|their) sides?))*", "", "how the arms swing is not shown"),
+    (rf"\blooks?{_END}", "looks around", "is shown as looking around"),
+    (rf"\b(?:puts?|putting|extends?|extending|holds?|holding|sticks?) {_OWN}({_SIDE} )?(arms?|hands?)(?: and hands?)? (?:straight )?(?:out|forwards?)(?: in front(?: of (?:him|her|them|it)(?:self)?)?)?\b", r"puts the \1 \2 forward", "the arm is shown stretched forward"),
+    (rf"\b(?:kneels?|bends?|gets?|drops?|goes)(?: down)? (?:on|onto|to) {_OWN}(?:all[- ]fours?|hands and knees)\b", "kneels down", "hands and knees are shown as kneeling"),
+    (rf"\b(?:holds|is holding) (?:onto )?(?:something|an? (?!hand|arm)[a-z]+|the (?!hand|arm|left|right)[a-z]+)(?: up)?(?: (?:in|to|with|near) {_OWN}(?:{_SIDE} )?(?:hands?|face|head))?\b", "stays", "what is held is not shown"),
+    (r"\bkick(?:s|ing)? (?:an? |the )?(?:soccer |foot)?ball\b", "kicks a ball", "is shown as a kick"),
     (rf"\b(?:is |gets? |getting |goes |going |drops? |comes? )(?:down )?(?:on|onto|to) {_OWN}(?:hands and knees|knees and hands)\b", "kneels down", "hands and knees are shown as kneeling"),
     (rf"\b(fall(?:s|ing)?(?: forwards?| down)?|collapses) (?:on|onto|to) {_OWN}(?:hands and knees|hands|knees and hands|face|stomach)\b", r"\1", "how the fall ends is not shown"),
     (rf"(?:,? (?:and|then|before))* ?(?:lower|drop)(?:s|ing)? {_OWN}(?:{_SIDE} )?(?:hands?|arms?|them|it)\b(?: (?:back|down|again|to (?:the|his|her|their|its) sides?))*", " stays", "arms that go down are shown as hanging"),

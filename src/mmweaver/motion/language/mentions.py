@@ -88,6 +88,11 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
     ),
     (r"sideways|sidewards|to (?:the|one|his|her|their) sides?\b(?! of)|lateral(?:ly)?", goes_aside),
     (r"(?:in |small |big |large |wide )circles?|circular(?:ly)?", goes_round),
+    (
+        rf"(?:to|near|around|at|towards|in front of|over) {_WHOSE} (?:own )?"
+        r"(?:faces?|eyes?|mouth|head|chin|forehead|ears?|nose)\b",
+        _does("drink", "eat", "phone", "brush_teeth", "comb", "yawn", "cough", "raise_hold", "look_around", "nod"),
+    ),
     (r"(?:hands|palms) together", lambda step: step.upper in ("clap", "wipe")),
     (rf"behind {_WHOSE} (?:back|head|neck|body)", lambda step: False),
     (

@@ -312,11 +312,15 @@ def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False
                 steps.append(first)
                 parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
         else:
+            if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed):  # "dances, jumping"
+                parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
             if form == "ing" or _can_overlay(steps[-1], step):  # "sits drinking water"
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"
+                if form == "past":  # "walks with the legs raised"
+                    parsed.lost.append(f"{steps[-1].name} and {step.name} are shown one after the other")
                 steps.append(step)
     return steps
 
@@ -375,6 +379,13 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
             return one.lower == "sit" or before.form == parsed.form
         return compatible and before.form == parsed.form == "ing"
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
+
+
+def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
+    """Whether a participle after a comma names what is done during the movement before, on the spot."""
+    step = parsed.steps[0]
+    on_the_spot = bool(step.upper) or not (step.moves or step.lower in ("turn", "stand", "stumble", "fall"))
+    return parsed.link == "comma" and parsed.form == "ing" and before.form != "ing" and on_the_spot
 
 
 def _can_overlay(one: Step, other: Step) -> bool:

@@ -10,6 +10,7 @@ from mmweaver.motion.language.words import Word
 
 LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
+THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 AIMED = ("point", "look_around")
@@ -26,6 +27,8 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
     if word.lemma in ("jog", "trot"):
         step = replace(step, style="jog")
+    if step.upper == "raise" and _lifts_a_thing(words[at + 1 : at + 4]):
+        raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     step = _times_of_a_walk(_arms_step(step, texts), texts)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
@@ -41,6 +44,12 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     else:
         step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
+
+
+def _lifts_a_thing(following: list[Word]) -> bool:
+    """Whether the words after "lifts" name a thing before any limb."""
+    kinds = [word.text in THINGS_LIFTED for word in following if word.text in THINGS_LIFTED | ARMS | LEGS]
+    return bool(kinds) and kinds[0]
 
 
 def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
