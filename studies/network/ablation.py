@@ -1,7 +1,7 @@
 """What each part of the network, of its loss and of its training contributes, in rooms of the validation kind.
 
     python -m studies run ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
-    python -m studies run ablation --data OTHER --runs RUNS --called ablation_power --only whole "hypernetwork and INR"
+    python -m studies run ablation --data OTHER --runs RUNS --called ablation_power --power FILE --most 8
 
 Every variant (`ablation_variants`) is trained for the same short time, from the same seed, in the same rooms, and
 continues where it was stopped; each writes a file of its own. Test splits are not used: this table is for choosing.
@@ -9,13 +9,14 @@ continues where it was stopped; each writes a file of its own. Test splits are n
 Scores are those of signals with random phases, as in `learned_scores`, and differences of expected power maps, which do
 not depend on phases, of everything and of the person alone: ghosts lie 15 to 20 dB below the person and below most
 rooms, and show only there. `physics_in_photographed_room` and `realization` are given for comparison. With `--called`
-some rows are measured anew in another data set, next to a *whole* of their own.
+rows are measured anew in another data set, next to a *whole* of their own. With `--power` nothing is trained: weights
+of recipe `paper_power` and those of `weaver` that are included are scored, also with photos and motions of others.
 """
 
 import argparse
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,7 @@ from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.models.weights import load_network, shipped_weights
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
@@ -40,9 +42,9 @@ from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, 
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
-from studies.network.ablation_variants import VARIANTS, AblationVariant
+from studies.network.ablation_variants import HYPERNETWORK, VARIANTS, WHOLE, AblationVariant
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
-from studies.network.room_cache import RoomCache
+from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -213,26 +215,34 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--rooms", type=int, default=48, help="to train in")
     parser.add_argument("--most", type=int, default=16, help="rooms to be evaluated in")
-    parser.add_argument("--only", nargs="*", default=[*VARIANTS, *REFERENCES], help="rows")
+    parser.add_argument("--only", nargs="*", help="rows (default: all; with --power those of its networks)")
+    parser.add_argument("--power", type=Path, action=Reads, help="weights of recipe paper_power: train nothing")
     parser.add_argument("--called", metavar="NAME", default="ablation", help="folder of the results")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    unknown = [name for name in options.only if name not in VARIANTS and name not in REFERENCES]
+    trained_before = {} if options.power is None else {WHOLE: shipped_weights(), HYPERNETWORK: options.power}
+    known = [name for name, variant in VARIANTS.items() if not trained_before or trained_as(variant) in trained_before]
+    chosen = options.only or [*known, *REFERENCES]
+    unknown = [name for name in chosen if name not in known and name not in REFERENCES]
     if unknown:
-        raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*VARIANTS, *REFERENCES])}")
+        raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*known, *REFERENCES])}")
     torch.set_num_threads(1)
     recipe = TrainingRecipe(
         steps=options.steps, warm_up_steps=options.steps // 10, validate_every=max(options.steps // 3, 1)
     )
     material = AblationMaterial.of(options.data, options.rooms, options.most)
-    about = {"data_plan": read_plan(options.data), "recipe": asdict(recipe), "train_rooms": len(material.train)}
+    about: dict[str, Any] = {"data_plan": read_plan(options.data)}
+    if trained_before:
+        about["weights"] = {name: digest(file) for name, file in trained_before.items()}
+    else:
+        about |= {"recipe": asdict(recipe), "train_rooms": len(material.train)}
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in material.cases]
-    for name in options.only:
-        cache = RoomCache(options.runs / "scores", {**about, "row": name, "plan": plan_text(options.data)})
-        recogniser = _evaluator(name, material, options.runs, recipe)
+    for name in chosen:
+        done = RoomCache(options.runs / "scores", {**about, "row": name, "plan": plan_text(options.data)})
+        evaluate = _evaluator(name, material, options.runs, recipe, trained_before)
         each = [
-            cache.figures(f"{case.room.folder.name}_{case.index}", partial(recogniser, case)) for case in material.cases
+            done.figures(f"{case.room.folder.name}_{case.index}", partial(evaluate, case)) for case in material.cases
         ]
         row = row_of(name, each, rooms)
         rows = complete_rows([row], dataset=dataset_of(options.data), seeds=[0], unknown=UNKNOWN)
@@ -241,20 +251,30 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         print(f"{name:32}", *figures, flush=True)
 
 
+def trained_as(variant: AblationVariant) -> str:
+    """The variant whose training another shares."""
+    return next(name for name, known in VARIANTS.items() if known == variant.trained_as)
+
+
 def _evaluator(
-    name: str, material: AblationMaterial, runs: Path, recipe: TrainingRecipe
+    name: str, material: AblationMaterial, runs: Path, recipe: TrainingRecipe, trained_before: dict[str, Path]
 ) -> Callable[[Case], dict[str, float]]:
-    """A function that scores one case; a variant is trained when the first case is scored."""
+    """A function that scores one case; a variant is trained, or its weights are read, when the first case is scored."""
     if name in REFERENCES:
         return partial(sampled_scores, REFERENCES[name])
-    variant, made = VARIANTS[name], []
+    variant = VARIANTS[name]
 
-    def recogniser(case: Case) -> dict[str, float]:
-        if not made:
-            shared = next(other for other, known in VARIANTS.items() if known == variant.trained_as)
-            made.append(trained(variant, material, runs / slug(shared), recipe))
+    @cache
+    def learner() -> NetworkLearner:
+        shared = trained_as(variant)
+        if shared not in trained_before:
+            return trained(variant, material, runs / slug(shared), recipe)
+        network, _ = load_network(trained_before[shared])
+        return NetworkLearner(network, material.cases[0].room.config)
+
+    def evaluate(case: Case) -> dict[str, float]:
         if variant.motion == "other":
             case = OtherMotion(case.room, case.index, case.other, case.seed_of_plan, case.lighting)
-        return scores(made[0], lambda one: photo_of(one, variant, material.generic), case)
+        return scores(learner(), lambda one: photo_of(one, variant, material.generic), case)
 
-    return recogniser
+    return evaluate

@@ -33,7 +33,7 @@ class AblationVariant:
         return replace(self, photo="own", motion="own")
 
 
-WHOLE = "whole"
+WHOLE, HYPERNETWORK = "whole", "hypernetwork and INR"
 POWER = (("frames", 3), ("learning_rate", 1.5e-3))  # as the weights of `paper_power` were trained
 VARIANTS = {
     WHOLE: AblationVariant(),
@@ -43,9 +43,10 @@ VARIANTS = {
     "shuffled photo": AblationVariant(photo="shuffled"),
     "another motion": AblationVariant(motion="other"),
     # what the paper has in place of echoes on joints and surfaces
-    "hypernetwork and INR": AblationVariant(power="anchored", recipe=POWER),
-    "hypernetwork and INR, generic photo": AblationVariant(power="anchored", recipe=POWER, photo="generic"),
-    "hypernetwork and INR, the radar's coordinates alone": AblationVariant(power="radar", recipe=POWER),
+    HYPERNETWORK: AblationVariant(power="anchored", recipe=POWER),
+    f"{HYPERNETWORK}, generic photo": AblationVariant(power="anchored", recipe=POWER, photo="generic"),
+    f"{HYPERNETWORK}, another motion": AblationVariant(power="anchored", recipe=POWER, motion="other"),
+    f"{HYPERNETWORK}, the radar's coordinates alone": AblationVariant(power="radar", recipe=POWER),
     # anchors and what physics says
     "no ghosts": AblationVariant(without=("ghosts", "correction")),
     "no echoes between joints": AblationVariant(without=("between joints", "correction")),
