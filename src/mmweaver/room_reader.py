@@ -17,7 +17,7 @@ from mmweaver.scene.photo_files import RoomFiles
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
-from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
 from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
 from mmweaver.scene.whole_room.view_file import read_views
@@ -70,7 +70,7 @@ class RoomReader:
     ) -> Room:  # fmt: skip
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
-        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a RealSense's .bag.
+        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a ROS bag.
 
         `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `further`: numbers of
         further photos of a scan that show more of the room, or "auto". `seen`: `classes`, `segmenter` and `sam` as in
@@ -81,6 +81,8 @@ class RoomReader:
                              "ScanNet, TUM RGB-D")  # fmt: skip
         stages = Stages(self._listener)
         with stages("read the photo"):
+            if not is_bag(Path(capture)):
+                refuse_unread(Path(capture))
             if is_bag(Path(capture)) and rgb is None:
                 found = read_bag_photo(Path(capture), photo)
             elif scan_kind(Path(capture)) is not None and rgb is None:
@@ -116,7 +118,7 @@ class RoomReader:
 
     def open_room(self, path: str | Path) -> Room:
         """The room of whatever lies there: a folder with rgb.png and depth.png (and camera.json), views.json or a
-        folder with it, a scan or a capture folder (its first photo), a RealSense .bag, or a mesh.
+        folder with it, a scan or a capture folder (its first photo), a ROS bag (RealSense), or a mesh.
 
         Raises InputError for anything else.
         """
@@ -129,6 +131,7 @@ class RoomReader:
         is_capture = any(place.glob(f"*/{DEPTH}")) or (place / DEPTH).is_file()
         if is_bag(place) or is_capture or scan_kind(place) is not None:
             return self.read_capture(place)
+        refuse_unread(place)
         files = RoomFiles.in_folder(place)
         return self.read_room(files.rgb, files.depth, files.camera)
 

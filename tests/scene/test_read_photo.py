@@ -118,11 +118,27 @@ def test_exif_turns_the_picture(files: Files):
     photo, assumptions = files.read()
     assert photo.rgb.shape == (72, 96, 3)
     assert "EXIF" in assumptions[0]
-    Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
-    assert "EXIF" in files.error()
     exif[0x0112] = 99  # no direction
     Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
     assert not any("EXIF" in sentence for sentence in files.read()[1])
+
+
+@pytest.mark.parametrize("orientation", [5, 6, 7, 8])
+@pytest.mark.parametrize("kind", [".jpg", ".heic"])
+def test_depth_that_lies_as_the_colours_did_is_turned_with_them(files: Files, orientation: int, kind: str):
+    if kind == ".heic":
+        pytest.importorskip("pillow_heif").register_heif_opener()
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    files.rgb = files.rgb.with_suffix(kind)
+    stored = np.full((72, 96), 60, np.uint8)
+    stored[:24, :32] = 250  # in one corner
+    Image.fromarray(stored).convert("RGB").save(files.rgb, exif=exif.tobytes(), quality=95)
+    Image.fromarray(stored.astype(np.uint16) * 20).save(files.depth)
+    photo, assumptions = files.read()
+    assert photo.rgb.shape[:2] == photo.depth_m.shape == (96, 72)
+    np.testing.assert_array_equal(photo.depth_m > 3, photo.rgb[..., 1] > 150)
+    assert "turned with it" in " ".join(assumptions)
 
 
 @pytest.mark.parametrize(

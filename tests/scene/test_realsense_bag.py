@@ -117,3 +117,26 @@ def test_others_are_refused_in_one_line(tmp_path: Path):
         "depth": "/camera/other/image_raw", "depth_camera": "/camera/other/camera_info"})  # fmt: skip
     with pytest.raises(InputError, match="no topics of depth and colour"):
         read_bag_photo(tmp_path / "colours.bag")
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_ros_2_is_the_same(storage: str, tmp_path: Path):
+    from rosbags.convert import convert
+    from rosbags.rosbag2 import StoragePlugin
+    from rosbags.typesys import Stores, get_typestore
+
+    write_bag(tmp_path / "room.bag", DRIVER)
+    types = {"default_typestore": get_typestore(Stores.ROS1_NOETIC), "typestore": get_typestore(Stores.ROS2_HUMBLE)}
+    nothing = dict.fromkeys(("exclude_topics", "include_topics", "exclude_msgtypes", "include_msgtypes"), ())
+    convert([tmp_path / "room.bag"], tmp_path / "room", dst_storage=StoragePlugin[storage.upper()], dst_version=9,
+            compress=None, compress_mode="file", **types, **nothing)  # fmt: skip
+    first = read_bag_photo(tmp_path / "room.bag", 1).photo
+    for place in (tmp_path / "room", next((tmp_path / "room").glob("*.[dm]*"))):
+        assert is_bag(place)
+        again = read_bag_photo(place, 1).photo
+        assert again.intrinsics == first.intrinsics
+        np.testing.assert_array_equal(again.rgb, first.rgb)
+        np.testing.assert_array_equal(again.depth_m, first.depth_m)
+    (tmp_path / "other.db3").write_bytes(b"no bag" * 100)
+    with pytest.raises(InputError, match=r"other\.db3"):
+        read_bag_photo(tmp_path / "other.db3")

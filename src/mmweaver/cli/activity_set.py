@@ -36,7 +36,7 @@ def add_activity_options(group: Options) -> None:
     group.add_argument(
         "--room", type=Path, action="append", metavar="DIR",
         help="a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders), views.json, a scan,"
-        " a capture folder, a RealSense .bag or a mesh; once more for each further room",
+        " a capture folder, a ROS bag or a mesh; once more for each further room",
     )  # fmt: skip
     group.add_argument("--rgb", type=Path, metavar="PNG", help="instead of --room: colour picture of the room")
     group.add_argument("--depth", type=Path, metavar="FILE", help="its depth")

@@ -99,7 +99,7 @@ def _add_input_options(room: Options) -> None:
         "--capture", type=Path, metavar="DIR|BAG",
         help=Rare(
             "instead of --rgb: a folder with photos and depth: mmwave-capture-std (a RealSense), Stray Scanner,"
-            " Record3D, Polycam (raw data), ScanNet or TUM RGB-D; or a RealSense's .bag"
+            " Record3D, Polycam (raw data), ScanNet or TUM RGB-D; or a ROS bag (RealSense)"
         ),
     )  # fmt: skip
     room.add_argument(

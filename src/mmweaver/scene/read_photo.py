@@ -7,6 +7,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
+from mmweaver.core.safe_files.safe_pictures import turned_upright
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.geometry.pinhole import resized
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, lens_intrinsics, read_camera_file
@@ -58,10 +59,12 @@ def read_photo(
     if depth is not None:
         depth = _existing(depth, "--depth")
         depth_m, depth_turned = read_depth(depth, numbers.get("depth_unit_m"))
-        _check_same_view(rgb, depth, rgb_size, depth_m, turned)
+        if depth_lies := _lies_as_stored(rgb_size, depth_m, turned, depth_turned):
+            depth_m = turned_upright(depth_m, turned.orientation)
+        _check_same_view(rgb, depth, rgb_size, depth_m)
         _check_turned(rgb, depth, turned, depth_turned)
     else:
-        depth_m = None
+        depth_m, depth_lies = None, False
     estimated = None
     if depth_model is not None:
         estimated = estimate_depth(pixels, depth_model, measured_m=depth_m)
@@ -87,7 +90,7 @@ def read_photo(
     )
     photo = RgbdPhoto(rgb=pixels, depth_m=depth_m, intrinsics=intrinsics)
     photo = replace(photo, classes=classes_of(photo, classes=classes, segmenter=segmenter, sam=sam))
-    assumptions = _assumptions(lens_note=lens_note, rotated=turned.orientation != 1 and depth is not None)
+    assumptions = _assumptions(lens_note, turned if depth is not None else None, depth_lies=depth_lies)
     return photo, (*assumptions, *fill_notes, *size_notes, *notes)
 
 
@@ -107,18 +110,24 @@ def classes_of(
     return None if segmenter is None else segment(photo.rgb, segmenter, sam)
 
 
-def _check_same_view(rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m: DepthPixels, turned: Turned) -> None:
+def _has_aspect(size: tuple[int, int], depth_m: DepthPixels) -> bool:
     height, width = depth_m.shape
+    return abs(size[0] / size[1] / (width / height) - 1) <= SAME_ASPECT
 
-    def has_aspect(size: tuple[int, int]) -> bool:
-        return abs(size[0] / size[1] / (width / height) - 1) <= SAME_ASPECT
 
-    if has_aspect(rgb_size):
-        return
-    hint = "depth must be aligned to the colour picture: the same view with the same aspect ratio"
-    if turned.orientation != 1 and has_aspect(turned.stored_size):
-        hint = "the EXIF tag rotates the colour picture but not the depth; rotate both upright and save them so"
-    raise InputError(f"{rgb} has {rgb_size[0]} x {rgb_size[1]} pixels but {depth} {width} x {height}; {hint}")
+def _lies_as_stored(rgb_size: tuple[int, int], depth_m: DepthPixels, colours: Turned, depths: Turned) -> bool:
+    """Whether the depth lies on its side as the colours did in their file: its shape shows it, and it has no tag."""
+    is_quarter = colours.orientation >= 5 and depths.orientation == 1
+    return is_quarter and not _has_aspect(rgb_size, depth_m) and _has_aspect(colours.stored_size, depth_m)
+
+
+def _check_same_view(rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m: DepthPixels) -> None:
+    if not _has_aspect(rgb_size, depth_m):
+        height, width = depth_m.shape
+        raise InputError(
+            f"{rgb} has {rgb_size[0]} x {rgb_size[1]} pixels but {depth} {width} x {height};"
+            " depth must be aligned to the colour picture: the same view with the same aspect ratio"
+        )
 
 
 def _check_turned(rgb: Path, depth: Path, colours: Turned, depths: Turned) -> None:
@@ -172,10 +181,12 @@ def _without_camera_file(
     return camera, f"No camera file: {said}{'' if said.endswith('(') else ' '}{pixels}"
 
 
-def _assumptions(*, lens_note: str | None, rotated: bool) -> tuple[str, ...]:
+def _assumptions(lens_note: str | None, turned: Turned | None, *, depth_lies: bool) -> tuple[str, ...]:
+    """`turned`: how the colours of a photo with a depth file lay."""
     notes = [] if lens_note is None else [lens_note]
-    if rotated:
-        notes.append("The colour picture was rotated upright by its EXIF tag; the depth was assumed to be upright.")
+    if turned is not None and turned.orientation != 1:
+        said = "was turned with it" if depth_lies else "was taken as upright"
+        notes.append(f"The colour picture was rotated upright by its EXIF tag; the depth {said}.")
     return tuple(notes)
 
 

@@ -1,9 +1,12 @@
-"""One photo with depth of a ROS 1 bag: a RealSense's own recording (.bag of its viewer), or topics of its ROS driver.
+"""One photo with depth of a ROS bag: a RealSense's own recording (.bag of its viewer), or topics of its ROS driver.
+
+ROS 1 (.bag) or ROS 2: a .db3 or .mcap, or the folder that `ros2 bag record` writes.
 
 Needs rosbags (extra 'capture'). Depth that is aligned with the colours is taken as it is; else the photo is the depth
 camera's, coloured by reprojection, as that of a capture folder. Facts of the format: librealsense's ROS bag layout.
 """
 
+from collections.abc import Callable
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -23,12 +26,14 @@ UNIT_TOPIC = "Depth_Units/value"  # of librealsense: metres of one count
 DEFAULT_UNIT_M = 0.001
 DEPTHS, COLOURS = ("16uc1", "mono16", "z16"), {"rgb8": 1, "bgr8": -1}  # encodings; the order of the channels
 APART_S = 0.1
-BROKEN = "no ROS 1 bag that can be read ({reason}); record it again"
+BROKEN = "no ROS bag that can be read ({reason}); record it again"
+ROS1, ROS2 = (".bag",), (".db3", ".mcap")
+ROS2_FOLDER = "metadata.yaml"  # what a folder of `ros2 bag record` holds
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a path names a ROS 1 bag."""
-    return path.suffix.lower() == ".bag" and path.is_file()
+    """Whether a path names a ROS bag."""
+    return (path.suffix.lower() in (*ROS1, *ROS2) and path.is_file()) or (path / ROS2_FOLDER).is_file()
 
 
 def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
@@ -36,21 +41,17 @@ def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
 
     Raises InputError where rosbags is not installed, the file is no bag, or it holds no such photo with its cameras.
     """
-    try:
-        from rosbags.rosbag1 import Reader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise InputError(f"{path} needs the package rosbags; pip install 'mmweaver[capture]'") from None
-    check_regular(path)
-    types = get_typestore(Stores.ROS1_NOETIC)
-    with foreign_errors(path, BROKEN), Reader(path) as bag:
+    opened, read = _reader(path)
+    for file in sorted(path.iterdir()) if path.is_dir() else (path,):
+        check_regular(file)
+    with foreign_errors(path, BROKEN), opened(path) as bag:
         topics = _topics(bag)
         aligned = [topic for topic in topics["depth"] if "aligned" in topic]
         depth_topic, colour_topic = (aligned or topics["depth"])[0], topics["colour"][0]
-        depth, time_ns = _message(bag, types, depth_topic, index)
-        colours, apart_ns = _nearest(bag, types, colour_topic, time_ns)
-        intrinsics, colour_intrinsics = (_camera(bag, types, topic, path) for topic in (depth_topic, colour_topic))
-        unit_m = _unit_m(bag, types)
+        depth, time_ns = _message(bag, read, depth_topic, index)
+        colours, apart_ns = _nearest(bag, read, colour_topic, time_ns)
+        intrinsics, colour_intrinsics = (_camera(bag, read, topic, path) for topic in (depth_topic, colour_topic))
+        unit_m = _unit_m(bag, read)
     if apart_ns > APART_S * 1e9:
         raise InputError(f"{path}: no colour picture within {APART_S:g} s of depth {index}; choose another photo")
     counts, rgb = _depth_counts(depth, path), _pixels(colours, path)
@@ -74,6 +75,18 @@ def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
     return CapturedPhoto(photo=photo, folder=path.parent, files={"bag": path}, assumptions=assumed)
 
 
+def _reader(path: Path) -> tuple[Any, Callable[..., Any]]:
+    """What opens a bag, and what reads its messages. Raises InputError where rosbags is not installed."""
+    try:
+        from rosbags import rosbag1, rosbag2
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError:
+        raise InputError(f"{path} needs the package rosbags; pip install 'mmweaver[capture]'") from None
+    if path.suffix.lower() in ROS1:
+        return rosbag1.Reader, get_typestore(Stores.ROS1_NOETIC).deserialize_ros1
+    return rosbag2.Reader, get_typestore(Stores.LATEST).deserialize_cdr
+
+
 def _topics(bag: Any) -> dict[str, list[str]]:
     """Topics of pictures by what they hold. Raises InputError where one kind is missing."""
     names = sorted({one.topic for one in bag.connections if one.msgtype == IMAGE})
@@ -88,16 +101,16 @@ def _of_topic(bag: Any, topic: str) -> list[Any]:
     return [one for one in bag.connections if one.topic == topic]
 
 
-def _message(bag: Any, types: Any, topic: str, index: int) -> tuple[Any, int]:
+def _message(bag: Any, read: Callable[..., Any], topic: str, index: int) -> tuple[Any, int]:
     """Message `index` of a topic, and its time in nanoseconds."""
     count = 0
     for count, (connection, time_ns, raw) in enumerate(bag.messages(_of_topic(bag, topic))):
         if count == index:
-            return types.deserialize_ros1(raw, connection.msgtype), time_ns
+            return read(raw, connection.msgtype), time_ns
     raise InputError(f"{bag.path} holds {count + 1} depth pictures; there is no photo {index}")
 
 
-def _nearest(bag: Any, types: Any, topic: str, time_ns: int) -> tuple[Any, int]:
+def _nearest(bag: Any, read: Callable[..., Any], topic: str, time_ns: int) -> tuple[Any, int]:
     """The message of a topic nearest to a time, and how far it is, in nanoseconds."""
     best: tuple[int, Any, Any] | None = None
     for connection, own_ns, raw in bag.messages(_of_topic(bag, topic)):
@@ -108,10 +121,10 @@ def _nearest(bag: Any, types: Any, topic: str, time_ns: int) -> tuple[Any, int]:
             break
     if best is None:
         raise InputError(f"{bag.path} holds no pictures in {topic}")
-    return types.deserialize_ros1(best[2], best[1].msgtype), best[0]
+    return read(best[2], best[1].msgtype), best[0]
 
 
-def _camera(bag: Any, types: Any, topic: str, path: Path) -> CameraIntrinsics:
+def _camera(bag: Any, read: Callable[..., Any], topic: str, path: Path) -> CameraIntrinsics:
     """The camera of a topic of pictures: the camera_info whose name begins most alike."""
     found = [one for one in bag.connections if one.msgtype == CAMERA]
     if not found:
@@ -120,8 +133,8 @@ def _camera(bag: Any, types: Any, topic: str, path: Path) -> CameraIntrinsics:
     raw = next((raw for _, _, raw in bag.messages([own])), None)
     if raw is None:
         raise InputError(f"{path} holds no message of {own.topic}")
-    said = types.deserialize_ros1(raw, own.msgtype)
-    fx, fy, cx, cy = (float(said.K[at]) for at in (0, 4, 2, 5))
+    said = read(raw, own.msgtype)
+    fx, fy, cx, cy = (float((said.K if hasattr(said, "K") else said.k)[at]) for at in (0, 4, 2, 5))
     width, height = int(said.width), int(said.height)
     if not (32 <= width <= 8000 and 32 <= height <= 8000 and 1 < fx < 1e6 and 1 < fy < 1e6 and max(cx, cy) < 1e5):
         raise InputError(f"{path}: no camera has {width} x {height} pixels with fx {fx:g}, fy {fy:g}")
@@ -134,12 +147,12 @@ def _shared_parts(one: str, other: str) -> int:
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
-def _unit_m(bag: Any, types: Any) -> float:
+def _unit_m(bag: Any, read: Callable[..., Any]) -> float:
     """Metres of one count of depth."""
     for one in bag.connections:
         if one.topic.endswith(UNIT_TOPIC):
             for _, _, raw in bag.messages([one]):
-                value = float(types.deserialize_ros1(raw, one.msgtype).data)
+                value = float(read(raw, one.msgtype).data)
                 return value if 1e-6 < value < 0.1 else DEFAULT_UNIT_M
     return DEFAULT_UNIT_M
 

@@ -69,6 +69,19 @@ def scan_kind(folder: Path) -> str | None:
     return None
 
 
+def refuse_unread(place: Path) -> None:
+    """Raises InputError, with the way on, for what apps write that is not read as it is."""
+    name = place.name
+    if place.suffix.lower() == ".r3d":
+        raise InputError(f"{place} is Record3D's archive; unpack it (unzip {name} -d scan) and give the folder")
+    if place.is_dir() and any(place.glob("**/depth/*.exr")):
+        raise InputError(
+            f"{place} is Record3D's export as EXR and pictures, and OpenEXR is not read; export the .r3d and unpack it"
+        )
+    if place.is_file() and place.suffix.lower() != ".json":
+        raise InputError(f"{place} is no recording of a room that is read; give the folder of a scan or a ROS bag")
+
+
 def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str = ()) -> CapturedPhoto:
     """Photo `index` of a scan, in the order of its frames, and further ones that show more of the room.
 

@@ -69,12 +69,26 @@ def open_picture(path: Path) -> Picture:
                 image.load()
         else:
             image.load()
-            orientation = image.getexif().get(ORIENTATION, 1)  # a HEIC is upright already, and its tag says so
+            orientation = image.getexif().get(ORIENTATION, 1)
             if orientation in range(2, 9):
                 image = image.transpose(Image.Transpose(_TURN[orientation]))
+            elif image.format == "HEIF":  # it was turned as it was decoded, and its tag was set to say so
+                orientation = image.info.get("original_orientation") or 1
+                size = size[::-1] if orientation in range(5, 9) else size
         focal_35mm = _focal_35mm(image.getexif())
     orientation = orientation if orientation in range(2, 9) else 1
     return Picture(image=image, stored_size=size, orientation=orientation, focal_35mm=focal_35mm)
+
+
+def turned_upright(stored: np.ndarray, orientation: int) -> np.ndarray:
+    """Pixels (row, column) that lay in their file as EXIF's `orientation` (1 to 8) says, upright.
+
+    >>> turned_upright(np.array([[1, 2, 3]]), 6).tolist()
+    [[1], [2], [3]]
+    """
+    quarters = {3: 2, 4: 2, 5: -1, 6: -1, 7: 1, 8: 1}.get(orientation, 0)  # counterclockwise
+    upright = np.rot90(stored, quarters)
+    return upright[:, ::-1] if orientation in (2, 4, 5, 7) else upright
 
 
 def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
