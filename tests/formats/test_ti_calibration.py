@@ -9,7 +9,8 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.formats.dca1000 import bytes_of_frame, write_bin
+from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.paths.exact import exact_frame
 from mmweaver.recordings.read_recording import read_recording
@@ -60,6 +61,26 @@ def test_a_recorded_point_is_where_it_is_and_a_plane_wave(tmp_path: Path):
     error = np.linalg.norm(mended.adc.samples - ideal.samples) / np.linalg.norm(ideal.samples)
     assert error < 2e-3  # whole counts
     assert mended.calibration is not None
+
+
+def test_an_aop_whose_line_turns_receivers_is_turned_once(tmp_path: Path):
+    """TI's visualizer writes 1 0 -1 0 for the AOP; people tracking writes ones, and antPhaseRot."""
+    places = "antGeometry0 -1 -1 0 0 -3 -3 -2 -2 -1 -1 0 0\nantGeometry1 -1 0 -1 0 -3 -2 -3 -2 -3 -2 -3 -2\n"
+    tracking = f"{places}antPhaseRot 1 -1 1 -1 1 -1 1 -1 1 -1 1 -1\nsensorStart"
+    turns = np.tile([1, -1], 6)
+    for pairs, more in (
+        (turns, "% Platform:xWR68xx_AOP"),
+        (np.ones(12), "% Platform:xWR68xx_AOP"),
+        (np.ones(12), tracking),
+    ):
+        path = cfg_with(tmp_path, pairs, 0.0)
+        path.write_text(f"{more.splitlines()[0]}\n" + path.read_text().replace("sensorStart", more))
+        config = load_radar(str(path))
+        assert config.rx_inverted == (1, 3)
+        words = np.full(bytes_of_frame(config) // 2, 100, "<i2")  # the converter's counts
+        words.tofile(tmp_path / "adc_data.bin")
+        samples = read_recording(tmp_path / "adc_data.bin", path).adc.samples
+        assert np.array_equal(samples[0, 0, 0, :, 0].real, [100, -100, 100, -100])
 
 
 def test_nothing_to_compensate(tmp_path: Path):

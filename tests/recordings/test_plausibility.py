@@ -142,3 +142,10 @@ def test_loops_in_reverse_order():
     adc = room(RADAR)
     backwards = replace(adc, samples=np.ascontiguousarray(adc.samples[:, ::-1]))
     assert any("reverse order" in text for text in implausible(backwards, radar_cube(backwards)))
+
+
+def test_what_is_too_fast_for_the_radar_is_no_reverse_order():
+    slow = replace(RADAR, idle_time_s=5e-4)
+    assert slow.max_velocity_mps < 0.9  # of the point that comes nearer: it is seen as going away
+    adc = room(slow)
+    assert implausible(adc, radar_cube(adc)) == []

@@ -1,7 +1,9 @@
 """compRangeBiasAndRxChanPhase of a TI .cfg: range bias in m, then real and imaginary part of each antenna pair.
 
 Pairs are those of the board, transmitter by transmitter; a recorded sample is multiplied by its pair's factor and the
-bias subtracted from its range. Reference: mmWave SDK User Guide, "compRangeBiasAndRxChanPhase".
+bias subtracted from its range. Where receivers are fed from the other side the factors undo that, too (TI's visualizer
+writes 1 0 -1 0 for the AOP), unless an antPhaseRot does. Reference: mmWave SDK User Guide,
+"compRangeBiasAndRxChanPhase".
 """
 
 from pathlib import Path
@@ -13,7 +15,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.formats.radar_options import split_radar
 from mmweaver.formats.ti_cfg import fired_transmitters, ti_cfg_lines, whole
 
-COMMAND = "compRangeBiasAndRxChanPhase"
+COMMAND, TURNS = "compRangeBiasAndRxChanPhase", "antPhaseRot"
 NUM_RX = 4
 
 
@@ -26,7 +28,7 @@ def read_ti_calibration(name_or_path: str) -> ChannelCalibration | None:
     path = Path(name)
     if path.suffix.lower() != ".cfg" or not path.is_file():
         return None
-    lines = ti_cfg_lines(path, {COMMAND: 3})
+    lines = ti_cfg_lines(path, {COMMAND: 3, TURNS: 1})
     if COMMAND not in lines:
         return None
     line = lines[COMMAND][-1]
@@ -44,4 +46,6 @@ def read_ti_calibration(name_or_path: str) -> ChannelCalibration | None:
         raise InputError(f"{path}, line {line.number}: {COMMAND} has a factor of zero; leave the line out")
     if bias_m == 0 and np.allclose(factors, 1):
         return None
-    return ChannelCalibration(factors=factors, range_bias_m=bias_m)
+    return ChannelCalibration(
+        factors=factors, range_bias_m=bias_m, turns_receivers=not (np.allclose(factors, 1) or TURNS in lines)
+    )

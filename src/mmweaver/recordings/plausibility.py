@@ -35,6 +35,7 @@ SAME_LIKENESS = 0.05
 USUAL_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
 OTHER_PERIOD = 0.15  # of the time between frames
 FEWEST_MOVING_FRAMES = 6
+UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen with the other sign
 
 
 def implausible(
@@ -69,7 +70,7 @@ def _number_type(path: Path | None) -> Iterator[str]:
         with np.errstate(all="ignore"):
             size = np.abs(values[values != 0])
             is_sane = np.isfinite(size) & (size > 1e-9) & (size < 1e9)
-        if len(size) > 0.5 * len(values) and is_sane.mean() > 0.999:
+        if len(size) >= 0.5 * len(values) and is_sane.mean() > 0.999:
             yield (
                 f"the file seems to hold numbers of type {name}, but was read as int16; load it with numpy, save it as"
                 " .npy and give --axes"
@@ -96,7 +97,7 @@ def _lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
     if iq_order is None or config.num_rx != LANES or not config.complex_samples:
         return
     two = replace(adc, samples=adc.samples[:2])
-    words, _ = words_of(two, iq_order=iq_order, counts_per_unit=1.0)
+    words, _ = words_of(two, iq_order=iq_order)
     other = 2 if config.lvds_lanes == LANES else LANES
     again = adc_of_words(
         words.reshape(-1), replace(config, lvds_lanes=other, frame_words_before=0, frame_words_after=0),
@@ -217,7 +218,7 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
 
 
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:
-    """What comes nearer in range must have negative radial velocities."""
+    """What comes nearer in range must have negative radial velocities, unless it may be too fast for the radar."""
     config = cube.config
     if config.num_loops < 8 or len(cube.values) < FEWEST_MOVING_FRAMES:
         return
@@ -226,6 +227,9 @@ def _velocity_sign(cube: RadarCube) -> Iterator[str]:
     speed = (power * cube.grid.radial_velocity_mps).sum(axis=(1, 2)) / np.maximum(level, 1e-300)
     place = (power.sum(axis=2) * cube.grid.range_m).sum(axis=1) / np.maximum(level, 1e-300)
     travelled = np.diff(place)
+    steady_mps = np.abs(np.convolve(travelled, np.ones(3) / 3, "valid")) / config.frame_period_s
+    if np.percentile(steady_mps, 75) > UNFOLDED * np.abs(cube.grid.radial_velocity_mps).max():
+        return
     expected = (speed[1:] + speed[:-1]) / 2 * config.frame_period_s
     sure = np.abs(expected) > 0.2 * config.range_resolution_m
     if sure.sum() < FEWEST_MOVING_FRAMES - 1:
