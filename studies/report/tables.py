@@ -268,16 +268,19 @@ KITML = MetricTable(
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
-UNREAD_PROMPTS = MetricTable(
-    sources=("unread_prompts/reading",),
-    columns=KITML.columns,
-    lines=(
-        ("understood", "understood, of all (frozen grammar)"),
-        ("wrong", "wrong by hand without a word, of the understood (mended since)"),
-        ("said", "shown otherwise or in part, which is said, of the same"),
-        ("understood_today", "understood by the grammar that the faults found have changed"),
-    ),
-)  # fmt: skip
+UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS = (
+    MetricTable(
+        sources=(source,),
+        columns=KITML.columns,
+        lines=(
+            ("understood", "understood, of all (frozen grammar)"),
+            ("wrong", "wrong by hand without a word, of the understood (mended since)"),
+            ("said", "shown otherwise or in part, which is said, of the same"),
+            ("understood_today", "understood by the grammar that the faults found have changed"),
+        ),
+    )
+    for source in ("unread_prompts/reading", "unread_prompts/reading_second", "unread_prompts/reading_captions")
+)
 STRANGERS = MetricTable(
     sources=("strangers/default",),
     columns=(("200 sentences", "{label}"), ("share", "{metric:percent.1}")),
@@ -432,7 +435,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
-    "unread_prompts": UNREAD_PROMPTS.render,
+    "unread_prompts": UNREAD_PROMPTS.render, "unread_prompts_second": UNREAD_SECOND.render,
+    "unread_captions": UNREAD_CAPTIONS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render,

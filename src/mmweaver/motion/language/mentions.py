@@ -79,18 +79,26 @@ def _does(*keys: str) -> Callable[[Step], bool]:
     return lambda step: bool({step.lower, step.upper} & {*keys})
 
 
+def _goes_to_and_fro(step: Step) -> bool:
+    return bool({step.lower, step.upper} & _TO_AND_FRO) or step.direction == "pacing"
+
+
 # (words, whether a step has what they say): a way, a height or a thing; the words are named where no step has it.
 _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
+    (r"(?:from )?side to side|from one side to the other", _goes_to_and_fro),
     (
-        r"(?:from )?side to side|from one side to the other"
-        r"|(?:to the )?left and (?:to the )?right(?! (?:hand|arm|leg|foot|fist|punch))",
-        lambda step: bool({step.lower, step.upper} & _TO_AND_FRO) or step.hand == "both" or step.direction == "pacing",
+        r"(?:to the )?left and (?:to the )?right(?! (?:hand|arm|leg|foot|fist|punch))",
+        lambda step: _goes_to_and_fro(step) or step.hand == "both",
+    ),
+    (
+        r"arms? (?:straight )?(?:up )?out(?:wards?)? (?:away )?(?:to|from)|away from (?:his|her|their|the) sides?",
+        _does("arms_out", "arm_extension", "limb_extension", "side_lunge"),
     ),
     (r"sideways|sidewards|to (?:the|one|his|her|their) sides?\b(?! of)|lateral(?:ly)?", goes_aside),
     (r"(?:in |small |big |large |wide )circles?|circular(?:ly)?", goes_round),
     (
         rf"(?:to|near|around|at|towards|in front of|over) {_WHOSE} (?:own )?"
-        r"(?:faces?|eyes?|mouth|head|chin|forehead|ears?|nose)\b",
+        r"(?:faces?|eyes?|mouth|head|chin|forehead|ears?|nose)\b|to (?:face|mouth|head|ear)(?=$|[,.;]| and\b| area\b)",
         _does("drink", "eat", "phone", "brush_teeth", "comb", "yawn", "cough", "raise_hold", "look_around", "nod"),
     ),
     (r"(?:hands|palms) together", lambda step: step.upper in ("clap", "wipe")),
