@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
 from mmweaver.formats.dca1000 import bytes_of_frame
+from tests.captures import PAYLOAD, counts, packets_of, pcap_of, radar_of_cfg
 
 RADAR = replace(AWR1843, num_samples=64, num_loops=8, num_range_bins=32, first_range_bin=0)
 
@@ -86,3 +87,15 @@ def test_what_cannot_be_compressed_is_refused(recording: Path, tmp_path: Path):
         with pytest.raises(InputError, match=word):
             compress_bin(path, tmp_path / "a.mmwl", radar, max_error=error)
     assert not (tmp_path / "a.mmwl").exists()
+
+
+def test_of_packets_the_samples_are_kept(tmp_path: Path):
+    config = radar_of_cfg(tmp_path)
+    packets = packets_of(tmp_path, counts(config))
+    sent = b"".join(payload[10:] for _, payload in packets)
+    packets[2:4] = [packets[3], packets[2]]
+    del packets[1]
+    (tmp_path / "dca.pcap").write_bytes(pcap_of(packets))
+    compress_bin(tmp_path / "dca.pcap", tmp_path / "a.mmwl", config)
+    LosslessFile(tmp_path / "a.mmwl").decompress(tmp_path / "b.bin")
+    assert (tmp_path / "b.bin").read_bytes() == sent[:PAYLOAD] + bytes(PAYLOAD) + sent[2 * PAYLOAD :]

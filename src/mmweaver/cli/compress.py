@@ -61,10 +61,14 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     add_board_options(source_options)
     size = parser.add_argument_group("size and quality")
     rate = size.add_mutually_exclusive_group()
-    rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
+    rate.add_argument(
+        "--bytes", type=whole, metavar="N", help="size of the file at most; less where the cube is exact in fewer"
+    )
     rate.add_argument("--quality", type=number, metavar="DB", help="signal-to-error ratio in the cells with signal")
     rate.add_argument(
-        "--lossless", action="store_true", help="keep every bit of an adc_data.bin; decompress gives the same file"
+        "--lossless",
+        action="store_true",
+        help="keep every bit of an adc_data.bin, or of the samples in a .pcap; decompress gives the same adc_data.bin",
     )
     rate.add_argument(
         "--max-error", type=whole, metavar="N", help="change no sample of an adc_data.bin by more than N counts"
@@ -172,8 +176,11 @@ def _compress_samples(arguments: argparse.Namespace) -> int:
     """Raw samples without loss, or with a bounded error."""
     from mmweaver.cli.progress import StageBar
 
-    if arguments.file.suffix != ".bin":
-        raise InputError(f"{arguments.file}: --lossless and --max-error are for the adc_data.bin of a DCA1000")
+    if arguments.file.suffix not in (".bin", ".pcap", ".pcapng"):
+        raise InputError(
+            f"{arguments.file}: --lossless and --max-error are for the samples of a DCA1000 (.bin, .pcap or .pcapng);"
+            " a cube has --quality, and is stored exactly where --bytes allow it"
+        )
     radar = radar_of(arguments)
     if radar is None:
         raise InputError("which radar recorded it? give --radar, for example --radar awr1843")
@@ -200,6 +207,8 @@ def _compress_samples(arguments: argparse.Namespace) -> int:
         print(json.dumps(summary, indent=2))
     elif not arguments.quiet:
         kept = f"every word within {arguments.max_error} counts" if arguments.max_error else "every bit kept"
+        if arguments.file.suffix != ".bin":
+            kept += " of the samples (zeros for lost packets), without the packets"
         print(
             f"wrote {arguments.out}: {size:,} bytes, {100 * size / before:.1f} % of {before:,}; {kept}, in"
             f" {summary['seconds']:.1f} s"

@@ -34,13 +34,19 @@ class CellSample:
     That is `front_bytes` at `front_step`, with so many values of which each costs a bit more where the step is halved.
     """
 
-    magnitude: Array  # (part, beam, cell) float32
+    magnitude: Array  # (cell, number) float32: of real and imaginary parts of all beams
     is_active: Array  # (cell,)
     weight: Array  # (cell,): how many cells each stands for
     front_bytes: int = 0
     front_values: int = 0
     front_step: float = 1.0
+    largest: Array = field(init=False)  # (cell,) magnitude
+    energy: Array = field(init=False)  # (cell,)
     _known: dict[tuple[float, int], Estimate] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "largest", self.magnitude.max(axis=1, initial=0))
+        object.__setattr__(self, "energy", np.square(self.magnitude).sum(axis=1))
 
     @classmethod
     def of(cls, coefficients: Array, is_active: Array, front_bytes: int = 0, **front: Any) -> "CellSample":
@@ -57,9 +63,9 @@ class CellSample:
             weak = rest[places[places < len(rest)]]
             chosen = np.concatenate([strong, weak])
             weight = np.concatenate([np.ones(len(strong)), np.full(len(weak), len(rest) / len(weak))])
-        some = flat[:, chosen]
+        some = flat[:, chosen].T
         return cls(
-            magnitude=np.abs(np.stack([some.real, some.imag])), is_active=active[chosen], weight=weight,
+            magnitude=np.abs(np.concatenate([some.real, some.imag], axis=1)), is_active=active[chosen], weight=weight,
             front_bytes=front_bytes, **front,
         )  # fmt: skip
 
@@ -75,14 +81,18 @@ class CellSample:
 
     def _estimated(self, step: float, coarser: int) -> Estimate:
         own_step = np.where(self.is_active, step, step * (coarser or 1)).astype(self.magnitude.dtype)
-        magnitude = self.magnitude / own_step
+        may_open = (self.largest >= (1 - ROUNDING) * own_step) & (self.is_active | (coarser > 0))
+        cells = np.flatnonzero(may_open)  # at most steps few of all
+        own, weight = own_step[cells, None], self.weight[cells]
+        magnitude = self.magnitude[cells] / own
         levels = np.floor(magnitude + np.float32(ROUNDING))
-        bits = approximate_bits(levels).sum(axis=(0, 1)) + OPEN_BITS
-        gain = np.sum(levels * (2 * magnitude - levels), axis=(0, 1))
-        is_open = (gain > PRICE * bits) & levels.any(axis=(0, 1)) & (self.is_active | (coarser > 0))
-        error = np.square(magnitude).sum(axis=(0, 1)) - np.where(is_open, gain, 0)
-        error = error * own_step.astype(np.float64) ** 2 * self.weight
-        num_bits = SHORTER * float(np.sum(bits * is_open * self.weight))
+        bits = approximate_bits(levels).sum(axis=1) + OPEN_BITS
+        rest = magnitude - levels
+        is_open = np.sum(levels * (magnitude + rest), axis=1) > PRICE * bits
+        error = self.energy * self.weight
+        rest = np.square(rest).sum(axis=1) * own[:, 0].astype(np.float64) ** 2
+        error[cells] = np.where(is_open, rest * weight, error[cells])
+        num_bits = SHORTER * float(np.sum(bits * is_open * weight))
         return Estimate(
             num_bytes=max(self.front_at(step) + num_bits / 8, 1.0), active_error=float(error[self.is_active].sum()),
             all_error=float(error.sum()),

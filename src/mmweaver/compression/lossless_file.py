@@ -9,10 +9,11 @@ before. The last block may hold fewer frames, and after the last one follow the 
 of 0 frames. Reference: docs/mmw_format.md.
 """
 
+import contextlib
 import json
 import struct
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -26,6 +27,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.formats.dca1000 import bytes_of_frame
+from mmweaver.formats.dca_packets import SampleBytes
 
 MAGIC, VERSION = b"MMWL", 1
 PREFIX = struct.Struct("<4sBH")
@@ -36,6 +38,7 @@ BLOCK_BYTES = 2**21  # of raw samples, about
 MOST_FRAMES = 4096
 MOST_ERROR = 1000
 MOST_TEXT = 2**20
+PACKETS = (".pcap", ".pcapng")
 
 Progress = Callable[[str], None]
 
@@ -71,6 +74,9 @@ def compress_bin(
 ) -> int:
     """Writes adc_data.bin as a .mmwl file, block by block, and returns the size of that file.
 
+    Of a recording of packets (.pcap, .pcapng) the samples are kept, in order and with zeros for lost packets: those of
+    the adc_data.bin that decompressing gives.
+
     `config`: the radar, for the order of the words; a wrong one costs bytes, not correctness. With `max_error` every
     word may change by so many counts. Raises InputError where the file cannot be read or written.
     """
@@ -78,13 +84,10 @@ def compress_bin(
         raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MOST_ERROR}")
     if not config.complex_samples or config.num_samples % 2:
         raise InputError("a DCA1000 records complex samples, an even number per chirp; give the radar that recorded it")
-    size = check_regular(path)
-    if not size:
-        raise InputError(f"{path} is empty; record again")
     frame = bytes_of_frame(config)
     frames_a_block = max(1, min(MOST_FRAMES, BLOCK_BYTES // frame))
     header = LosslessHeader(config=config, frames_a_block=frames_a_block, max_error=max_error)
-    with open_regular(path) as source, atomic_file(Path(out)) as temporary, temporary.open("wb") as target:
+    with _samples_of(Path(path)) as (source, size), atomic_file(Path(out)) as temporary, temporary.open("wb") as target:
         target.write(_packed_header(header))
         done = 0
         while data := source.read(frames_a_block * frame):
@@ -96,6 +99,20 @@ def compress_bin(
             done += len(data)
             progress(f"{done / 2**20:,.0f} of {size / 2**20:,.0f} MB")
         return target.tell()
+
+
+@contextlib.contextmanager
+def _samples_of(path: Path) -> Iterator[tuple[BinaryIO | SampleBytes, int]]:
+    """The words of a recording as something to read from, and the number of their bytes."""
+    size = check_regular(path)
+    if not size:
+        raise InputError(f"{path} is empty; record again")
+    if path.suffix in PACKETS:
+        packets = SampleBytes(path)
+        yield packets, packets.size
+    else:
+        with open_regular(path) as source:
+            yield source, size
 
 
 class LosslessFile:

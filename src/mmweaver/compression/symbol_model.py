@@ -53,7 +53,7 @@ class MixedModel:
         self.size = priors[0].shape[1]
         self.counts = np.concatenate([PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors])
         self.totals = np.full(len(self.counts), PRIOR)
-        self._first = np.cumsum([0] + [len(prior) for prior in priors[:-1]])
+        self._first = np.cumsum([0] + [len(prior) for prior in priors[:-1]])[:, None]
         self._place = np.zeros(len(self.counts), np.int64)
         self._weighted = np.empty_like(self.counts)
         self._weigh(np.arange(len(self.counts)))
@@ -63,35 +63,32 @@ class MixedModel:
 
         Where `mirrored` (n,) is set, or for ALWAYS, a number and its negative are learned alike.
         """
-        places = [first + context for first, context in zip(self._first, contexts, strict=True)]
-        rows = self._weighted[places[0]]
+        places = np.concatenate(contexts).reshape(len(contexts), -1) + self._first
+        rows = self._weighted.take(places[0], axis=0)
         for place in places[1:]:
-            rows += self._weighted[place]
+            rows += self._weighted.take(place, axis=0)
         rows /= rows.sum(axis=1, keepdims=True)
         found = stream.rows(rows, values)
-        self._learn(np.concatenate(places), found, mirrored)
+        self._learn(places, found, mirrored)
         return found
 
     def _learn(self, places: Integers, symbols: Integers, mirrored: np.ndarray | None) -> None:
-        """Counts symbols (n,) at their places in every table (table x n,)."""
-        num = len(places) // len(self._first)
-        counts = np.bincount(places, minlength=len(self.totals))
-        seen = np.flatnonzero(counts)
-        self._place[seen] = np.arange(len(seen)) * self.size  # tables are large, and few of their contexts occur
-        first = self._place[places].reshape(-1, num)
-        size = len(seen) * self.size
+        """Counts symbols (n,) at their places in every table (table, n)."""
+        counts = np.bincount(places.ravel(), minlength=len(self.totals))
+        seen = counts.nonzero()[0]
+        self._place[seen] = np.arange(0, len(seen) * self.size, self.size)  # few contexts of large tables occur
+        learned = self._place.take(places)
+        learned += symbols
+        some = self.counts.take(seen, axis=0)
         if mirrored is None:
-            self.counts[seen] += np.bincount((first + symbols).ravel(), minlength=size).reshape(-1, self.size)
+            some += self._counted(learned, len(seen))
         else:
-            other = np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
-            own, turned = (first + symbols).ravel(), (first + other).ravel()
-            if mirrored is ALWAYS:
-                self.counts[seen] += (0.5 * np.bincount(own, minlength=size)).reshape(-1, self.size)
-                self.counts[seen] += (0.5 * np.bincount(turned, minlength=size)).reshape(-1, self.size)
-            else:
-                weights = np.tile(np.where(mirrored, 0.5, 1.0), len(first))
-                self.counts[seen] += np.bincount(own, weights, size).reshape(-1, self.size)
-                self.counts[seen] += np.bincount(turned, 1.0 - weights, size).reshape(-1, self.size)
+            # one half for the symbol, one for its mirror image; of what is not mirrored, all for the symbol
+            halves = 0.5 * self._counted(learned if mirrored is ALWAYS else learned[:, mirrored], len(seen))
+            some += halves if mirrored is ALWAYS else self._counted(learned, len(seen)) - halves
+            some[:, :ESCAPE] += halves[:, ESCAPE - 1 :: -1]
+            some[:, ESCAPE:] += halves[:, ESCAPE:]
+        self.counts[seen] = some
         self.totals += counts
         old = self.totals > MEMORY
         if old.any():
@@ -99,12 +96,19 @@ class MixedModel:
             self.totals[old] *= 0.5
         self._weigh(seen)
 
+    def _counted(self, places: Integers, num_contexts: int) -> np.ndarray:
+        """How often each symbol (context, symbol) occurs."""
+        size = num_contexts * self.size
+        return np.bincount(places.ravel(), minlength=size).reshape(num_contexts, self.size)
+
     def _weigh(self, rows: Integers) -> None:
         """Distributions of some contexts times their weight in the average."""
-        total = self.totals[rows]
-        share = self.counts[rows] / total[:, None]
+        total = self.totals.take(rows)
+        share = self.counts.take(rows, axis=0)
+        share /= total[:, None]
         confidence = np.minimum(total, CONFIDENT) / (1.005 - (share * share).sum(axis=1))
-        self._weighted[rows] = share * confidence[:, None]
+        share *= confidence[:, None]
+        self._weighted[rows] = share
 
 
 class SignedModel:

@@ -84,16 +84,7 @@ def read_pcap(
     missing end zero-filled. Memory is that of the frames read and of a list of packets, 3 % of the file. Raises
     InputError where the file has no packets, less than one frame, or two recordings.
     """
-    path = Path(path)
-    changed = path.stat() if path.is_file() else None
-    packets = _packets_of(path, None if changed is None else (changed.st_mtime_ns, changed.st_size))
-    num_bytes = int(packets.last_byte.max())
-    received = int(packets.num_bytes.sum())
-    if num_bytes > MAX_LOSS * received:
-        raise InputError(
-            f"{path} says that {num_bytes} bytes were sent, but holds {received}: nearly all packets are lost, or it is"
-            " damaged; record again"
-        )
+    packets, num_bytes = _sent(path)
     frame_bytes = bytes_of_frame(config)
     total = num_bytes // frame_bytes
     if num_frames is not None:
@@ -121,6 +112,37 @@ def read_pcap(
         adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order), report=report, num_frames=total,
         frame_time_s=_frame_times(packets, total, frame_bytes, config)[chosen.start : chosen.stop],
     )  # fmt: skip
+
+
+class SampleBytes:
+    """The bytes that a DCA1000 sent, in order, of a recording of its packets; zeros where a packet was lost.
+
+    They are those of the adc_data.bin that TI's own software would have written.
+    """
+
+    def __init__(self, path: Path | str):
+        """Raises InputError where the file has no packets, or nearly all are lost."""
+        self._packets, self.size = _sent(path)
+        self._at = 0
+
+    def read(self, num_bytes: int) -> bytes:
+        """The next bytes, fewer at the end. Raises InputError where the file holds two recordings."""
+        first, self._at = self._at, min(self.size, self._at + num_bytes)
+        return _reassembled(self._packets, first, self._at).tobytes()
+
+
+def _sent(path: Path | str) -> tuple[_Packets, int]:
+    """The packets of a file, and the number of bytes of samples that were sent."""
+    path = Path(path)
+    changed = path.stat() if path.is_file() else None
+    packets = _packets_of(path, None if changed is None else (changed.st_mtime_ns, changed.st_size))
+    num_bytes, received = int(packets.last_byte.max()), int(packets.num_bytes.sum())
+    if num_bytes > MAX_LOSS * received:
+        raise InputError(
+            f"{path} says that {num_bytes} bytes were sent, but holds {received}: nearly all packets are lost, or it is"
+            " damaged; record again"
+        )
+    return packets, num_bytes
 
 
 @lru_cache(maxsize=1)  # a recording that is read in pieces is looked through once

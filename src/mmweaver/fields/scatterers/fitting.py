@@ -165,5 +165,5 @@ class _Fit:
 
     def _noise_power(self) -> float:
         """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
-        power = torch.view_as_real(self.residual).square().sum(-1)
-        return float(power.flatten()[:: max(1, power.numel() // 100_000)].median()) / 0.6931
+        some = self.residual.flatten()[:: max(1, self.residual.numel() // 100_000)]
+        return float(torch.view_as_real(some).square().sum(-1).median()) / 0.6931

@@ -159,14 +159,12 @@ def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Ax
     free = [*range(2 + response.num_directions), 4, 5]
     gradient = _gradient(factors, vectors, seen)[..., free, :].flatten(-2)
     matrix = _normal_matrix(factors, vectors, free)
-    scale = matrix.diagonal(dim1=-2, dim2=-1)
-    least = 1e-6 * scale.amax(dim=-1, keepdim=True) + 1e-30
-    # columns of unit length: parameters of several kinds, amplitudes of many decibels
-    norm = (scale + least).rsqrt()
-    matrix = matrix * norm[..., None, :] * norm[..., :, None]
-    matrix.diagonal(dim1=-2, dim2=-1).add_(damping[:, None, None])
+    diagonal = matrix.diagonal(dim1=-2, dim2=-1)
+    # relative to each parameter's own curvature: they are of several kinds, and amplitudes of many decibels
+    least = 1e-6 * diagonal.amax(dim=-1, keepdim=True) + 1e-30
+    diagonal.add_(damping[:, None, None] * (diagonal + least))
     root, _ = torch.linalg.cholesky_ex(matrix)
-    step = torch.cholesky_solve((gradient * norm)[..., None], root)[..., 0] * norm
+    step = torch.cholesky_solve(gradient[..., None], root)[..., 0]
     step = torch.nan_to_num(step).unflatten(-1, (num, -1))
     is_real = (points.amplitude != 0).to(step.dtype)
     return _moved(points, step * is_real[..., None, :], response)
@@ -197,21 +195,26 @@ def _antenna_vectors(points: Points, steer: Tensor, axes: Axes) -> Tensor:
 
 
 def _normal_matrix(factors: tuple[Tensor, ...], vectors: Tensor, free: list[int]) -> Tensor:
+    """(..., parameter and point, parameter and point); only the blocks on and below the diagonal are filled."""
     at_range, range_slope, at_doppler, doppler_slope, _ = factors
     by_range = _gram(torch.stack([at_range, range_slope], dim=-3))
     by_doppler = _gram(torch.stack([at_doppler, doppler_slope], dim=-3))
     by_antenna = _gram(vectors)
-    rows = []
-    for i in free:
-        row = [
-            by_range[..., RANGE_FACTOR[i], :, RANGE_FACTOR[j], :]
-            * by_doppler[..., DOPPLER_FACTOR[i], :, DOPPLER_FACTOR[j], :]
-            * by_antenna[..., ANTENNA_FACTOR[i], :, ANTENNA_FACTOR[j], :]
-            * (SIGN[i] * SIGN[j])
-            for j in free
-        ]
-        rows.append(torch.cat(row, dim=-1))
-    return torch.cat(rows, dim=-2)
+    count = at_range.shape[-2]
+    matrix = by_range.new_empty(*by_range.shape[:-4], len(free) * count, len(free) * count)
+    blocks = matrix.unflatten(-1, (len(free), count)).unflatten(-3, (len(free), count))
+    by_cell: dict[tuple[int, ...], Tensor] = {}  # range and Doppler together, which most blocks share
+    for row, i in enumerate(free):
+        for column, j in enumerate(free[: row + 1]):
+            kinds = RANGE_FACTOR[i], RANGE_FACTOR[j], DOPPLER_FACTOR[i], DOPPLER_FACTOR[j]
+            if kinds not in by_cell:
+                by_cell[kinds] = by_range[..., kinds[0], :, kinds[1], :] * by_doppler[..., kinds[2], :, kinds[3], :]
+            by_steering = by_antenna[..., ANTENNA_FACTOR[i], :, ANTENNA_FACTOR[j], :]
+            block = blocks[..., row, :, column, :]
+            torch.mul(by_cell[kinds], by_steering, out=block)
+            if SIGN[i] != SIGN[j]:
+                block.neg_()
+    return matrix
 
 
 def _gram(stack: Tensor) -> Tensor:
