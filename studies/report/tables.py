@@ -322,6 +322,7 @@ BLIND = RowTable(
         ("windows outside", "{distance.windows_outside:.2f}"),
     ),
 )  # fmt: skip
+ELSEWHERE = RowTable(sources=("recognised_elsewhere/*",), columns=BLIND.columns)
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
@@ -439,7 +440,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "unread_captions": UNREAD_CAPTIONS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
-    "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render,
+    "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
+    "zero_shot_pose": ZERO_SHOT_POSE.render,
     "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
     "recogniser_gain": GAIN_BY_NETWORK.render, "sampled_recordings": SAMPLED.render,
     "labelled_recognition": LABELLED.render,

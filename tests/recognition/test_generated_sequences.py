@@ -59,6 +59,7 @@ def test_a_person_is_the_same_for_every_activity(recipe: SequenceRecipe):
     assert one == again
     assert one.subject != other.subject
     assert 1.5 <= one.surroundings.distance_m <= 2.0
+    assert prior.on_way[0] <= min(one.on_way, other.on_way) < max(one.on_way, other.on_way) <= prior.on_way[1]
 
 
 def test_a_walk_goes_on_for_as_long_as_asked_and_a_gesture_is_done_once(recipe: SequenceRecipe):

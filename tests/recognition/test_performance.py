@@ -34,12 +34,17 @@ def speeds_mps(sentence: str, part: str, *, once: bool) -> list[float]:
 
 
 @pytest.mark.parametrize(
-    ("sentence", "once", "calm"),
-    [("a person stands", False, True), ("a person claps", False, False), ("a person claps", True, True)],
+    ("sentence", "once", "between_mps"),
+    [
+        ("a person stands", False, (0.02, 0.3)),
+        ("a person claps", False, (0.15, 1.0)),
+        ("a person claps", True, (0.0, 0.15)),
+    ],
 )
-def test_who_holds_still_sways_little(sentence: str, once: bool, calm: bool):
+def test_who_holds_still_sways_little(sentence: str, once: bool, between_mps: tuple[float, float]):
+    """Less for a gesture than to stay in a posture, and less for that than for what goes on on the spot."""
     fastest = max(speeds_mps(sentence, "pelvis", once=once))
-    assert (fastest < 0.15) == calm
+    assert between_mps[0] < fastest < between_mps[1]
 
 
 def test_a_gesture_done_once_is_brisk():

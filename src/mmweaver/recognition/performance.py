@@ -44,9 +44,10 @@ LIFTED_M, LEAST_MOVED_M = 0.06, 0.03
 class PerformancePrior:
     """How people differ, and how one person differs between performances; spreads are of logarithms where relative.
 
-    `on_spot` and `on_way`: the usual tempo of what is done in place, and of walks and runs in a room, relative to the
-    motion library; `single` that of a single performance, which people repeat briskly and widely. `sway_mps`: speed of
-    slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one gesture, or altogether.
+    `on_spot`: the usual tempo of what is done in place, relative to the motion library; `on_way` that of walks and runs
+    in a room, log-uniform over people; `single` that of a single performance, which people repeat briskly and widely.
+    `sway_mps`: speed of slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one
+    gesture, `held_sway_mps` of who stays in a posture.
     `heading_deg`: standard deviation from facing the radar, `heading_of_performance_deg` that of one performance from
     the person's usual. `wider_m`: how much farther apart than in the motion library narrow feet of who stays in place
     are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform.
@@ -57,12 +58,13 @@ class PerformancePrior:
     amplitude_of_person: float = 0.2
     amplitude_of_performance: float = 0.1
     on_spot: float = 1.05
-    on_way: float = 0.85
+    on_way: Span = (0.7, 1.35)
     single: float = 1.4
     usual_amplitude: float = 0.9
     single_amplitude: float = 1.05
     sway_mps: Span = (0.01, 0.25)
     calm_sway_mps: Span = (0.003, 0.04)
+    held_sway_mps: Span = (0.003, 0.08)
     heading_deg: float = 15.0
     heading_of_performance_deg: float = 5.7
     wider_m: Span = (0.0, 0.0)
@@ -80,6 +82,7 @@ class Performer:
     heading_rad: float
     wider_m: float
     linger: float
+    on_way: float  # tempo of walks and runs
 
 
 def task_variation(mount: Mount) -> Variation:
@@ -114,6 +117,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         heading_rad=float(np.radians(prior.heading_deg) * heading),
         wider_m=float(rng.uniform(*prior.wider_m)),
         linger=float(rng.uniform(*prior.linger)),
+        on_way=float(np.exp(rng.uniform(*np.log(prior.on_way)))),
     )
 
 
@@ -137,7 +141,7 @@ def perform(
     moves = any(step.moves for step in plan.steps)
     now, person = who.surroundings, person_of(who.subject, plan.person)
     tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
-    usual = prior.on_way if moves else prior.single if once else prior.on_spot
+    usual = who.on_way if moves else prior.single if once else prior.on_spot
     tempo = who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own)
     usual_amplitude = prior.single_amplitude if once else prior.usual_amplitude
     amplitude = usual_amplitude * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
@@ -159,8 +163,9 @@ def perform(
     joints_m = scaled_excursion(pose.joints_m, float(amplitude))
     if not moves and who.wider_m:
         joints_m = with_feet_apart(joints_m, who.wider_m)
-    is_calm = once or all(step.lower in HELD and not step.upper for step in plan.steps)
-    sway = float(np.exp(rng.uniform(*np.log(prior.calm_sway_mps if is_calm else prior.sway_mps))))
+    is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
+    usual_sway = prior.calm_sway_mps if once else prior.held_sway_mps if is_held else prior.sway_mps
+    sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
     even_s = pose.time_s if moves or once else lingering(pose.time_s, joints_m, who.linger)
     time_s = time_warped(
