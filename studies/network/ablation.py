@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from torch import nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
@@ -135,6 +136,29 @@ def network_of(variant: AblationVariant) -> EchoNetwork:
     if variant.power:
         return PowerNetwork(is_anchored=variant.power == "anchored")
     return WeaverNetwork(without=variant.without)
+
+
+class _OneCode(nn.Module):
+    """Writes the same field whatever code it is given."""
+
+    def __init__(self, written: torch.Tensor):
+        super().__init__()
+        self.written = written
+
+    def forward(self, code: torch.Tensor) -> torch.Tensor:
+        return self.written.expand(*code.shape[:-1], -1)
+
+
+def with_one_code(network: EchoNetwork, generic: StoredRoom) -> EchoNetwork:
+    """The hypernetwork, which now writes the fields of one photo and of the first pose in that room for all."""
+    assert isinstance(network, PowerNetwork)
+    joints, velocity = (torch.from_numpy(one[0])[None] for one in (generic.joints_m, generic.joint_velocity_mps))
+    with torch.inference_mode():
+        code = network.encode_room(SceneTensors.stack([RoomExamples(generic, "train").scene]))
+        of_person = network.write_person(code, joints, velocity)[0, 0]
+    network.add_module("room_writer", _OneCode(code.written[0]))
+    network.add_module("person_writer", _OneCode(of_person))
+    return network
 
 
 class OtherMotion(Case):
@@ -272,9 +296,16 @@ def _evaluator(
         network, _ = load_network(trained_before[shared])
         return NetworkLearner(network, material.cases[0].room.config)
 
+    @cache
+    def final() -> NetworkLearner:
+        found = learner()
+        if variant.has_one_code:
+            found.network = with_one_code(found.network, material.generic)
+        return found
+
     def evaluate(case: Case) -> dict[str, float]:
         if variant.motion == "other":
             case = OtherMotion(case.room, case.index, case.other, case.seed_of_plan, case.lighting)
-        return scores(learner(), lambda one: photo_of(one, variant, material.generic), case)
+        return scores(final(), lambda one: photo_of(one, variant, material.generic), case)
 
     return evaluate

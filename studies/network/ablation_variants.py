@@ -17,6 +17,7 @@ class AblationVariant:
         motion: whose joints are the input when it is evaluated: "own", or "other", the room's next sequence.
         power: in place of the network recipe `paper_power`, a hypernetwork that writes fields of power, with
             coordinates counted from what is seen ("anchored") or the radar's alone ("radar").
+        has_one_code: whether its fields are written with the code of the generic photo and one pose, whatever is seen.
     """
 
     without: tuple[str, ...] = ("correction",)
@@ -26,11 +27,12 @@ class AblationVariant:
     photo: str = "own"  # or "generic", "shuffled"
     motion: str = "own"  # or "other"
     power: str = ""  # or "anchored", "radar"
+    has_one_code: bool = False
 
     @property
     def trained_as(self) -> "AblationVariant":
-        """The variant whose training it shares: the same, evaluated with its own photo and motion."""
-        return replace(self, photo="own", motion="own")
+        """The variant whose training it shares: the same, evaluated with its own photo, motion and code."""
+        return replace(self, photo="own", motion="own", has_one_code=False)
 
 
 WHOLE, HYPERNETWORK = "whole", "hypernetwork and INR"
@@ -46,6 +48,7 @@ VARIANTS = {
     HYPERNETWORK: AblationVariant(power="anchored", recipe=POWER),
     f"{HYPERNETWORK}, generic photo": AblationVariant(power="anchored", recipe=POWER, photo="generic"),
     f"{HYPERNETWORK}, another motion": AblationVariant(power="anchored", recipe=POWER, motion="other"),
+    f"{HYPERNETWORK}, one code for all": AblationVariant(power="anchored", recipe=POWER, has_one_code=True),
     f"{HYPERNETWORK}, the radar's coordinates alone": AblationVariant(power="radar", recipe=POWER),
     # anchors and what physics says
     "no ghosts": AblationVariant(without=("ghosts", "correction")),

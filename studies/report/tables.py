@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from studies.report.computed_tables import (
@@ -447,5 +448,6 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "labelled_recognition": LABELLED.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
-    "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
+    "ablation": ablation_table, "ablation_power": partial(ablation_table, folder="ablation_power"),
+    **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from mmweaver.models.network import PARTS, WeaverNetwork
+from mmweaver.models.power_field import NUM_WRITTEN
 from mmweaver.models.power_network import PowerNetwork
 from mmweaver.training.network_training import TrainingRecipe
 from studies.network.ablation import (
@@ -21,6 +22,7 @@ from studies.network.ablation import (
     scores,
     slug,
     trained,
+    with_one_code,
 )
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
 
@@ -92,3 +94,11 @@ def test_a_variant_may_be_the_hypernetwork():
     networks = [network_of(AblationVariant(power=power)) for power in ("anchored", "radar")]
     assert [network.is_anchored for network in networks if isinstance(network, PowerNetwork)] == [True, False]
     assert isinstance(network_of(VARIANTS[WHOLE]), WeaverNetwork)
+
+
+def test_with_one_code_the_photo_changes_no_field(material: AblationMaterial):
+    network = with_one_code(network_of(VARIANTS["hypernetwork and INR"]), material.generic)
+    assert isinstance(network, PowerNetwork)
+    one, other = (network.room_writer(torch.full((2, 512), value)) for value in (0.0, 1.0))
+    assert torch.equal(one, other)
+    assert one.shape == (2, NUM_WRITTEN)
