@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.cli.main import main
+from mmweaver.core import repository_files
 from mmweaver.recognition.activity_classifier import ActivityClassifier
 from mmweaver.recognition.frozen_activity import Frozen
 
@@ -39,7 +40,8 @@ def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("few_trees")
 def test_scores_are_printed(recordings: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--json"]) == 0
+    words = ["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--frozen", "development", "--json"]
+    assert main(words) == 0
     scores = json.loads(capsys.readouterr().out)
     assert scores["recordings"] == scores["window"]["n"] == 2
     assert scores["classes"] == ["boxing", "jack", "jump", "squats", "walk"]
@@ -61,8 +63,24 @@ def test_the_whole_recogniser_knows_a_walk(frozen: str, recordings: Path, capsys
     assert scores["window"]["confusion"][walk][walk] == 1
 
 
+def test_without_a_model_it_is_the_shipped_task_file(
+    recordings: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    words = ["evaluate", "zero-shot-activity", "--recordings", str(recordings)]
+    assert main([*words, "--json"]) == 0
+    scores = json.loads(capsys.readouterr().out)
+    assert (scores["task_file"], scores["recordings"]) == ("radhar.toml", 2)
+    walk = scores["classes"].index("walk")
+    assert scores["window"]["confusion"][walk][walk] == 1
+    assert main(words) == 0
+    assert "of the task file radhar.toml" in capsys.readouterr().out
+    monkeypatch.setattr(repository_files, "WEIGHTS", tmp_path)
+    assert main(words) == 2
+    assert "the recogniser of examples/tasks/radhar.toml is in the repository" in capsys.readouterr().err
+
+
 def test_a_bad_folder_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is not a folder")):
+    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "does not exist")):
         assert main(["evaluate", "zero-shot-activity", "--recordings", str(folder)]) == 2
         error = capsys.readouterr().err
         assert message in error

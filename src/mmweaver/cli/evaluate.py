@@ -10,17 +10,20 @@ from mmweaver.cli.recognise_text import accuracy_lines, confusion_lines, score_l
 from mmweaver.core.errors import InputError
 
 FROZEN_POSE = "pose_mars.safetensors"
+SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
 
 EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
   mmweaver evaluate zero-shot-activity --model model/ --recordings recordings/
+  mmweaver evaluate zero-shot-activity --frozen development --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
-Without --model the recordings are of an IWR1443 at 30 frames a second, as RadHAR publishes them (.txt, one message a
-point) or as .npz with frame (point) and pts (point, 8). The activity is the subfolder's name or a word of the file's
-name: boxing, jack, jump, squats, walk. For other radars and activities train a model from a task file:
-docs/recognise.md.
+Without --model the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
+second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
+activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
+activities train a model from a task file: docs/recognise.md. --frozen takes one of two older recognisers of these
+activities, docs/zero_shot.md.
 Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
 """
 
@@ -36,8 +39,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train` or `train pose`")
     which.add_argument(
-        "--frozen", choices=("development", "blind"), default="development",
-        help="the frozen recogniser of activities: the one after development (default) or the blind one before it",
+        "--frozen", choices=("development", "blind"),
+        help="an older recogniser of RadHAR's activities: the one after development or the blind one before it",
     )  # fmt: skip
     parser.add_argument("--split", choices=("train", "validate", "test"), help="zero-shot-pose: of MARS (default test)")
     parser.add_argument("--json", action="store_true", help="print the scores for machines")
@@ -56,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
     if arguments.split is not None:
         raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
-    return _of_frozen(arguments) if arguments.model is None else _of_model(arguments)
+    return _of_model(arguments) if arguments.frozen is None else _of_frozen(arguments)
 
 
 def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -73,14 +76,19 @@ def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _of_model(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Scores of a recogniser of a task file."""
-    from mmweaver.recognition.recogniser import load_recogniser
+    """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
+    from mmweaver.core.repository_files import repository_file
+    from mmweaver.recognition.recogniser import META_FILE, load_recogniser
     from mmweaver.recognition.score_recogniser import score_recogniser
 
-    model = load_recogniser(arguments.model)
-    made = {name: model.meta.get(name) for name in ("generated_windows", "with_disturbed_copies")}
+    folder = arguments.model or repository_file(
+        f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
+        "give --frozen development, or a model of mmweaver recognise train by --model",
+    ).parent  # fmt: skip
+    model = load_recogniser(folder)
+    made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
     scores = score_recogniser(model, arguments.recordings)
-    return {"task": arguments.task, "model": arguments.model.name, **made, **scores}
+    return {"task": arguments.task, "model": folder.name, **made, **scores}
 
 
 def _of_frozen(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -98,7 +106,8 @@ def _of_frozen(arguments: argparse.Namespace) -> dict[str, Any]:
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
     if "distance" in scores:
-        return score_lines(scores)
+        windows = f"trained on {scores['generated_windows']} generated windows"
+        return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
     head = f"{scores['recordings']} recordings; trained on {scores['generated_windows']} generated windows alone"
     return [head, *accuracy_lines(scores, "windows of 2 s"), *confusion_lines(scores)]
 

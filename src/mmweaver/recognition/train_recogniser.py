@@ -109,7 +109,8 @@ def train_recogniser(
     tell("trees", 0, 1)
     model = fitted(made, unlabelled, task, options, taught)
     note = {
-        "mmweaver": __version__, "options": asdict(options), "task": task_values(task),
+        "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
+        "task": task_values(task),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
     model = replace(model, meta={**note, **model.meta})
