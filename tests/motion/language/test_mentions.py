@@ -62,5 +62,7 @@ def test_the_person_stays_seated_and_keeps_the_side():
     assert {step.lower for step in steps} == {"sit_down", "sit"}
     assert [step.direction for step in parse("a man leans to his right, then to his left").steps] == ["right", "left"]
     assert parse("a person lifts the left arm, then waves with their right").steps[-1].hand == "right"
+    assert parse("a woman carries a box to the door, then opens it").steps[0].upper == "carry"
+    assert parse("a person spins a plate on a stick").steps[0].lower == "stand"
     assert [step.lower for step in parse("a person jogs at a moderate pace").steps] == ["jog"]
     assert parse("a person bends the right arm and nods").steps[-1].upper == "nod"

@@ -318,7 +318,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\bbounc(?:es|ing) (?:a|the) ball\b|\bdribbl(?:es|ing)\b" + _THING, "knocks", "is shown as a hand beating"),
         (rf"\b(?:hit|beat|strik)(?:s|es|ting|ing) (?:at |against )?(?:something|someone|somebody|an? [a-z]+|the [a-z]+|it)? ?(?=with {_OWN}{_SIDE} (?:foot|leg))",
          "kicks ", f"{_AS} kicking"),
-        (r"\b(?:fight|spar|box)(?:s|ing|es)?(?: (?:against|with) (?:something|someone|somebody|an? [a-z]+))?(?: or someone)?\b(?! position)|"
+        (r"\b(?:fight|spar)(?:s|ing|es)?(?: (?:against|with) (?:something|someone|somebody|an? [a-z]+))?(?: or someone)?\b(?! position)|"
          r"\b(?:hit|beat|strik)(?:s|es|ting|ing) (?:at |against )?(?:something|someone|somebody|an? (?:person|bag|object|opponent|wall)|the (?:air|wall|bag))\b",
          "punches", f"{_AS} punching"),
         (r"\b(?:does |doing |performs |some )?(?:kick-?boxing|karate|kung[- ]?fu|taekwondo|martial arts?)\b", "punches, then kicks", f"{_AS} a punch and a kick"),
