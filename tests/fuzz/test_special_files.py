@@ -51,6 +51,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("recognise", "--recordings"): {"action": "score", "--out": None, "place": "MODEL"},
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
     ("evaluate", "--model"): {"--recordings": "."},
+    ("compare", "--antennas"): {"a": "BIN", "--radar": "awr1843"},
     ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
     ("train", "task"): {"recipe": "pose", "--data": None},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},

@@ -234,11 +234,11 @@ def add_board_options(parser: Options, *, rare: bool = False) -> None:
     )  # fmt: skip
 
 
-def radar_of(arguments: argparse.Namespace, default: str | None = None) -> str | None:
+def radar_of(arguments: argparse.Namespace, default: str | None = None, *, option: str = "radar") -> str | None:
     """--radar with --subframe, --antennas and --lanes behind it, as `load_radar` reads them. Raises InputError."""
     from mmweaver.formats.radar_options import joined_radar
 
-    name = arguments.radar or default
+    name = getattr(arguments, option) or default
     given = {"sub_frame": arguments.subframe, "antennas": arguments.antennas, "lanes": arguments.lanes}
     if name is None:
         if any(value is not None for value in given.values()):

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, source
+from mmweaver.cli.arguments import add_board_options, add_layout_options, radar_of, source, span_m
 
 EXAMPLES = """examples:
   mmweaver compare recording/ simulated/ --out comparison/
@@ -33,6 +33,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     raw.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
     raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
     add_layout_options(raw)
+    add_board_options(raw, rare=True)
+    parser.add_argument(
+        "--range", type=span_m, metavar="NEAR,FAR", dest="range_m",
+        help="metres that are compared (default: all that both show)",
+    )  # fmt: skip
     output = parser.add_argument_group("output")
     output.add_argument(
         "--out", type=Path, metavar="DIR",
@@ -54,8 +59,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out is not None:
         check_comparison_folder(arguments.out, overwrite=arguments.overwrite, inputs=[arguments.a, arguments.b])
     found = compare(
-        arguments.a, arguments.b, radar=arguments.radar, radar_b=arguments.radar_b, layout=arguments.layout,
-        axes=arguments.axes, iq_order=arguments.iq_order, tx_order=arguments.tx_order,
+        arguments.a, arguments.b, radar=radar_of(arguments),
+        radar_b=None if arguments.radar_b is None else radar_of(arguments, option="radar_b"), layout=arguments.layout,
+        axes=arguments.axes, iq_order=arguments.iq_order, tx_order=arguments.tx_order, range_m=arguments.range_m,
     )  # fmt: skip
     written = [] if arguments.out is None else found.save(arguments.out, overwrite=arguments.overwrite)
     if arguments.json:

@@ -44,10 +44,18 @@ def shown_m(signal: ComparedSignal) -> np.ndarray:
     return np.arange(config.num_unambiguous_range_bins) * config.range_resolution_m
 
 
-def common_window_m(names: Sequence[str], ranges: Sequence[np.ndarray]) -> tuple[float, float]:
-    """The ranges that all signals show, of the ranges of their bins. Raises InputError for fewer than four bins."""
+def common_window_m(
+    names: Sequence[str], ranges: Sequence[np.ndarray], asked_m: tuple[float, float] | None = None
+) -> tuple[float, float]:
+    """The ranges that all signals show and that are asked for, of the ranges of their bins.
+
+    Raises InputError for fewer than four bins.
+    """
+    if asked_m is not None:
+        names, ranges = [*names, "--range"], [*ranges, np.linspace(*asked_m, 2)]
     near, far = max(float(one[0]) for one in ranges), min(float(one[-1]) for one in ranges)
-    step_m = max(float(np.diff(one[:2])[0]) if len(one) > 1 else np.inf for one in ranges)
+    shown = ranges if asked_m is None else ranges[:-1]
+    step_m = max(float(np.diff(one[:2])[0]) if len(one) > 1 else np.inf for one in shown)
     if far - near < (FEWEST_BINS - 1) * step_m:
         last, first = (
             pick(range(len(ranges)), key=key)

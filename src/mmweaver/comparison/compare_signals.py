@@ -154,26 +154,30 @@ class Comparison:
 def compare(
     a: Any, b: Any, *, radar: str | Path | RadarConfig | None = None, radar_b: str | Path | RadarConfig | None = None,
     layout: str | None = None, axes: str | None = None, iq_order: str | None = None,
-    tx_order: tuple[int, ...] | None = None,
+    tx_order: tuple[int, ...] | None = None, range_m: tuple[float, float] | None = None,
 ) -> Comparison:  # fmt: skip
     """Compares two signals, or two folders of signals.
 
     `a`, `b`: a recording, a result folder, a .mmw file, a stream folder, a folder of any of these; or a RadarCube, an
     AdcCube, what `Weaver.generate`, `process_recording` or `read_recording` give, or a list of any of these. `radar`
     (of `b`: `radar_b`, default the same), `layout`, `axes`, `iq_order` and `tx_order` are for raw samples that do not
-    bring their radar, see `read_recording`. Raises InputError for what cannot be read or has no common ranges.
+    bring their radar, see `read_recording`. `range_m`: the ranges that are compared, all by default. Raises InputError
+    for what cannot be read or has no common ranges.
     """
     own = RawReading(radar=radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order)
     other = RawReading(
         radar=radar if radar_b is None else radar_b, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order
     )
     names = tuple(str(one) if isinstance(one, str | Path) else letter for one, letter in ((a, "A"), (b, "B")))
-    return compare_signals(signals_of(a, own, "A"), signals_of(b, other, "B"), names=(names[0], names[1]))
+    return compare_signals(
+        signals_of(a, own, "A"), signals_of(b, other, "B"), names=(names[0], names[1]), range_m=range_m
+    )
 
 
 def compare_signals(
-    a: Sequence[ComparedSignal], b: Sequence[ComparedSignal], *, names: tuple[str, str] = ("A", "B")
-) -> Comparison:
+    a: Sequence[ComparedSignal], b: Sequence[ComparedSignal], *, names: tuple[str, str] = ("A", "B"),
+    range_m: tuple[float, float] | None = None,
+) -> Comparison:  # fmt: skip
     """Compares signals in memory, one or more a side. Raises InputError where they have no common ranges."""
     sides, notes = _with_same_detector(a, b)
     labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
@@ -181,8 +185,8 @@ def compare_signals(
     for label, one in zip(labels, every, strict=True):
         if not one.cube.values.any():
             raise InputError(f"{label} holds nothing but zeros; give a recording with a signal")
-    window_m = common_window_m(labels, [shown_m(one) for one in every])
-    points_m = common_window_m(labels, [one.cube.grid.range_m for one in every])
+    window_m = common_window_m(labels, [shown_m(one) for one in every], range_m)
+    points_m = common_window_m(labels, [one.cube.grid.range_m for one in every], range_m)
     first = [SignalEvidence(side[0], window_m, points_m) for side in sides]
     measured = [
         # of all but the first, what was computed is forgotten at once: folders hold many recordings
