@@ -22,7 +22,7 @@ ABANDONED_S = 3600.0
 COMMITTED = ".mmweaver-committed"  # in a folder: complete new files that are being moved into place
 LONGEST_NAME = 60  # characters of the name that are kept, for file systems allow 255 bytes in all
 STAGED = re.compile(r"\..*\.mmweaver-(?P<place>[0-9a-f]{8})-(?P<process>\d+)-(?P<start>\d+)-\d+(\.[^.]{1,16})?")
-_PAUSES_S = (0.0, 0.02, 0.05, 0.1)  # threads of Zarr may still add files after one write has failed
+_PAUSES_S = (0.0, 0.02, 0.05, 0.1, 0.5, 1.0)  # threads of Zarr may still add files after one write has failed
 _number = itertools.count()
 _swept: set[tuple[int, str]] = set()
 
