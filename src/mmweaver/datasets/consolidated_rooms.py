@@ -28,10 +28,11 @@ def consolidate_rooms(folder: Path, rooms: Sequence[str], axes: Sequence[str]) -
     files = [file for name in (*axes, *sorted(rooms)) for file in sorted((folder / name).rglob(METADATA))]
     members: dict[str, Any] = {file.parent.relative_to(folder).as_posix(): read_json(file) for file in files}
     gathered = {"kind": "inline", "must_understand": False, "metadata": members}
-    if root.get(KEY) == gathered:
-        return
     text = json.dumps(root | {KEY: gathered})
-    sums = (read_sums(folder) or {}) | {METADATA: hashlib.sha256(text.encode()).hexdigest()}
+    held = read_sums(folder) or {}
+    sums = held | {METADATA: hashlib.sha256(text.encode()).hexdigest()}
+    if root.get(KEY) == gathered and sums == held:  # a kill may have come between the two files
+        return
     with atomic_files(folder / METADATA, folder / SUMS_FILE) as (metadata, listed):
         metadata.write_text(text, encoding="utf-8")
         listed.write_text(sums_text(sums), encoding="utf-8")
