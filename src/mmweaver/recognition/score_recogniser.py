@@ -65,10 +65,11 @@ def distance(model: Recogniser, features: np.ndarray) -> dict[str, Any]:
 def warning(found: dict[str, Any]) -> str | None:
     """What to say where recordings lie outside what was generated; None where they do not."""
     if found["features_far"] > MOST_FAR or found["windows_outside"] > MOST_OUTSIDE:
-        named = ", ".join(found["largest"][:3])
+        largest = ", ".join(found["largest"][:3])
+        named = f" (most of all {largest})" if largest else ""
         return (
             f"the recordings lie outside what was generated: {found['features_far']:.0%} of the features are far off"
-            f" (most of all {named}) and {found['windows_outside']:.0%} of the windows are unlike any; check radar,"
+            f"{named} and {found['windows_outside']:.0%} of the windows are unlike any; check radar,"
             " mount and sentences, or name the recordings as `unlabelled`; expect less than the score on generated"
             " people says"
         )
