@@ -270,7 +270,7 @@ class SetBuilder:
             more["file_size"] = sizes
         found = circumstances([part["joints"] for part in parts], label, **more)
         found["start_place"] = np.concatenate([found["start_place"], found["room"]], axis=1)
-        return leak_report(found, label, np.asarray(columns["draw"]))
+        return leak_report(found, label, np.asarray(columns["draw"]), list(self.activities.sentences))
 
 
 def _without_command(text: str) -> Any:

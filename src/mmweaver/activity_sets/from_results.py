@@ -100,7 +100,7 @@ def set_of_results(
         }, signals, "float16")  # fmt: skip
         label = np.asarray(every["label"])
         more = {"person": numbers["subject"].tolist(), "height": numbers["height"].tolist()}
-        report = leak_report(circumstances(joints, label, **more), label, numbers["draw"])
+        report = leak_report(circumstances(joints, label, **more), label, numbers["draw"], names)
         (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
         _describe(stage, names, every, config, command)
     return report

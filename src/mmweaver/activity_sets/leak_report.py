@@ -1,8 +1,9 @@
 """What a classifier knows without looking at the radar signal: leaks.json.
 
 One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
-that they have not seen. With matched draws they are at chance. What cannot be equal between activities, such as energy,
-posture or where a walk ends, is reported separately: it is part of what the radar sees.
+that they have not seen, over all labels and on each. With matched draws they are at chance. What cannot be equal
+between activities, such as energy, posture or where a walk ends, is reported separately: it is part of what the radar
+sees.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
 
 Z_99 = 2.576
+Z_LABELS = 4.2  # 99 % over some hundred comparisons: every circumstance with every label
 INHERENT = {
     "start_posture": "a sequence shows the activity from its first frame on, so its first posture is part of it",
     "end_place": "where a person ends is part of what is done: a walk leads elsewhere",
@@ -32,21 +34,25 @@ class Leak:
     high: float
     chance: float
     number: int
+    of_labels: dict[int, float]  # accuracy on the labels, by their number, that are above chance on their own
 
     @property
     def leaks(self) -> bool:
-        """Whether the accuracy is above chance beyond the interval."""
-        return self.low > self.chance
+        """Whether the accuracy, or that on one label, is above chance beyond the interval."""
+        return self.low > self.chance or bool(self.of_labels)
 
 
 def leak_report(
     circumstances: dict[str, Float[Array, "sequence column"]],
     label: Int[Array, " sequence"],
     group: Int[Array, " sequence"],
+    label_names: Sequence[str],
 ) -> dict[str, Any]:
     """The report as JSON types: each circumstance with its accuracy, interval and chance, and a verdict.
 
-    `group`: the person (or draw) of each sequence; a classifier is never tested on a group that it has seen.
+    `group`: the person (or draw) of each sequence; a classifier is never tested on a group that it has seen. "labels"
+    are those that a circumstance predicts on their own: more often right, beyond the intervals, than by chance and than
+    others are mistaken for them.
     """
     found = {name: _score(values, label, group) for name, values in circumstances.items()}
     avoidable = [name for name, leak in found.items() if leak.leaks and name not in INHERENT]
@@ -54,6 +60,7 @@ def leak_report(
         name: {
             "accuracy": round(leak.accuracy, 4), "interval_99": [round(leak.low, 4), round(leak.high, 4)],
             "chance": round(leak.chance, 4), "sequences": leak.number, "leaks": leak.leaks,
+            "labels": {label_names[one]: round(accuracy, 4) for one, accuracy in leak.of_labels.items()},
             **({"cannot_be_avoided": INHERENT[name]} if name in INHERENT else {}),
         }
         for name, leak in found.items()
@@ -63,7 +70,7 @@ def leak_report(
     chance = next(iter(found.values())).chance
     part = f"part of the activities themselves: {', '.join(shown)} (chance {chance:.2f})" if shown else ""
     return {
-        "schema_version": 2, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
+        "schema_version": 3, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
         "of": rows,
     }  # fmt: skip
 
@@ -101,29 +108,37 @@ def _facing(joints_m: Float[Array, "22 3"]) -> Float[Array, "2"]:
 def _score(values: Float[Array, "sequence column"], label: Array, group: Array) -> Leak:
     spread = values.std(axis=0)
     scaled = np.asarray(values / np.where(spread > 0, spread, 1.0), np.float64)
-    right = np.zeros(len(label))
+    labels = np.unique(label)
+    answered = np.zeros((len(label), len(labels)))
     for one in np.unique(group):
         test = group == one
         if (~test).any():
-            right[test] = _right(scaled[~test], label[~test], scaled[test], label[test])
-    number = len(label)
-    accuracy = float(right.mean())
+            answered[test] = _answers(scaled[~test], label[~test], scaled[test], labels)
+    is_own = label[:, None] == labels
+    number, accuracy = len(label), float(answered[is_own].mean())
     chance = float(np.bincount(label).max() / number)
     low, high = _wilson(accuracy, number)
-    return Leak(accuracy=accuracy, low=low, high=high, chance=chance, number=number)
+    alone = {}
+    for one, answer, own in zip(labels.tolist(), answered.T, is_own.T, strict=True):
+        # a label that is answered as often where it is wrong is not recognised
+        if own.all():
+            continue
+        recall, others = float(answer[own].mean()), float(answer[~own].mean())
+        if _wilson(recall, int(own.sum()), Z_LABELS)[0] > max(chance, _wilson(others, int((~own).sum()), Z_LABELS)[1]):
+            alone[one] = recall
+    return Leak(accuracy=accuracy, low=low, high=high, chance=chance, number=number, of_labels=alone)
 
 
-def _right(train: Array, train_label: Array, test: Array, test_label: Array) -> Float[Array, " sequence"]:
-    """The expected share of right answers of the nearest neighbour; equally near ones are asked in equal parts."""
+def _answers(train: Array, train_label: Array, test: Array, labels: Array) -> Float[Array, "sequence label"]:
+    """How often the nearest neighbour gives each label; equally near ones are asked in equal parts."""
     distance = np.linalg.norm(test[:, None] - train[None], axis=-1)
     nearest: Bool[Array, "test train"] = distance <= distance.min(axis=1, keepdims=True) + 1e-12
-    same = train_label[None, :] == test_label[:, None]
-    return (nearest & same).sum(axis=1) / nearest.sum(axis=1)
+    return (nearest @ (train_label[:, None] == labels).astype(float)) / nearest.sum(axis=1, keepdims=True)
 
 
-def _wilson(share: float, number: int) -> tuple[float, float]:
+def _wilson(share: float, number: int, z: float = Z_99) -> tuple[float, float]:
     """Wilson's score interval."""
-    z2 = Z_99**2
+    z2 = z**2
     centre = (share + z2 / (2 * number)) / (1 + z2 / number)
-    half = Z_99 / (1 + z2 / number) * np.sqrt(share * (1 - share) / number + z2 / (4 * number**2))
+    half = z / (1 + z2 / number) * np.sqrt(share * (1 - share) / number + z2 / (4 * number**2))
     return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))

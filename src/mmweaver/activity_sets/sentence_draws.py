@@ -113,13 +113,14 @@ def order_of(texts: Sequence[str], draw: int, seed: int) -> list[str]:
     return [texts[int(place)] for place in stream(seed, "sentence draws", "order", draw).permutation(len(texts))]
 
 
-def folder_leaks(folders: Sequence[Path], labels: Sequence[int], draws: Sequence[Draw]) -> dict[str, Any]:
-    """The leak report of result folders: what tells the sentence (`labels`) without a look at the radar signal."""
+def folder_leaks(folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw]) -> dict[str, Any]:
+    """The leak report of result folders: what predicts their sentences without a look at the radar signal."""
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
-    label = np.asarray(labels)
+    names = list(dict.fromkeys(texts))
+    label = np.asarray([names.index(text) for text in texts])
     more = {
         "person": [draw.subject for draw in draws], "height": [pose.height_m for pose in poses],
         "file_size": [(folder / "radar.npz").stat().st_size for folder in folders],
     }  # fmt: skip
     found = circumstances([pose.joints_m for pose in poses], label, **more)
-    return leak_report(found, label, np.asarray([draw.index for draw in draws]))
+    return leak_report(found, label, np.asarray([draw.index for draw in draws]), names)

@@ -113,7 +113,7 @@ class Batch:
             return None
         from mmweaver.activity_sets.sentence_draws import folder_leaks
 
-        return folder_leaks([one.folder for one in sequences], [texts.index(one.text) for one in sequences], draws)
+        return folder_leaks([one.folder for one in sequences], [one.text for one in sequences], draws)
 
     def request(self, one: BatchSequence) -> "Request":
         """The request of one sequence."""

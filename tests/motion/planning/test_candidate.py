@@ -11,10 +11,10 @@ from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 from rooms import WINDOW_M, room, sofa_room
 
 
-def sampler(text: str, scene, *, start_m=None, attempt: int = 0, seed: int = 0) -> CandidateSampler:
+def sampler(text: str, scene, *, start_m=None, attempt: int = 0, seed: int = 0, **more) -> CandidateSampler:
     return CandidateSampler(
         plan=plan_motion(text, 4.0), floor=FloorMap(scene, WINDOW_M, 1.75), body=SkeletonProportions(1.75),
-        rng=np.random.default_rng(seed), start_m=start_m, attempt=attempt,
+        rng=np.random.default_rng(seed), start_m=start_m, attempt=attempt, **more,
     )  # fmt: skip
 
 
@@ -53,3 +53,22 @@ def test_a_narrow_floor_gives_no_walk():
 def test_who_starts_seated():
     assert starts_seated(plan_motion("sits, then stands up", 4.0))
     assert not starts_seated(plan_motion("walks", 4.0))
+
+
+@pytest.mark.parametrize("heading_rad", [0.0, 2.0, -2.5])
+@pytest.mark.parametrize(
+    "text",
+    ["sits", "sits down", "walks to the left", "walks towards the radar", "walks to the chair",
+     "waves facing the radar", "turns to face the radar"],
+)  # fmt: skip
+def test_a_given_start_and_heading_are_kept_whatever_is_done(text: str, heading_rad: float):
+    found = found_by(sampler(text, sofa_room(), start_m=(0.0, 1.7), heading_rad=heading_rad))
+    path = found.path()
+    assert path.heading_rad == pytest.approx(heading_rad)
+    hips_m = found.seats_m[0] if text == "sits" else path.start_m
+    assert hips_m == pytest.approx((0.0, 1.7), abs=1e-6)
+
+
+def test_a_seat_that_is_named_faces_where_it_faces():
+    found = found_by(sampler("sits on the chair", sofa_room(), heading_rad=2.0))
+    assert not any("stool" in note for note in found.notes)

@@ -64,6 +64,8 @@ _FALLS_OFF_STOOL = (
     0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
 )
 _NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
+_AT_START_M = 0.3  # the same where a heading is requested, too
+_FACES_AS_ASKED_RAD = 0.35
 _SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
 
 
@@ -283,7 +285,7 @@ class CandidateSampler:
     def _start_seated(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting]:
         """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
         cost, notes = 0.0, []
-        near = [s for s in seats if self.start_m is None or np.hypot(*(s.seat_m - self.start_m)) < _NEAR_START_M]
+        near = [seat for seat in seats if self._is_meant(seat, named=bool(self.plan.steps[0].seat))]
         falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
         if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
             sitting = near[int(self.rng.integers(len(near)))]
@@ -296,7 +298,10 @@ class CandidateSampler:
                 raise NoTrajectory("no free floor")
             spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
             facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
+            facing = facing if self.heading_rad is None else self.heading_rad
             sitting = stool_at(spot, facing, self.body)
+            if self.heading_rad is not None and first.lower != "sit_down":  # who sits already has the hips there
+                sitting = stool_at(2 * spot - sitting.seat_m, facing, self.body)
             if not stool_fits(sitting, self.floor, is_bed=lies_on_seat(self.plan)):
                 raise NoTrajectory("no room for a stool")
             notes.append(stool_note(sitting, none_at_all=not self.floor.scene.seats, is_bed=lies_on_seat(self.plan)))
@@ -307,6 +312,17 @@ class CandidateSampler:
             notes=notes,
         )  # fmt: skip
         return trajectory, sitting
+
+    def _is_meant(self, seat: Sitting, *, named: bool) -> bool:
+        """Whether who sits at the start may take the seat: near the requested start, and facing as requested.
+
+        A seat that the sentence names is taken whatever it faces.
+        """
+        strict = self.heading_rad is not None and not named
+        within_m = _AT_START_M if strict else _NEAR_START_M
+        if self.start_m is not None and np.hypot(*(seat.seat_m - self.start_m)) >= within_m:
+            return False
+        return not strict or abs(signed_angle_rad(seat.facing_rad, self.heading_rad)) < _FACES_AS_ASKED_RAD
 
 
 def _turns_the_body(step: Step) -> bool:
@@ -324,6 +340,9 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, fi
     if step.route_m:
         walk_along(trajectory, step, first=first)
         return
+    # who faces where the caller said turns before walking elsewhere, and is not under way at once
+    is_aimed = target is not None or goes_to_target(step) or _direction_rad(trajectory, step) is not None
+    first = first and not (is_aimed and trajectory.heading_is_given)
     if target is None and goes_to_target(step):
         walk_to_target(trajectory, step, first=first)
         return
@@ -378,9 +397,9 @@ def _facing_rad(facing: str, spot: Float[Array, "2"]) -> float:
 def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     """Turns to the left or right of the person, around, or to face something (`step.facing`)."""
     if step.facing:
-        if first and step.lower != "turn":
+        if first and step.lower != "turn" and not trajectory.heading_is_given:
             return  # the start faces that direction already
-        if first:
+        if first and not trajectory.heading_is_given:
             trajectory.start_heading_rad = trajectory.heading_rad = trajectory.heading_rad + float(
                 trajectory.rng.choice([-1.0, 1.0]) * trajectory.rng.uniform(1.2, 2.2)
             )
