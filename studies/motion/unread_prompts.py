@@ -8,7 +8,7 @@ and pairs of captions that differ in one word. `second`: 111 prompts of the demo
 and of an evaluation of HY-Motion. `captions`: 145 captions of HumanML3D's validation split (two stretches of its
 labels in BABEL's form, from characters 40,000 and 800,000). Each prompt counts once, without those read to widen the
 grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the
-first, 0a28cc6 before the others); what was understood was judged by hand, once, as the sentences of KIT-ML are
+first, 0a28cc6 before the others); what was understood was evaluated by hand, once, as the sentences of KIT-ML are
 (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 

@@ -341,19 +341,20 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, fi
         walk_along(trajectory, step, first=first)
         return
     # who faces where the caller said turns before walking elsewhere, and is not under way at once
-    is_aimed = target is not None or goes_to_target(step) or _direction_rad(trajectory, step) is not None
+    has_target = target is not None or goes_to_target(step)
+    direction = None if has_target else _direction_rad(trajectory, step)
+    is_aimed = has_target or direction is not None
     first = first and not (is_aimed and trajectory.heading_is_given)
     if target is None and goes_to_target(step):
         walk_to_target(trajectory, step, first=first)
         return
     if target is None and is_curved_or_lateral(step):
-        lay_curved_or_lateral(trajectory, step, _direction_rad(trajectory, step), first=first, last=last)
+        lay_curved_or_lateral(trajectory, step, direction, first=first, last=last)
         return
     if target is not None:
         walk_to_seat(trajectory, step, target, first=first)
         return
     trajectory.cost += 3.0 * (step.direction == "seat")
-    direction = _direction_rad(trajectory, step)
     if step.direction == "circle":
         walk_circle(trajectory, step, first=first, last=last)
     elif direction is None:
