@@ -36,8 +36,8 @@ SUMMARY = RowTable(
     labels={
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
-        "rf_genesis_as_released": "RF-Genesis as released, 27 of the rooms ([peers](docs/peers.md))",
-        "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room, the same 27",
+        "rf_genesis_as_released": "RF-Genesis as released ([peers](docs/peers.md))",
+        "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room",
         "diffusion_from_noise": "RF-Diffusion's kind, a small one, from noise, 16 other rooms",
         "weaver": "the network, from the photo",
         "physics_in_photographed_room": "physics, from the photo",
