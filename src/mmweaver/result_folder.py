@@ -47,7 +47,7 @@ def save_results(
     meta: dict[str, Any],
     *,
     adc: AdcCube | None = None,
-    iq_order: str = "iq",
+    iq_order: str | None = None,
     overwrite: bool = False,
     stages: Stages | None = None,
     pictures: bool = True,
@@ -57,8 +57,9 @@ def save_results(
     """Writes all files into the folder `out`, or none; returns the content of meta.json.
 
     Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
-    `iq_order` says. `extra`: further text files, by name. `more` writes further files that FILES knows into a folder.
-    Raises InputError where `out` holds other files and `overwrite` is not set, or where it cannot be written.
+    `iq_order` says (default: as the radar does). `extra`: further text files, by name. `more` writes further files that
+    FILES knows into a folder. Raises InputError where `out` holds other files and `overwrite` is not set, or where it
+    cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -73,7 +74,7 @@ def save_results(
                 own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw
                 counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order, counts_per_unit=own)
                 meta["adc_data_bin"] = {
-                    "iq_order": iq_order,
+                    "iq_order": iq_order or adc.config.lvds_iq_order,
                     "tx_order": adc.config.tx_order,
                     "counts_per_unit": counts,
                 }

@@ -94,7 +94,7 @@ def num_frames_of_stream(folder: Path) -> int:
 class StreamFolder:
     """Writes a recording in parts; `add` one after the other, then `finish`."""
 
-    def __init__(self, out: Path, meta: dict[str, Any], *, iq_order: str = "iq") -> None:
+    def __init__(self, out: Path, meta: dict[str, Any], *, iq_order: str | None = None) -> None:
         self.out, self.meta, self.iq_order = out, meta, iq_order
         self.frames, self.parts, self.skipped = 0, 0, 0
         self._counts: float | None = None
@@ -128,6 +128,7 @@ class StreamFolder:
 
     def _append_samples(self, adc: AdcCube) -> None:
         own = adc.scale / adc.config.adc_count_sqrt_mw
+        self.iq_order = self.iq_order or adc.config.lvds_iq_order
         words, self._counts = words_of(adc, iq_order=self.iq_order, counts_per_unit=own)
         try:
             with (self.out / BIN).open("ab") as file:

@@ -124,7 +124,7 @@ def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.Capture
         (["whole.bin", "--radar", "awr1843", "--tx-order", "0,0,1"], "tx_order"),
         (["whole.bin", "--radar", "awr1843", "--tx-order", "x"], "transmitters"),
         (["whole.bin", "--radar", "awr1843", "--iq-order", "xy"], "iq"),
-        (["whole.bin", "--radar", "bgt60"], "real samples"),
+        (["whole.bin", "--radar", "bgt60"], "no board for a DCA1000"),
         (["whole.bin", "--radar", "bgt60", "--points", "firmware"], "--points cfar"),
         (["whole.bin", "--radar", "awr1843", "--points", "lidar"], "firmware"),
         (["whole.bin", "--radar", "bare.cfg", "--points", "firmware"], "cfarCfg"),

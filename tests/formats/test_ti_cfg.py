@@ -115,7 +115,7 @@ adcCfg 2 0
 adcbufCfg -1 1 0 1 1
 profileCfg 0 77 7 7 20.81 0 0 8.883 0 256 30000 0 0 164
 chirpCfg 0 5 0 0 0 0 0 15
-frameCfg 0 5 128 0 100 50 1 0
+frameCfg 0 5 128 0 256 50 1 0
 procChainCfg 1 0 530 0 1
 ddmPhaseShiftAntOrder 0 2 3 1
 """
@@ -125,6 +125,7 @@ def test_doppler_division_turns_each_transmitter_at_its_own_rate(tmp_path: Path)
     config = read_ti_cfg(written(tmp_path, DOPPLER_DIVISION))
     weights = weights_of(config.tx_code)
     assert (config.num_slots, config.num_loops, config.num_antennas) == (6, 128, 16)
+    assert config.frame_period_s == pytest.approx(0.05)  # behind the number of samples
     for tx, multiple in zip((0, 2, 3, 1), range(4), strict=True):
         expected = np.exp(2j * np.pi * multiple * np.arange(6) / 6)
         assert np.abs(np.angle(weights[:, tx] / expected, deg=True)).max() < 5.625 / 2
@@ -161,6 +162,16 @@ def test_a_fourth_transmitter_is_the_awr2944(tmp_path: Path):
     assert steps == pytest.approx(np.ones(11))
 
 
+def test_the_profiles_phase_shifters_steer_the_beam(tmp_path: Path):
+    """As TI's long-range people detection does, a direction a sub-frame; samples turn against the shifter."""
+    text = BEST_RANGE.replace("57.14 0 0 70", f"57.14 0 {16 << 10 | 32 << 18} 70").replace(
+        "chirpCfg 0 0 0 0 0 0 0 1", "chirpCfg 0 0 0 0 0 0 0 7"
+    )
+    config = read_ti_cfg(written(tmp_path, text.replace("frameCfg 0 2 16", "frameCfg 0 0 16")))
+    assert np.allclose(weights_of(config.tx_code), [[1, -1j, -1]])
+    assert not read_ti_cfg(written(tmp_path, text.replace("0 0 7\n", "0 0 1\n"))).is_coded  # of one alone: nothing
+
+
 SUB_FRAMES = """dfeDataOutputMode 3
 channelCfg 15 5 0
 adcCfg 2 1
@@ -195,6 +206,10 @@ def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
     ("lines", "board", "lanes"),
     [
         ("% Platform:xWR68xx_AOP\n", AOP, 2),
+        ("% Platform:xWR68xx\ncompRangeBiasAndRxChanPhase 0" + 6 * " 1 0 -1 0" + "\n", AOP, 2),
+        ("compRangeBiasAndRxChanPhase 0.1" + 3 * " 1 0 -1 0 -1 0 1 0" + "\n", ODS, 2),
+        ("% Platform:xWR18xx\ncompRangeBiasAndRxChanPhase 0" + 6 * " 1 0 -1 0" + "\n", ISK, 2),
+        ("compRangeBiasAndRxChanPhase 0" + 3 * " 1 0 -1 0.1 1 0 -1 0" + "\n", ISK, 2),
         ("% Platform:xWR16xx\n", BOOST_1642, 2),
         ("% Platform:xWR14xx\n", ISK, 4),
         ("antGeometry0 -1 -1 0 0 -3 -3 -2 -2 -1 -1 0 0\nantGeometry1 -1 0 -1 0 -3 -2 -3 -2 -3 -2 -3 -2\n"
@@ -203,7 +218,8 @@ def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
          "antPhaseRot 1 -1 -1 1 1 -1 -1 1 1 -1 -1 1\n", ODS, 2),
         ("antGeometry0 0 -1 -2 -3 -2 -3 -4 -5 -4 -5 -6 -7\nantGeometry1 -1 -1 -1 -1 0 0 0 0 -1 -1 -1 -1\n", ISK, 2),
     ],
-    ids=["AOP named", "1642 named", "1443 named", "AOP's geometry", "ODS's geometry", "ISK's geometry"],
+    ids=["AOP named", "AOP's phases", "ODS's phases", "named otherwise", "measured phases", "1642 named", "1443 named",
+         "AOP's geometry", "ODS's geometry", "ISK's geometry"],
 )  # fmt: skip
 def test_the_board_of_a_cfg(tmp_path: Path, lines: str, board: AntennaTable, lanes: int):
     """Named in a comment, or by the lines that TI's people tracking has for its board."""

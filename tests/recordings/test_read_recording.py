@@ -21,7 +21,7 @@ def adc(tmp_path: Path) -> AdcCube:
     config = radar_of_cfg(tmp_path)
     adc = counts(config, 3)
     write_radar(tmp_path / "capture" / "iwr1843", adc)
-    write_bin(tmp_path / "adc_data.bin", adc, iq_order="iq", counts_per_unit=1.0)
+    write_bin(tmp_path / "adc_data.bin", adc, counts_per_unit=1.0)
     np.save(tmp_path / "adc.npy", adc.samples)
     (tmp_path / "processed").mkdir()
     write_radar_npz(tmp_path / "processed" / "radar.npz", radar_cube(adc))
@@ -41,6 +41,25 @@ def test_every_kind_gives_the_same_cube(adc: AdcCube, tmp_path: Path):
         assert np.array_equal(one.cube.values, wanted), one.path
         assert one.cube.config.start_frequency_hz == adc.config.start_frequency_hz
         assert all(file.is_file() for file in one.files.values())
+
+
+def test_the_iq_order_is_the_radars_unless_it_is_given(adc: AdcCube, tmp_path: Path):
+    """adcbufCfg's SampleSwap of the .cfg: the SDK's demo sends Q first."""
+    cfg = tmp_path / "made.cfg"
+    found = read_recording(tmp_path / "adc_data.bin", cfg)
+    assert (adc.config.lvds_iq_order, found.iq_order) == ("qi", "qi")
+    write_bin(tmp_path / "studio.bin", adc, iq_order="iq", counts_per_unit=1.0)
+    again = read_recording(tmp_path / "studio.bin", cfg, iq_order="iq")
+    assert np.array_equal(again.cube.values, found.cube.values)
+    assert not np.array_equal(read_recording(tmp_path / "studio.bin", cfg).cube.values, found.cube.values)
+
+
+def test_samples_with_headers_are_refused(adc: AdcCube, tmp_path: Path):
+    cfg = tmp_path / "headers.cfg"
+    cfg.write_text((tmp_path / "made.cfg").read_text().replace("lvdsStreamCfg -1 0", "lvdsStreamCfg -1 1"))
+    with pytest.raises(InputError, match="HSI headers"):
+        read_recording(tmp_path / "adc_data.bin", cfg)
+    assert read_recording(tmp_path / "adc.npy", cfg, axes="frame,loop,tx,rx,sample").adc is not None
 
 
 def test_a_cube_is_processed_without_samples(adc: AdcCube, tmp_path: Path):

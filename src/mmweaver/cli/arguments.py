@@ -200,7 +200,10 @@ def add_general_options(parser: argparse.ArgumentParser) -> None:
 def add_layout_options(parser: Options, *, rare: bool = False) -> None:
     """The options that say how a DCA1000 .bin is laid out."""
     shown = help_of(rare)
-    parser.add_argument("--iq-order", choices=("iq", "qi"), help=shown("I or Q first in the .bin (default iq)"))
+    parser.add_argument(
+        "--iq-order", choices=("iq", "qi"),
+        help=shown("I or Q first in the .bin (default: as the .cfg or mmWave Studio file says, else iq)"),
+    )  # fmt: skip
     parser.add_argument(
         "--tx-order", type=transmitters, metavar="N,N,N",
         help=shown("order in which the transmitters fire (default: the radar's)"),

@@ -223,7 +223,7 @@ def _settings(arguments: argparse.Namespace) -> dict[str, Any]:
 def _output(arguments: argparse.Namespace) -> dict[str, Any]:
     """The arguments of `Generation.save` that say which files are written."""
     return {
-        "adc_data_bin": arguments.bin, "iq_order": arguments.iq_order or "iq", "pictures": not arguments.no_pictures,
+        "adc_data_bin": arguments.bin, "iq_order": arguments.iq_order, "pictures": not arguments.no_pictures,
     }  # fmt: skip
 
 

@@ -70,7 +70,7 @@ def run_stream(
                 }  # fmt: skip
                 for of_sentence in ("text", "refused", "plan", "clauses"):
                     meta.pop(of_sentence, None)
-                folder = StreamFolder(out, meta, iq_order=arguments.iq_order or "iq")
+                folder = StreamFolder(out, meta, iq_order=arguments.iq_order)
             if chunk.refused:
                 print(f"skipped: {chunk.refused}", file=sys.stderr)
             said = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}

@@ -179,6 +179,7 @@ BGT60 = RadarConfig(
     rx_position_m=halfwave_positions(((1.0, 0.0), (0.0, 1.0), (0.0, 0.0)), 60.75e9),
     tx_order=(0,),
     complex_samples=False,
+    lvds_lanes=0,
     num_range_bins=32,
     tx_power_dbm=5.0,
     antenna_gain_dbi=5.0,

@@ -20,7 +20,8 @@ SCHEMA_VERSION = 1
 RAMP_BEYOND_BAND_HZ = 100e6  # that boards accept past the end of their band: the ADC has stopped by then
 # fields that radar files have only where they differ from the default
 RARE_FIELDS = (
-    "loop_gap_s", "tx_code", "lvds_lanes", "rx_channels", "rx_inverted", "frame_words_before", "frame_words_after",
+    "loop_gap_s", "tx_code", "lvds_lanes", "lvds_iq_order", "rx_channels", "rx_inverted", "frame_words_before",
+    "frame_words_after",
 )  # fmt: skip
 Position = tuple[float, float, float]
 
@@ -63,7 +64,8 @@ class RadarConfig:
     frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
     loop_gap_s: float = 0.0  # pause between the last chirp of a loop and the next loop
     tx_code: TxCode = ()  # (slot, tx) weights of simultaneous transmitters; () = TDM-MIMO in tx_order
-    lvds_lanes: int = 2  # of a DCA1000's recording: 2 or 4, see formats.dca1000
+    lvds_lanes: int = 2  # of a DCA1000's recording: 2 or 4, see formats.dca1000; 0: it cannot have one
+    lvds_iq_order: str = "iq"  # which of a sample's parts comes first there, "iq" or "qi"
     rx_channels: tuple[int, ...] = ()  # the receivers' numbers on the board; () = 0, 1, 2 ...
     rx_inverted: tuple[int, ...] = ()  # receivers (indices) whose feed turns the phase by 180 degrees
     frame_words_before: int = 0  # int16 words of other sub-frames in each frame of a recording, before this one
@@ -108,7 +110,8 @@ class RadarConfig:
                 f"tx_order {self.tx_order} must name each of its {len(self.tx_position_m)} transmitters once",
             ),
             (self.loop_gap_s < 0, "loop_gap_s cannot be negative"),
-            (self.lvds_lanes not in (2, 4), f"a DCA1000 records 2 or 4 lanes, not {self.lvds_lanes}"),
+            (self.lvds_lanes not in (0, 2, 4), f"a DCA1000 records 2 or 4 lanes, not {self.lvds_lanes}"),
+            (self.lvds_iq_order not in ("iq", "qi"), f"I/Q order is iq or qi, not {self.lvds_iq_order!r}"),
             (
                 bool(self.rx_channels) and len(set(self.rx_channels)) != self.num_rx,
                 f"rx_channels {self.rx_channels} must name each of its {self.num_rx} receivers once",

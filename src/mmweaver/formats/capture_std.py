@@ -9,7 +9,7 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
-from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order, ti_cfg_lines, whole
+from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order, refuse_headers, ti_cfg_lines, whole
 
 PACKETS, RADAR = "dca.pcap", "radar.cfg"
 
@@ -54,14 +54,8 @@ def read_radar_capture(path: Path | str, frames: slice = slice(None)) -> RadarCa
     if not cfg.is_file():
         raise InputError(f"{folder} holds {PACKETS} but no {RADAR}; put the .cfg of the recording there")
     config, iq_order = read_ti_cfg(cfg), read_ti_cfg_iq_order(cfg)
-    lines = ti_cfg_lines(cfg, {"lvdsStreamCfg": 4})
-    for line in lines.get("lvdsStreamCfg", [])[-1:]:
-        if line.values[1] != 0:
-            raise InputError(
-                f"{cfg}, line {line.number}: the samples have HSI headers (lvdsStreamCfg's second number);"
-                " record without them"
-            )
-    num_frames = whole(lines["frameCfg"][-1], "frameCfg", 3)
+    refuse_headers(str(cfg))
+    num_frames = whole(ti_cfg_lines(cfg)["frameCfg"][-1], "frameCfg", 3)
     packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=num_frames or None, frames=frames)
     return RadarCapture(folder=folder, config=config, iq_order=iq_order, packets=packets)
 

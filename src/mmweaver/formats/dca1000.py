@@ -1,10 +1,12 @@
-"""The DCA1000's adc_data.bin: little-endian int16, complex samples, no header.
+"""The DCA1000's adc_data.bin: little-endian int16, no header.
 
 Two lanes (xWR16xx, 18xx, 68xx): frame, loop, transmitter (in firing order), receiver, sample; each four words hold two
 consecutive samples of one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo,
 SampleSwap 1). Four lanes (xWR12xx, 14xx): frame, loop, transmitter, sample; each eight words hold one sample of the
-receivers 0 to 3, I of all and then Q ("qi": Q first); a receiver that is off has its lane, too. The wrong I/Q order
-reverses the range axis. Of an advanced frame, the words of other sub-frames are skipped, and written as zeros.
+receivers 0 to 3, I of all and then Q ("qi": Q first); a receiver that is off has its lane, too. Real samples (AWR2944)
+have one word each in the same order; their mean over each chirp is removed. The wrong I/Q order reverses the range
+axis; without one it is the radar's own (`lvds_iq_order`). Of an advanced frame, the words of other sub-frames are
+skipped, and written as zeros.
 
 Reference: TI SWRA581B, mmWave Radar Device ADC Raw Data Capture.
 """
@@ -23,7 +25,6 @@ from mmweaver.core.safe_files.safe_arrays import read_words
 
 IQ_ORDERS = ("iq", "qi")
 INT16_MAX = 32767
-WORDS_PER_SAMPLE = 2
 GROWING = "parts.jsonl"  # next to a file that grows (mmweaver generate --stream): a kill may cut its last frame
 LANES = 4  # of the devices with more than two
 HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` chooses the scale
@@ -33,7 +34,7 @@ def read_bin(
     path: Path | str,
     config: RadarConfig,
     *,
-    iq_order: str = "iq",
+    iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
     frames: slice = slice(None),
 ) -> AdcCube:
@@ -42,7 +43,7 @@ def read_bin(
 
     `tx_order` is the firing order of the recording where it differs from the configuration's; the returned
     configuration then has it, because the TDM timing depends on it. Raises InputError where the file cannot be read,
-    is empty or ends within a frame, or where the radar's samples are real or odd in number.
+    is empty or ends within a frame, or where the radar's complex samples are odd in number.
     """
     config = _checked(config, iq_order, tx_order)
     path = Path(path)
@@ -64,20 +65,26 @@ def bytes_of_frame(config: RadarConfig) -> int:
 
 def _own_words(config: RadarConfig) -> int:
     channels = LANES if config.lvds_lanes == LANES else config.num_rx
-    return config.num_loops * config.num_slots * channels * config.num_samples * WORDS_PER_SAMPLE
+    return config.num_loops * config.num_slots * channels * config.num_samples * _words_per_sample(config)
 
 
-def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq") -> AdcCube:
+def _words_per_sample(config: RadarConfig) -> int:
+    return 2 if config.complex_samples else 1
+
+
+def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None = None) -> AdcCube:
     """Decodes int16 words, (word,), of whole frames as a DCA1000 sends them; samples in counts.
 
-    Raises InputError where the radar's samples are real or odd in number.
+    Raises InputError where the radar's complex samples are odd in number.
     """
     config = _checked(config, iq_order, None)
     num_frames = 2 * len(words) // bytes_of_frame(config)
     first = config.frame_words_before
     words = words.reshape(num_frames, bytes_of_frame(config) // 2)[:, first : first + _own_words(config)]
-    real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
+    real, imaginary = _parts(config, iq_order)
     head = (num_frames, config.num_loops, config.num_slots)
+    if not config.complex_samples:
+        return _of_real(words.reshape(*head, -1), config)
     if config.lvds_lanes == LANES:
         lanes = words.reshape(*head, config.num_samples, 2, LANES)[..., _channels(config)]
         parts = lanes[..., real, :].swapaxes(-1, -2), lanes[..., imaginary, :].swapaxes(-1, -2)
@@ -91,11 +98,22 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq"
     return AdcCube(samples=samples, config=config, scale=float("nan"))
 
 
+def _of_real(words: np.ndarray, config: RadarConfig) -> AdcCube:
+    """Words (frame, loop, slot, word) of real samples."""
+    if config.lvds_lanes == LANES:
+        values = words.reshape(*words.shape[:3], config.num_samples, LANES)[..., _channels(config)].swapaxes(-1, -2)
+    else:
+        values = words.reshape(*words.shape[:3], config.num_rx, config.num_samples)
+    values = values - values.mean(axis=-1, keepdims=True, dtype=np.float32)
+    samples = upright(by_transmitter(values.astype(np.complex64), config), config)
+    return AdcCube(samples=samples, config=config, scale=float("nan"))
+
+
 def write_bin(
     path: Path | str,
     adc: AdcCube,
     *,
-    iq_order: str = "iq",
+    iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> float:
@@ -103,7 +121,7 @@ def write_bin(
 
     Without `counts_per_unit` the largest component is scaled to half of full scale. `tx_order` changes only the order
     in the file, for readers with a fixed order; the samples keep the timing of their own configuration. Raises
-    InputError where a sample is not finite or does not fit int16, where samples are real or odd in number, or where
+    InputError where a sample is not finite or does not fit int16, where complex samples are odd in number, or where
     the file cannot be written.
     """
     pairs, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
@@ -115,14 +133,14 @@ def write_bin(
 def words_of(
     adc: AdcCube,
     *,
-    iq_order: str = "iq",
+    iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> tuple[np.ndarray, float]:
     """The int16 words that `write_bin` writes, and the counts per unit. Raises InputError as it does."""
     config = _checked(adc.config, iq_order, tx_order)
     samples = upright(adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)], config)
-    parts = np.real(samples), np.imag(samples)
+    parts = (np.real(samples), np.imag(samples)) if config.complex_samples else (np.real(samples),)
     low = float(min(part.min(initial=0) for part in parts))
     high = float(max(part.max(initial=0) for part in parts))
     peak = max(-low, high)
@@ -144,9 +162,16 @@ def words_of(
     return frame, float(counts_per_unit)
 
 
-def _words(samples: np.ndarray, config: RadarConfig, iq_order: str, counts_per_unit: float) -> np.ndarray:
+def _words(samples: np.ndarray, config: RadarConfig, iq_order: str | None, counts_per_unit: float) -> np.ndarray:
     """Samples (frame, loop, slot, rx, sample) as int16 words (frame, word)."""
-    real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
+    real, imaginary = _parts(config, iq_order)
+    if not config.complex_samples:
+        counts = np.rint(np.real(samples) * np.float64(counts_per_unit))
+        if config.lvds_lanes == LANES:
+            every = np.zeros((*samples.shape[:3], config.num_samples, LANES), "<i2")
+            every[..., _channels(config)] = counts.swapaxes(-1, -2)
+            counts = every
+        return counts.astype("<i2").reshape(len(samples), -1)
     if config.lvds_lanes == LANES:
         lanes = np.zeros((*samples.shape[:3], config.num_samples, 2, LANES), "<i2")
         for part, component in ((np.real(samples), real), (np.imag(samples), imaginary)):
@@ -157,6 +182,11 @@ def _words(samples: np.ndarray, config: RadarConfig, iq_order: str, counts_per_u
     pairs[:, real] = np.rint(np.real(grouped) * np.float64(counts_per_unit))
     pairs[:, imaginary] = np.rint(np.imag(grouped) * np.float64(counts_per_unit))
     return pairs.reshape(len(samples), -1)
+
+
+def _parts(config: RadarConfig, iq_order: str | None) -> tuple[int, int]:
+    """Places of I and of Q in a sample."""
+    return (0, 1) if (iq_order or config.lvds_iq_order) == "iq" else (1, 0)
 
 
 def _channels(config: RadarConfig) -> list[int]:
@@ -178,12 +208,12 @@ def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
     return samples * sign[:, None]
 
 
-def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | None) -> RadarConfig:
-    if iq_order not in IQ_ORDERS:
+def _checked(config: RadarConfig, iq_order: str | None, tx_order: tuple[int, ...] | None) -> RadarConfig:
+    if iq_order is not None and iq_order not in IQ_ORDERS:
         raise InputError(f"unknown I/Q order {iq_order!r}; known: {', '.join(IQ_ORDERS)}")
-    if not config.complex_samples:
-        raise InputError(f"radar {config.name!r} has real samples, a DCA1000 file holds complex ones; use .npy")
-    if config.num_samples % 2 and config.lvds_lanes != LANES:
+    if config.lvds_lanes == 0:
+        raise InputError(f"radar {config.name!r} is no board for a DCA1000, so there is no .bin of it; use .npy")
+    if config.num_samples % 2 and config.lvds_lanes != LANES and config.complex_samples:
         raise InputError(
             f"a DCA1000 file holds samples in pairs, but a chirp has {config.num_samples}; take an even number"
         )
@@ -193,7 +223,8 @@ def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | Non
 def _num_frames(path: Path, size: int, config: RadarConfig) -> int:
     frame_bytes = bytes_of_frame(config)
     channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
-    layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x 4"
+    layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x"
+    layout += f" {2 * _words_per_sample(config)}"
     if config.frame_words_before or config.frame_words_after:
         layout += f" + {2 * (config.frame_words_before + config.frame_words_after)} of other sub-frames"
     if size == 0:

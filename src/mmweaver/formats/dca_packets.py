@@ -74,7 +74,7 @@ def read_pcap(
     path: Path | str,
     config: RadarConfig,
     *,
-    iq_order: str = "iq",
+    iq_order: str | None = None,
     num_frames: int | None = None,
     frames: slice = slice(None),
 ) -> PacketCapture:

@@ -11,11 +11,10 @@ from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.formats.ti_chirps import MOST_TX, SubFrame, TiChirps, radar_from_ti
+from mmweaver.formats.ti_chirps import MOST_TX, SHIFTER_DEG, SubFrame, TiChirps, profile_phases_deg, radar_from_ti
 
 Answer = TypeVar("Answer")
 PLAIN_FRAMES = ("legacyFrameChirp", "singleFrameChirp")
-DEGREES_A_STEP = 5.625  # of a transmitter's phase shifter
 VARIATIONS = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec", "adcStartTimeVar_usec")
 
 
@@ -32,15 +31,24 @@ def read_mmwave_studio(
 
     def radar(device: Any) -> RadarConfig:
         chirps = _chirps(path.name.split(".")[0], device["rfConfig"], sub_frame)
-        return radar_from_ti(replace(chirps, antennas=antennas, lvds_lanes=lanes or _lanes(device)))
+        return radar_from_ti(
+            replace(chirps, antennas=antennas, lvds_lanes=lanes or _lanes(device), lvds_iq_order=_iq_order(device))
+        )
 
     return _query(path, radar)
 
 
 def read_mmwave_studio_iq_order(path: Path | str) -> str:
     """The I/Q order of a recording with this configuration, "iq" or "qi", from iqSwapSel."""
-    swap = _query(Path(path), lambda device: _whole(device["rawDataCaptureConfig"]["rlDevDataFmtCfg_t"]["iqSwapSel"]))
-    return "qi" if swap == 1 else "iq"
+    return _query(Path(path), _iq_order)
+
+
+def _iq_order(device: Any) -> str:
+    return (
+        "qi"
+        if _whole(device.get("rawDataCaptureConfig", {}).get("rlDevDataFmtCfg_t", {}).get("iqSwapSel", 0)) == 1
+        else "iq"
+    )
 
 
 def is_mmwave_studio(values: Any) -> bool:
@@ -67,6 +75,8 @@ def _lanes(device: Any) -> int:
 
 
 def _chirps(name: str, setup: Any, sub_frame: int | None) -> TiChirps:
+    if _whole(setup["rlChanCfg_t"].get("cascading", 0)) != 0:
+        raise InputError("it is a cascade of several chips, which cannot be read; use one chip")
     frames = _frames(setup)
     if sub_frame is None and len(frames) > 1:
         raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")
@@ -97,6 +107,7 @@ def _chirps(name: str, setup: Any, sub_frame: int | None) -> TiChirps:
         frame_period_ms=frame.period_ms,
         complex_samples=_whole(setup["rlAdcOutCfg_t"]["fmt"]["b2AdcOutFmt"]) != 0,
         chirp_phase_deg=_phases(setup, frame.first, frame.last),
+        profile_phase_deg=profile_phases_deg(_whole(profile.get("txPhaseShifter", 0))),
         sub_frame=SubFrame(index=chosen, samples_before=sum(counts[:chosen]), samples_after=sum(counts[chosen + 1 :])),
     )
 
@@ -113,12 +124,13 @@ class _ChirpFrame:
 
 def _frames(setup: Any) -> list[_ChirpFrame]:
     """The plain frame, or the sub-frames of an advanced one."""
-    if setup["waveformType"] in PLAIN_FRAMES:
+    waveform = setup.get("waveformType", PLAIN_FRAMES[0])  # writers other than mmWave Studio leave it out
+    if waveform in PLAIN_FRAMES:
         frame = setup["rlFrameCfg_t"]
         first, last, loops = (_whole(frame[key]) for key in ("chirpStartIdx", "chirpEndIdx", "numLoops"))
         return [_ChirpFrame(first=first, last=last, num_loops=loops, period_ms=float(frame["framePeriodicity_msec"]))]
-    if setup["waveformType"] != "advancedFrameChirp":
-        raise InputError(f"waveform {setup['waveformType']!r} cannot be read; use frames of chirps")
+    if waveform != "advancedFrameChirp":
+        raise InputError(f"waveform {waveform!r} cannot be read; use frames of chirps")
     sequence = setup["rlAdvFrameCfg_t"]["frameSeq"]
     entries = [entry["rlSubFrameCfg_t"] for entry in sequence["subFrameCfg"]][: _whole(sequence["numOfSubFrames"])]
     period_ms = sum(float(entry["subFramePeriodicity_msec"]) for entry in entries)
@@ -142,7 +154,8 @@ def _profile(setup: Any, profile_ids: set[int]) -> Any:
 
 
 def _phases(setup: Any, first: int, last: int) -> tuple[tuple[float, ...], ...]:
-    """Degrees of each transmitter in each chirp: 180 by BPM (odd bits of constBpmVal), 5.625 a step of a shifter."""
+    """Degrees of each transmitter in each chirp's samples: 180 by BPM (odd bits of constBpmVal), -5.625 a step of a
+    shifter."""
     phases = np.zeros((512, MOST_TX))
     for entry in setup.get("rlBpmChirps") or []:
         chirp = entry["rlBpmChirpCfg_t"]
@@ -152,7 +165,7 @@ def _phases(setup: Any, first: int, last: int) -> tuple[tuple[float, ...], ...]:
     for entry in setup.get("rlRfPhaseShiftCfgs") or []:
         chirp = entry["rlRfPhaseShiftCfg_t"]
         steps = [_whole(chirp.get(f"tx{tx}PhaseShift", 0)) for tx in range(MOST_TX)]
-        phases[_whole(chirp["chirpStartIdx"]) : _whole(chirp["chirpEndIdx"]) + 1] += DEGREES_A_STEP * np.array(steps)
+        phases[_whole(chirp["chirpStartIdx"]) : _whole(chirp["chirpEndIdx"]) + 1] -= SHIFTER_DEG * np.array(steps)
     return tuple(tuple(float(one) for one in row) for row in phases[first : last + 1])
 
 

@@ -1,7 +1,9 @@
 """Which board a TI .cfg is for: its antenna lines, else the platform that its comments name.
 
-Reference: TI, 3D People Tracking tuning guide (antGeometry0, antGeometry1, antPhaseRot); mmWave MCU+ SDK
-(antGeometryCfg); the header comments of TI's mmWave Demo Visualizer.
+A platform is often just xWR68xx, which comes with four kinds of antennas; channel phases (compRangeBiasAndRxChanPhase)
+that turn the receivers of an AOP or an ODS over then tell which. Reference: TI, 3D People Tracking tuning guide
+(antGeometry0, antGeometry1, antPhaseRot); mmWave MCU+ SDK (antGeometryCfg); the header comments of TI's mmWave Demo
+Visualizer.
 """
 
 import re
@@ -12,7 +14,8 @@ from mmweaver.core.antenna_tables import ANTENNAS, AntennaTable, table_of_virtua
 from mmweaver.core.errors import InputError
 
 NUM_RX = 4
-COMMANDS = ("antGeometry0", "antGeometry1", "antPhaseRot", "antGeometryCfg")
+COMMANDS = ("antGeometry0", "antGeometry1", "antPhaseRot", "antGeometryCfg", "compRangeBiasAndRxChanPhase")
+TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides
 # of the platform's name, without its punctuation: board
 PLATFORMS = (("68xxaop", "aop"), ("6843aop", "aop"), ("18xxaop", "aop"), ("1843aop", "aop"), ("68xxods", "ods"),
              ("6843ods", "ods"), ("16xx", "boost1642"), ("1642", "boost1642"), ("294", "evm2944"), ("14xx", "boost"),
@@ -39,7 +42,20 @@ def antennas_of_cfg(text: str) -> AntennaTable | None:
         places = np.stack([2 * across * pairs[:, 1], -2 * up * pairs[:, 0]], axis=1)
         return table_of_virtual_array("antGeometryCfg", places, NUM_RX, source="antGeometryCfg of the .cfg")
     platform = _platform(text)
+    if platform in ("", "xwr68xx", "xwr64xx") and (turned := _turned_receivers(lines)):
+        return next((board for board in TURNED if board.rx_inverted == turned), None)
     return next((ANTENNAS[board] for part, board in PLATFORMS if part in platform), None)
+
+
+def _turned_receivers(lines: dict[str, list[float]]) -> tuple[int, ...]:
+    """The receivers that the channel phases turn over, the same for each transmitter; () where they are other ones."""
+    factors = np.array(lines.get("compRangeBiasAndRxChanPhase", [])[1:])
+    if not factors.size or factors.size % (2 * NUM_RX):
+        return ()
+    each = factors.reshape(-1, NUM_RX, 2)
+    if not (np.abs(each[..., 0]) == 1).all() or each[..., 1].any() or (each != each[0]).any():
+        return ()
+    return tuple(int(rx) for rx in np.flatnonzero(each[0, :, 0] < 0))
 
 
 def has_four_lanes(text: str) -> bool:

@@ -11,18 +11,19 @@ from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_text
+from mmweaver.formats.radar_options import split_radar
 from mmweaver.formats.ti_antennas import antennas_of_cfg, has_four_lanes
-from mmweaver.formats.ti_chirps import MOST_TX, SubFrame, TiChirps, radar_from_ti
+from mmweaver.formats.ti_chirps import MOST_TX, SHIFTER_DEG, SubFrame, TiChirps, profile_phases_deg, radar_from_ti
 
 MAX_CFG_BYTES = 2**20
 # command: minimum count of numbers that follow it (later SDKs append more)
 NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8}
 FRAMES = {"frameCfg": 6, "advFrameCfg": 5, "subFrameCfg": 10}  # one of the first two
-OPTIONAL = {"adcbufCfg": 4, "bpmCfg": 4, "ddmPhaseShiftAntOrder": 2}
+OPTIONAL = {"adcbufCfg": 4, "bpmCfg": 4, "ddmPhaseShiftAntOrder": 2, "lvdsStreamCfg": 4}
 REFUSED = {"contModeCfg": "continuous mode", "advChirpCfg": "advanced chirps", "LUTDataCfg": "advanced chirps"}
 OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
-SHIFTER_DEG = 5.625  # a step of the phase shifters
+MCU_FRAME_NUMBERS = 8  # of frameCfg in the MCU+ SDK, which has the number of samples before the period
 CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 
 
@@ -47,9 +48,12 @@ def read_ti_cfg(
     lines = ti_cfg_lines(path)
     text = read_text(path, max_bytes=MAX_CFG_BYTES, errors="replace")
     try:
-        board = antennas or antennas_of_cfg(text)
-        lanes = lanes or (4 if has_four_lanes(text) or _is_interleaved(lines) else 2)
-        return radar_from_ti(replace(_chirps(path.stem, lines, sub_frame), antennas=board, lvds_lanes=lanes))
+        chirps = replace(
+            _chirps(path.stem, lines, sub_frame), antennas=antennas or antennas_of_cfg(text),
+            lvds_lanes=lanes or (4 if has_four_lanes(text) or _is_interleaved(lines) else 2),
+            lvds_iq_order=_iq_order(lines),
+        )  # fmt: skip
+        return radar_from_ti(chirps)
     except InputError as error:
         text = str(error)
         raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
@@ -57,10 +61,26 @@ def read_ti_cfg(
 
 def read_ti_cfg_iq_order(path: Path | str) -> str:
     """The I/Q order of a recording with this .cfg, "iq" or "qi", from adcbufCfg's SampleSwap ("iq" without it)."""
-    lines = ti_cfg_lines(Path(path)).get("adcbufCfg")
-    if not lines:
+    return _iq_order(ti_cfg_lines(Path(path)))
+
+
+def refuse_headers(name: str) -> None:
+    """Raises InputError where a .cfg (options may follow its name) puts HSI headers between the recorded samples."""
+    path = Path(split_radar(name)[0])
+    if path.suffix.lower() != ".cfg" or not path.is_file():
+        return
+    for line in ti_cfg_lines(path).get("lvdsStreamCfg", [])[-1:]:
+        if line.values[1] != 0:
+            raise InputError(
+                f"{path}, line {line.number}: the samples have HSI headers (lvdsStreamCfg's second number);"
+                " record without them"
+            )
+
+
+def _iq_order(lines: dict[str, list[Line]]) -> str:
+    if "adcbufCfg" not in lines:
         return "iq"
-    values = lines[-1].values
+    values = lines["adcbufCfg"][-1].values
     # SDK 1 has four numbers (format, swap, interleave, threshold); later versions put the subframe before them
     swap = values[1] if len(values) == 4 else values[2]
     return "qi" if swap == 1 else "iq"
@@ -84,7 +104,10 @@ def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, li
                 f"{path}, line {number}: {REFUSED[command]} ({command}) cannot be read; use frames of chirps"
             )
         if command in OTHER_DEVICES:
-            raise InputError(f"{path}, line {number}: {command} is for {OTHER_DEVICES[command]}, which cannot be read")
+            raise InputError(
+                f"{path}, line {number}: {command} is for {OTHER_DEVICES[command]}, which cannot be read; describe its"
+                " chirp in a radar.json (mmweaver radar iwr6843isk --json > radar.json)"
+            )
         if command in counts:
             found.setdefault(command, []).append(Line(number, _numbers(path, number, command, rest, counts[command])))
     missing = [command for command in NEEDED if command not in found]
@@ -144,6 +167,7 @@ def _chirps(name: str, lines: dict[str, list[Line]], sub_frame: int | None) -> T
         frame_period_ms=frame.period_ms,
         complex_samples=ADC_FORMATS[adc_format],
         chirp_phase_deg=_ddm_phases(lines, masks) or _bpm_phases(lines, masks, frame),
+        profile_phase_deg=profile_phases_deg(whole(profile, "profileCfg", 6)),
         sub_frame=_others(lines, frame),
     )
 
@@ -172,7 +196,8 @@ def _frame(lines: dict[str, list[Line]], sub_frame: int | None) -> Frame:
             raise InputError("it has one plain frame (frameCfg) and no sub-frames; leave out --subframe")
         line = lines["frameCfg"][-1]
         first, last, loops = (whole(line, "frameCfg", at) for at in range(3))
-        return Frame(index=None, first=first, last=last, num_loops=loops, period_ms=line.values[4])
+        period_ms = line.values[5 if len(line.values) >= MCU_FRAME_NUMBERS else 4]
+        return Frame(index=None, first=first, last=last, num_loops=loops, period_ms=period_ms)
     frames = _sub_frames(lines)
     if sub_frame is None and len(frames) > 1:
         raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")

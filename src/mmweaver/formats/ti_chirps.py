@@ -12,6 +12,7 @@ from mmweaver.core.range_window import default_range_bins
 from mmweaver.core.transmit_code import tx_code_of
 
 MOST_TX = 4
+SHIFTER_DEG = 5.625  # a step of the phase shifters
 Chirp = tuple[complex, ...]  # weight of each of the board's transmitters
 
 
@@ -45,9 +46,22 @@ class TiChirps:
     complex_samples: bool = True
     # phase of each transmitter (tx,) in each chirp, in degrees: BPM or phase shifters; () = all 0
     chirp_phase_deg: tuple[tuple[float, ...], ...] = ()
+    profile_phase_deg: tuple[float, ...] = (0.0,) * MOST_TX  # of each transmitter in all chirps, added to the former
     antennas: AntennaTable | None = None  # None: the xWR1843BOOST's, or the AWR2944EVM's with a fourth transmitter
     lvds_lanes: int = 2
+    lvds_iq_order: str = "iq"
     sub_frame: SubFrame | None = None
+
+
+def profile_phases_deg(code: int) -> tuple[float, ...]:
+    """A profile's txPhaseShifter as phases in the samples: six bits a transmitter, in steps of 5.625 degrees.
+
+    Samples turn against the shifter: they are the ramp times the conjugate echo. Source: rlProfileCfg_t of mmWaveLink.
+
+    >>> profile_phases_deg(0x00_40_20_00)
+    (0.0, -45.0, -90.0, 0.0)
+    """
+    return tuple(-SHIFTER_DEG * (code >> (8 * tx + 2) & 0x3F) + 0.0 for tx in range(MOST_TX))
 
 
 def radar_from_ti(chirps: TiChirps) -> RadarConfig:
@@ -73,8 +87,8 @@ def radar_from_ti(chirps: TiChirps) -> RadarConfig:
     middle_hz = start_hz + slope * (chirps.adc_start_time_us * 1e-6 + chirps.num_samples / sample_rate_hz / 2)
     bins = chirps.num_samples if chirps.complex_samples else chirps.num_samples // 2
     loops = max(chirps.num_loops * repeats, 1)
-    words = 2 * len(receivers) if chirps.complex_samples else len(receivers)  # of a sample of all receivers
-    words = words if chirps.lvds_lanes == 2 else 8
+    lanes = len(receivers) if chirps.lvds_lanes == 2 else 4
+    words = 2 * lanes if chirps.complex_samples else lanes  # of a sample of all receivers
     other = chirps.sub_frame or SubFrame(index=0, samples_before=0, samples_after=0)
     return RadarConfig(
         name=chirps.name,
@@ -96,6 +110,7 @@ def radar_from_ti(chirps: TiChirps) -> RadarConfig:
         frequency_limits_hz=_band_hz(start_hz),
         tx_code=() if is_tdm else tx_code_of(weights),
         lvds_lanes=chirps.lvds_lanes,
+        lvds_iq_order=chirps.lvds_iq_order,
         rx_channels=() if receivers == list(range(len(receivers))) else tuple(receivers),
         rx_inverted=tuple(index for index, bit in enumerate(receivers) if bit in board.rx_inverted),
         frame_words_before=other.samples_before * words,
@@ -144,6 +159,7 @@ def _weights(chirps: TiChirps, board: AntennaTable) -> tuple[Chirp, ...]:
             raise InputError(
                 f"a chirp fires transmitter mask {mask}, but the channel mask {chirps.tx_mask} does not enable it"
             )
+        phase_deg = tuple(map(sum, zip(phase_deg, chirps.profile_phase_deg, strict=True)))
         on = [tx for tx in range(num_tx) if mask >> tx & 1]
         turn = 0.0 if len(on) > 1 else phase_deg[on[0]]  # of one alone it means nothing
         found.append(tuple(_phasor(phase_deg[tx] - turn) if tx in on else 0j for tx in range(num_tx)))

@@ -53,7 +53,7 @@ def implausible(
         return found  # too little to check more
     found += [*_lanes(few, iq_order)]
     if not found:
-        found += [*_beat_sign(few), *_layout(few), *_period(adc.config, frame_time_s)]
+        found += [*_beat_sign(few, iq_order), *_layout(few), *_period(adc.config, frame_time_s)]
     if not found:
         found += [*_transmitters(cube), *_velocity_sign(cube)]
     return found
@@ -117,7 +117,7 @@ def _occupied(adc: AdcCube) -> float:
     return float((power.sum(axis=1) ** 2 / np.maximum((power**2).sum(axis=1), 1e-300)).mean() / power.shape[1])
 
 
-def _beat_sign(adc: AdcCube) -> Iterator[str]:
+def _beat_sign(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
     """Energy at negative beat frequencies: I and Q the wrong way round."""
     if not adc.config.complex_samples:
         return
@@ -127,9 +127,12 @@ def _beat_sign(adc: AdcCube) -> Iterator[str]:
     near = max(num // 4, 3)
     positive, negative = level[2:near].sum(), level[num - near + 1 : num - 1].sum()
     if negative > positive * 10 ** (MIRRORED_DB / 10):
+        remedy = "store the complex conjugate"
+        if iq_order is not None:
+            remedy = f"try --iq-order {'iq' if iq_order == 'qi' else 'qi'}"
         yield (
             f"{10 * np.log10(negative / max(positive, 1e-300)):.0f} dB more energy lies at negative beat frequencies"
-            " than at positive ones, so I and Q are probably the other way round; try --iq-order with the other order"
+            f" than at positive ones, so I and Q are probably the other way round; {remedy}"
         )
 
 

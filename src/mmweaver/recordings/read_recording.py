@@ -29,6 +29,7 @@ from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_cubelearn,
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.formats.ti_calibration import read_ti_calibration
+from mmweaver.formats.ti_cfg import refuse_headers
 from mmweaver.paths.board_correction import corrected
 from mmweaver.stream_folder import is_stream, read_stream_cube
 
@@ -95,11 +96,10 @@ def read_recording(
     `mapped` leaves the cube of a radar.npz on the disk, read-only, until its values are used.
 
     `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz
-    its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq" (default)
-    or "qi", `tx_order` the order in which transmitters fire (default: the radar's). A .npy needs its `axes`, such as
-    "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis" or
-    "cubelearn". Raises
-    InputError where the file cannot be read so.
+    its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq"
+    or "qi" (default: what the radar's file says, else "iq"), `tx_order` the order in which transmitters fire (default:
+    the radar's). A .npy needs its `axes`, such as "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised
+    by its shape), "mmmesh", "rf_genesis" or "cubelearn". Raises InputError where the file cannot be read so.
     """
     if frames.step not in (None, 1) or (frames.start or 0) < 0:
         raise ValueError("frames are a stretch that begins with a frame of the recording")
@@ -145,7 +145,7 @@ def _read(
     source = None if isinstance(source, RadarConfig) else str(source)
     if layout is not None:
         return _stretch(_from_layout(path, config, layout, source), frames)
-    found = _of_samples(path, config, axes, iq_order or "iq", source, frames)
+    found = _of_samples(path, config, axes, iq_order or config.lvds_iq_order, source, frames)
     return _calibrated(found, None if source is None else read_ti_calibration(source))
 
 
@@ -156,6 +156,8 @@ def _of_samples(
     found = Recording(
         path=path, files={"recording": path}, config=config, radar_source=source, first_frame=frames.start or 0
     )
+    if axes is None and source is not None:
+        refuse_headers(source)
     if axes is not None:
         return replace(found, adc=read_adc_npy(path, config, axes, frames=frames), axes=axes)
     if path.suffix.lower() in PACKET_SUFFIXES:
