@@ -50,6 +50,15 @@ def test_it_writes_a_board_that_generate_takes(recording: Path, tmp_path: Path, 
     assert read_npz(made / "radar.npz")["cube"].shape[-1] == 12
 
 
+def test_it_looks_at_a_range(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Without the near bins there is no leakage to see, nor is a range that the radar lacks."""
+    assert main([*words(recording, tmp_path / "all.json"), "--json"]) == 0
+    assert "leakage" in json.loads(capsys.readouterr().out)["found"]
+    assert main([*words(recording, tmp_path / "far.json"), "--range", "2,3", "--json"]) == 0
+    assert "leakage" in json.loads(capsys.readouterr().out)["not_seen"]
+    assert main([*words(recording, tmp_path / "none.json"), "--range", "200,300"]) == 2
+
+
 @pytest.mark.parametrize(
     ("content", "why"),
     [(None, "does not exist"), (b"", "no plain .npy"), (b"\x93NUMPY garbage", "adc"), (b"x" * 1000, "adc")],

@@ -44,6 +44,18 @@ def test_points_lie_in_the_field_of_view():
     assert np.abs(points.radial_velocity_mps).max() <= AWR1843.max_velocity_mps
 
 
+def test_leakage_does_not_come_back_at_the_end_of_the_range_axis():
+    """Complex samples: the last bin follows on range 0. A strong tone there leaks into both."""
+    config = replace(AWR1843, first_range_bin=0, num_range_bins=AWR1843.num_samples)
+    shape = (2, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    tone = 1000 * np.exp(2j * np.pi * 0.2 * np.arange(config.num_samples) / config.num_samples)
+    noise = stream(0, "test leakage").standard_normal((*shape, 2)).view(np.complex128)[..., 0]
+    points = point_cloud(radar_cube(AdcCube(samples=(tone + noise).astype(np.complex64), config=config, scale=1.0)))
+    range_m = np.sqrt(points.x_m**2 + points.y_m**2 + points.z_m**2)
+    assert (range_m < 5 * config.range_resolution_m).any()
+    assert range_m.max() < 0.9 * config.max_range_m
+
+
 def test_moving_only_has_no_static_points():
     points = point_cloud(noise_cube(AWR1843), false_alarm_rate=0.2, moving_only=True)
     assert len(points.frame) > 100

@@ -6,7 +6,7 @@ Every fit says what it found, or why it could not see it. Reference: docs/board.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,14 @@ from mmweaver.calibration.receiver_fits import fit_filter, fit_leakage, fit_nois
 from mmweaver.calibration.target_fits import KnownTarget, fit_target, unknown_targets
 from mmweaver.calibration.time_fits import fit_drift, fit_first_chirp
 from mmweaver.comparison.compared_sides import RawReading, signals_of
-from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import PointCloud
+from mmweaver.dsp.cube import cropped, radar_cube
 from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
 from mmweaver.formats.radar_file import load_firmware, load_radar
 
@@ -64,6 +66,8 @@ def calibrate(
     axes: str | None = None,
     iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
+    range_m: tuple[float, float] | None = None,
+    range_bins: tuple[int, int] | None = None,
     body_z_m: float | None = None,
     doing: str | None = None,
     target: KnownTarget | None = None,
@@ -73,7 +77,8 @@ def calibrate(
 
     Each is a path (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube, an
     AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the same
-    settings. `radar`: of raw samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
+    settings. `range_m` (near, far) or `range_bins` (first, last): what is looked at. `radar`: of raw
+    samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
     height over the radar of the people in clouds; `doing`: a sentence that says what they did (default: they wave).
     `target`: what stands at a known distance in the signals. Raises InputError for what is no recording, and for
     several radars.
@@ -88,7 +93,8 @@ def calibrate(
         if cloud is not None:
             clouds.append(cloud)
         else:
-            evidence += [SignalEvidence(one) for one in signals_of(source, reading, "recording")]
+            signals = signals_of(source, reading, "recording")
+            evidence += [SignalEvidence(_in_range(one, range_m, range_bins)) for one in signals]
     config = _one_radar(evidence, radar)
     findings: list[Finding] = []
     if evidence:
@@ -111,6 +117,19 @@ def calibrate(
     names = ", ".join(_name_of(source) for source in recordings)
     board = Board(name=name or f"board of {names}"[:200], made_from=names[:1000], notes=missed, **fields)
     return Calibration(board=board, findings=tuple(findings))
+
+
+def _in_range(
+    one: ComparedSignal, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None
+) -> ComparedSignal:
+    """A signal with chosen range bins. Raises InputError for bins that it does not hold."""
+    config = chosen_range(one.cube.config, range_m, range_bins)
+    if config == one.cube.config:
+        return one
+    if one.adc is None:
+        return replace(one, cube=cropped(one.cube, config))
+    adc = replace(one.adc, config=config)
+    return replace(one, adc=adc, cube=replace(radar_cube(adc), scale=one.cube.scale))
 
 
 def _firmware(radar: str | Path | RadarConfig | None) -> FirmwareSettings:

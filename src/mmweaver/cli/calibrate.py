@@ -4,7 +4,14 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_board_options, add_layout_options, number, radar_of, source
+from mmweaver.cli.arguments import (
+    add_board_options,
+    add_layout_options,
+    add_range_options,
+    number,
+    radar_of,
+    source,
+)
 
 EXAMPLES = """examples:
   mmweaver calibrate empty.bin --radar profile.cfg --out board.json        # your room, nobody in it, some seconds
@@ -36,6 +43,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
     add_layout_options(raw)
     add_board_options(raw, rare=True)
+    add_range_options(raw)
     raw.add_argument(
         "--body-z", type=number, metavar="M", dest="body_z_m",
         help="the true mean height of the people in point clouds over the radar's level, in metres",
@@ -75,7 +83,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=arguments.recordings)
     found = calibrate(
         *arguments.recordings, radar=radar_of(arguments), layout=arguments.layout, axes=arguments.axes,
-        iq_order=arguments.iq_order, tx_order=arguments.tx_order, body_z_m=arguments.body_z_m, doing=arguments.doing,
+        iq_order=arguments.iq_order, tx_order=arguments.tx_order, range_m=arguments.range_m,
+        range_bins=arguments.range_bins, body_z_m=arguments.body_z_m, doing=arguments.doing,
         target=None if arguments.target is None else KnownTarget(*arguments.target), name=arguments.out.stem,
     )  # fmt: skip
     found.board.save(arguments.out)

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float, Int
+from jaxtyping import Bool, Complex, Float, Int
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
@@ -13,6 +14,7 @@ from mmweaver.dsp.cfar import CFAR_METHODS, CfarCells, CfarResult
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
 from mmweaver.dsp.windows import SHORTEST_HANN
 
+WRAPPED_BINS = 4  # two of a Hann window's main lobe, and what leakage spreads further
 NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
 
 
@@ -78,7 +80,7 @@ def point_cloud(
 
 def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, used_bins: np.ndarray) -> _Cells:
     """Interpolated peaks of the detections, with the residual TDM phase of their antenna signals removed."""
-    candidates = found.is_detected & _peaks(power)[:, :, used_bins]
+    candidates = found.is_detected & _peaks(power)[:, :, used_bins] & ~_is_wrapped(cube.config)[:, None]
     frame, row, column = np.nonzero(candidates)
     snr = power[:, :, used_bins][frame, row, column] / np.maximum(found.noise_power[frame, row, column], 1e-300)
     doppler = np.flatnonzero(used_bins)[column]
@@ -104,6 +106,14 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
         - config.max_velocity_mps,
         snr_db=10 * np.log10(snr),
         signal=signal * np.exp(-2j * np.pi * residual_hz[:, None] * delay_s),
+    )
+
+
+def _is_wrapped(config: RadarConfig) -> Bool[np.ndarray, " range"]:
+    """The last range bins of all of complex samples: they follow on range 0, whose leakage they show again."""
+    bins = config.first_range_bin + np.arange(config.num_range_bins)
+    return (
+        (bins >= config.num_samples - WRAPPED_BINS) & config.complex_samples & (config.num_samples > 8 * WRAPPED_BINS)
     )
 
 

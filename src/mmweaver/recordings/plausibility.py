@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.antenna_tables import ANTENNAS
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
@@ -20,16 +21,24 @@ from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import hann
 from mmweaver.formats.dca1000 import LANES, adc_of_words, upright, words_of
+from mmweaver.formats.radar_options import RadarOptions, with_options
+from mmweaver.recordings.frame_boundaries import loops_of_other_frames
 from mmweaver.recordings.transmitter_order import agreements
 
 FRAMES_LOOKED_AT = 8
 PROBE_BYTES = 1 << 16
+FULL_SCALE = 32767
 CLIPPED_SHARE = 1e-3
+LEAST_CLIPPED = 1000  # counts; of a few counts many samples have the largest
+OTHER_SIZE = 0.5  # times the mean size of the words, below which another type is likelier
 MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
 LEAST_LIKENESS = 0.4  # of chirps one loop apart
 BETTER_LIKENESS = 0.25  # that another layout must have more
-SCATTERED = 0.6  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
+NO_LIKENESS = 0.05  # of chirps in noise, or of samples packed in a way that is not known
+SCATTERED = 0.75  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
 LEAST_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
+FITTING = 0.6  # how well static echoes fit the right antennas at least
+BETTER_BOARD = 0.15  # that another board's antennas must fit better
 BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
 SAME_LIKENESS = 0.05
 USUAL_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
@@ -48,34 +57,51 @@ def implausible(
     when packets of the frames arrived.
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
-    found = [*_number_type(path), *_values(adc)]
-    if any("constant" in text or "numbers of" in text for text in found):
+    if found := [*_number_type(path)]:
+        return found  # of other numbers nothing else can be said
+    found = [*_values(adc)]
+    if any("constant" in text for text in found):
         return found  # too little to check more
-    found += [*_lanes(few, iq_order)]
-    if not found:
-        found += [*_beat_sign(few, iq_order), *_layout(few), *_period(adc.config, frame_time_s)]
-    if not found:
-        found += [*_transmitters(cube), *_velocity_sign(cube)]
-    return found
+    layout = [*_lanes(few, iq_order)]
+    layout = layout or [*_beat_sign(few, iq_order), *_layout(few), *_period(adc.config, frame_time_s)]
+    layout = layout or [*loops_of_other_frames(adc)]
+    return [*found, *(layout or [*_transmitters(cube), *_velocity_sign(cube)])]
 
 
 def _number_type(path: Path | None) -> Iterator[str]:
-    """Files of floating-point numbers read as int16."""
+    """Files of other numbers read as int16."""
     if path is None or path.suffix.lower() not in (".bin", ".dat", ".raw"):
         return
     with open_regular(path) as stream:
         head = stream.read(PROBE_BYTES)
+    if kind := _integers(np.frombuffer(head[: len(head) // 4 * 4], "<i2")):
+        yield f"the file seems to hold {kind}, but was read as int16; convert it with numpy"
+        return
     for kind, name in (("<f8", "float64 or complex128"), ("<f4", "float32 or complex64")):
         values = np.frombuffer(head[: len(head) // 8 * 8], kind)
         with np.errstate(all="ignore"):
             size = np.abs(values[values != 0])
             is_sane = np.isfinite(size) & (size > 1e-9) & (size < 1e9)
-        if len(size) >= 0.5 * len(values) and is_sane.mean() > 0.999:
+        if len(size) >= 0.25 * max(len(values), 1) and is_sane.mean() > 0.999:  # a quarter: parts may be 0
             yield (
                 f"the file seems to hold numbers of type {name}, but was read as int16; load it with numpy, save it as"
                 " .npy and give --axes"
             )
             return
+
+
+def _integers(words: np.ndarray) -> str:
+    """Which other whole numbers int16 words are likelier to be; "" for none."""
+    low, high = words[0::2].astype(int), words[1::2].astype(int)
+    if np.ptp(low) and (high == np.where(low < 0, -1, 0)).mean() > 0.99:
+        return "numbers of type int32"
+    words = words[np.abs(words.astype(int)) < FULL_SCALE]
+    own = np.abs(words.astype(int)).mean() if len(words) else 0.0
+    if np.abs(words.byteswap().astype(int)).mean() < OTHER_SIZE * own:
+        return "big-endian numbers"
+    if np.abs((words ^ np.int16(-32768)).astype(int)).mean() < OTHER_SIZE * own:
+        return "numbers of type uint16 around 32768"
+    return ""
 
 
 def _values(adc: AdcCube) -> Iterator[str]:
@@ -85,10 +111,12 @@ def _values(adc: AdcCube) -> Iterator[str]:
         yield f"{still} of {len(spread)} frames are constant: lost data, or a file that was filled up"
     few = adc.samples[:FRAMES_LOOKED_AT]
     parts = np.concatenate([np.real(few).ravel(), np.imag(few).ravel()])
-    is_counts = np.isnan(adc.scale)
-    clipped = float((np.abs(parts) >= 32767).mean()) if is_counts else 0.0
+    most = np.abs(parts).max(initial=0)
+    is_counts = np.isnan(adc.scale) and most >= LEAST_CLIPPED and adc.config.complex_samples
+    clipped = float((np.abs(parts) >= most - 1).mean()) if is_counts else 0.0
     if clipped > CLIPPED_SHARE:
-        yield f"{100 * clipped:.1f} % of the samples are clipped at full scale; record with less receiver gain"
+        at = "full scale" if most >= FULL_SCALE else f"{most:.0f} counts"
+        yield f"{100 * clipped:.1f} % of the samples are clipped at {at}; record with less receiver gain"
 
 
 def _lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
@@ -96,13 +124,11 @@ def _lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
     config = adc.config
     if iq_order is None or config.num_rx != LANES or not config.complex_samples:
         return
-    two = replace(adc, samples=adc.samples[:2])
+    alone = replace(config, frame_words_before=0, frame_words_after=0)  # without other sub-frames
+    two = replace(adc, samples=adc.samples[:2], config=alone)
     words, _ = words_of(two, iq_order=iq_order)
     other = 2 if config.lvds_lanes == LANES else LANES
-    again = adc_of_words(
-        words.reshape(-1), replace(config, lvds_lanes=other, frame_words_before=0, frame_words_after=0),
-        iq_order=iq_order,
-    )  # fmt: skip
+    again = adc_of_words(words.reshape(-1), replace(alone, lvds_lanes=other), iq_order=iq_order)
     if _occupied(again) < SCATTERED * _occupied(two):
         yield (
             f"read as {other} lanes the echoes of a chirp gather at fewer ranges than as {config.lvds_lanes}; try"
@@ -148,29 +174,47 @@ def _layout(adc: AdcCube) -> Iterator[str]:
     stream = adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)]
     flat = upright(stream, config).reshape(len(stream), -1)  # as the converter gave them
     loop = config.num_slots * config.num_rx * config.num_samples
-    own = _likeness(flat, loop)
+    kinds = (flat, flat.mean(axis=0)[None])  # in the mean over frames what moves counts less
+
+    def alike(lag: int) -> float:
+        return max(_likeness(kind, lag) for kind in kinds)
+
+    def gain(lag: int) -> float:
+        return max(_likeness(kind, lag) - _likeness(kind, loop) for kind in kinds)
+
+    own = alike(loop)
     layouts: dict[int, list[tuple[int, int, int]]] = {}
     for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*USUAL_SAMPLES, config.num_samples})):
         if (lag := slots * rx * samples) * 4 <= flat.shape[1]:
             layouts.setdefault(lag, []).append((slots, rx, samples))
-    if own >= LEAST_LIKENESS:
-        flat = flat[:2]
-        others = {lag: _likeness(flat, lag) for lag in layouts if lag < loop and loop % lag == 0}
+    every = {lag: alike(lag) for lag in layouts}
+    if max([own, *every.values()]) < NO_LIKENESS:
+        yield (
+            f"chirps one loop ({loop} samples) apart are alike to {own:.2f}, and no other layout has more: noise"
+            " alone, no samples, or samples packed in another way"
+        )
+        return
+    if own >= LEAST_LIKENESS and max(map(gain, layouts), default=0.0) <= BETTER_LIKENESS:
+        kinds = (flat[:2],)
+        others = {lag: alike(lag) for lag in layouts if lag < loop and loop % lag == 0}
         likely = [lag for lag, likeness in others.items() if likeness > own - SAME_LIKENESS]
         if not likely:
             return
         lag = min(likely)
         chirps = [config.num_samples * number for number in range(1, config.num_slots * config.num_rx)]
-        beyond = float(np.median([_likeness(flat, one) for one in chirps if one % lag] or [1.0]))
+        beyond = float(np.median([alike(one) for one in chirps if one % lag] or [1.0]))
     else:
-        others = {lag: _likeness(flat, lag) for lag in layouts}
+        others = every
         lag = min((one for one in others if others[one] > max(others.values()) - SAME_LIKENESS), default=loop)
         beyond = own
-    if others.get(lag, 0.0) > beyond + BETTER_LIKENESS:
-        slots, rx, samples = max(
-            layouts[lag],
-            key=lambda one: (one[1] == config.num_rx, _presets(*one) != "", round(_likeness(flat, one[2]), 1), -one[0]),
-        )
+    if others.get(lag, 0.0) > beyond + BETTER_LIKENESS or (others is every and gain(lag) > BETTER_LIKENESS):
+        own_layout = (config.num_slots, config.num_rx, config.num_samples)
+
+        def merit(layout: tuple[int, int, int]) -> tuple[float, ...]:
+            same = [one == own for one, own in zip(layout, own_layout, strict=True)]
+            return sum(same), _presets(*layout) != "", same[2], round(alike(layout[2]), 1), -layout[0]
+
+        slots, rx, samples = max(layouts[lag], key=merit)
         yield (
             f"chirps one loop ({loop} samples) apart are alike to {own:.2f}, but {lag} samples apart to"
             f" {others[lag]:.2f}, as with {slots} TX x {rx} RX x {samples} samples{_presets(slots, rx, samples)};"
@@ -208,16 +252,40 @@ def _likeness(flat: np.ndarray, lag: int) -> float:
 
 
 def _transmitters(cube: RadarCube) -> Iterator[str]:
-    """Another order of transmitters that fits the static echoes better."""
+    """Another board's antennas or another order of transmitters, which fit the static echoes better."""
     own = cube.config.tx_order
-    found = agreements(replace(cube, values=cube.values[:FRAMES_LOOKED_AT]))
+    cube = replace(cube, values=cube.values[:FRAMES_LOOKED_AT])
+    found = agreements(cube)
     best = max(found, key=lambda order: found[order], default=own)
+    boards = _agreements_of_boards(cube) if found and found[best] < FITTING else {}
+    board = max(boards, key=lambda name: boards[name], default="")
+    if boards and boards[board] > max(found[best] + BETTER_BOARD, FITTING):
+        yield (
+            f"static echoes fit the antennas of board {board} to {boards[board]:.2f}, those of this radar to"
+            f" {found[own]:.2f}; try --antennas {board}, or another --radar"
+        )
+        return
     if found and found[best] > max(found[own] + BETTER_ORDER, LEAST_ORDER):
         yield (
             f"the transmitters fit the static echoes to {found[own]:.2f} in the order {','.join(map(str, own))}, to"
             f" {found[best]:.2f} in the order {','.join(map(str, best))}; try another --radar or --tx-order"
             f" {','.join(map(str, best))}"
         )
+
+
+def _agreements_of_boards(cube: RadarCube) -> dict[str, float]:
+    """How well the static echoes fit the antennas of each board with as many, in the radar's own order."""
+    config, fits = cube.config, {}
+    for name, table in ANTENNAS.items():
+        if (len(table.tx_halfwaves), len(table.rx_halfwaves)) != (config.num_tx, config.num_rx):
+            continue
+        other = with_options(config, RadarOptions(antennas=table))
+        turned = [
+            -1.0 if (rx in config.rx_inverted) != (rx in other.rx_inverted) else 1.0 for rx in range(other.num_rx)
+        ]
+        values = cube.values * np.tile(np.array(turned, np.float32), config.num_virtual_tx)
+        fits[name] = agreements(replace(cube, values=values, config=other)).get(config.tx_order, 0.0)
+    return fits
 
 
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:
