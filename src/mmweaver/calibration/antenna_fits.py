@@ -67,7 +67,7 @@ def _strong_cells(evidence: SignalEvidence) -> np.ndarray:
     still = evidence.still[np.logical_not(evidence.is_lost)].mean(axis=0)
     power = (np.abs(still) ** 2).mean(axis=1)
     noise = float(np.median(power)) / OVER_NOISE if evidence.noise is None else float(np.median(evidence.noise))
-    return still[(power > OVER_NOISE * noise) & (evidence.range_m > NEAREST_M)]
+    return still[(power > OVER_NOISE * noise) & (evidence.range_m > NEAREST_M) & evidence.in_window]
 
 
 def _places(config: RadarConfig) -> np.ndarray:

@@ -5,8 +5,9 @@
 Every fit says what it found, or why it could not see it. Reference: docs/board.md, decision 222.
 """
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +19,13 @@ from mmweaver.calibration.receiver_fits import fit_filter, fit_leakage, fit_nois
 from mmweaver.calibration.target_fits import KnownTarget, fit_target, unknown_targets
 from mmweaver.calibration.time_fits import fit_drift, fit_first_chirp
 from mmweaver.comparison.compared_sides import RawReading, signals_of
-from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
+from mmweaver.comparison.signal_evidence import SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import PointCloud
-from mmweaver.dsp.cube import cropped, radar_cube
 from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
 from mmweaver.formats.radar_file import load_firmware, load_radar
 
@@ -77,7 +77,7 @@ def calibrate(
 
     Each is a path (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube, an
     AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the same
-    settings. `range_m` (near, far) or `range_bins` (first, last): what is looked at. `radar`: of raw
+    settings. `range_m` (near, far) or `range_bins` (first, last): whose echoes show the antennas. `radar`: of raw
     samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
     height over the radar of the people in clouds; `doing`: a sentence that says what they did (default: they wave).
     `target`: what stands at a known distance in the signals. Raises InputError for what is no recording, and for
@@ -94,7 +94,7 @@ def calibrate(
             clouds.append(cloud)
         else:
             signals = signals_of(source, reading, "recording")
-            evidence += [SignalEvidence(_in_range(one, range_m, range_bins)) for one in signals]
+            evidence += [SignalEvidence(one, _window(one.cube.config, range_m, range_bins)) for one in signals]
     config = _one_radar(evidence, radar)
     findings: list[Finding] = []
     if evidence:
@@ -119,17 +119,14 @@ def calibrate(
     return Calibration(board=board, findings=tuple(findings))
 
 
-def _in_range(
-    one: ComparedSignal, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None
-) -> ComparedSignal:
-    """A signal with chosen range bins. Raises InputError for bins that it does not hold."""
-    config = chosen_range(one.cube.config, range_m, range_bins)
-    if config == one.cube.config:
-        return one
-    if one.adc is None:
-        return replace(one, cube=cropped(one.cube, config))
-    adc = replace(one.adc, config=config)
-    return replace(one, adc=adc, cube=replace(radar_cube(adc), scale=one.cube.scale))
+def _window(
+    config: RadarConfig, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None
+) -> tuple[float, float]:
+    """Nearest and farthest range that is looked at. Raises InputError for what the radar lacks."""
+    if range_m is None and range_bins is None:
+        return 0.0, math.inf
+    chosen = chosen_range(config, range_m, range_bins)
+    return float(chosen.range_m[0]), float(chosen.range_m[-1])
 
 
 def _firmware(radar: str | Path | RadarConfig | None) -> FirmwareSettings:

@@ -210,12 +210,15 @@ def add_layout_options(parser: Options, *, rare: bool = False) -> None:
     )  # fmt: skip
 
 
-def add_range_options(parser: Options, *, rare: bool = False) -> None:
-    """The options that choose which ranges a radar keeps."""
+def add_range_options(
+    parser: Options, *, rare: bool = False,
+    what: str = "to keep (default: a preset's own window; all of a .cfg, up to 4 MiB a frame)",
+) -> None:  # fmt: skip
+    """The options that choose which ranges a radar keeps, or what is looked at."""
     shown = help_of(rare)
     parser.add_argument(
         "--range", type=span_m, metavar="NEAR,FAR", dest="range_m",
-        help=shown("metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB a frame)"),
+        help=shown(f"metres {what}"),
     )  # fmt: skip
     parser.add_argument("--range-bins", type=span_bins, metavar="FIRST,LAST", help=shown("the same in range bins"))
 

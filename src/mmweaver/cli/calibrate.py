@@ -43,7 +43,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
     add_layout_options(raw)
     add_board_options(raw, rare=True)
-    add_range_options(raw)
+    add_range_options(raw, what="whose echoes show the antennas (default: all)")
     raw.add_argument(
         "--body-z", type=number, metavar="M", dest="body_z_m",
         help="the true mean height of the people in point clouds over the radar's level, in metres",

@@ -14,7 +14,7 @@ from mmweaver.dsp.cfar import CFAR_METHODS, CfarCells, CfarResult
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
 from mmweaver.dsp.windows import SHORTEST_HANN
 
-WRAPPED_BINS = 4  # two of a Hann window's main lobe, and what leakage spreads further
+LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
 NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
 
 
@@ -110,11 +110,10 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
 
 
 def _is_wrapped(config: RadarConfig) -> Bool[np.ndarray, " range"]:
-    """The last range bins of all of complex samples: they follow on range 0, whose leakage they show again."""
+    """The end of the range axis of complex samples: it follows on range 0, whose leakage it shows again, and lies
+    beyond the receiver's passband."""
     bins = config.first_range_bin + np.arange(config.num_range_bins)
-    return (
-        (bins >= config.num_samples - WRAPPED_BINS) & config.complex_samples & (config.num_samples > 8 * WRAPPED_BINS)
-    )
+    return (bins >= LAST_SHARE * config.num_samples) & config.complex_samples
 
 
 def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:

@@ -210,7 +210,7 @@ def _layout(adc: AdcCube) -> Iterator[str]:
     if others.get(lag, 0.0) > beyond + BETTER_LIKENESS or (others is every and gain(lag) > BETTER_LIKENESS):
         own_layout = (config.num_slots, config.num_rx, config.num_samples)
 
-        def merit(layout: tuple[int, int, int]) -> tuple[float, ...]:
+        def merit(layout: tuple[int, int, int]) -> tuple[int, bool, bool, float, int]:
             same = [one == own for one, own in zip(layout, own_layout, strict=True)]
             return sum(same), _presets(*layout) != "", same[2], round(alike(layout[2]), 1), -layout[0]
 
