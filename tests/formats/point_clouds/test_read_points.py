@@ -16,13 +16,15 @@ from mmweaver.formats.point_clouds.ti_uart import MAGIC, read_ti_uart
 XYZV = np.array([[0.5, 2.0, 0.1, -0.4], [-1.0, 3.5, -0.6, 0.8], [0.0, 1.0, 0.0, 0.0]], np.float32)
 
 
-def packet(number: int, tlvs: list[tuple[int, bytes]], objects: int, version: int = 0x03050004) -> bytes:
+def packet(
+    number: int, tlvs: list[tuple[int, bytes]], objects: int, version: int = 0x03050004, platform: int = 0xA6843
+) -> bytes:
     """A packet of a demo's data port, padded to 32 bytes as the firmware does."""
     body = b"".join(struct.pack("<II", kind, len(data)) + data for kind, data in tlvs)
-    tail = struct.pack("<I", 0) if version >> 24 >= 2 else b""
+    tail = b"" if platform & 0xFFFF == 0x1443 else struct.pack("<I", 0)  # the sub-frame's number
     length = 36 + len(tail) + len(body)
     padded = -(-length // 32) * 32
-    head = struct.pack("<8sIIIIIII", MAGIC, version, padded, 0xA6843, number, 12345, objects, len(tlvs))
+    head = struct.pack("<8sIIIIIII", MAGIC, version, padded, platform, number, 12345, objects, len(tlvs))
     return head + tail + body + bytes(padded - length)
 
 
@@ -46,12 +48,46 @@ def test_the_out_of_box_demo(tmp_path: Path):
     assert np.allclose(cloud.snr_db, 12.3)
 
 
-def test_the_first_sdk_writes_integers(tmp_path: Path):
-    rows = np.array([[10, 3, 900, 256, 1024, -128]], "<i2")
-    data = struct.pack("<HH", 1, 9) + rows.tobytes()
-    (tmp_path / "log.dat").write_bytes(packet(1, [(1, data)], 1, version=0x01010005))
+@pytest.mark.parametrize(
+    ("version", "platform"),
+    [(0x01010005, 0xA1443), (0x02000004, 0xA1443), (0x01020005, 0xA1642), (0x02010004, 0xA1642)],
+)
+def test_the_first_sdks_write_integers(tmp_path: Path, version: int, platform: int):
+    """SDK 1 and 2; an xWR1443's header has no sub-frame number. An empty frame has no points at all."""
+    rows = np.array([[10, 3, 900, 256, 1024, -128], [20, -3, 40000 - 65536, -256, 512, 0]], "<i2")
+    data = struct.pack("<HH", 2, 9) + rows.tobytes()
+    log = packet(1, [(1, data), (2, bytes(512))], 2, version, platform) + packet(2, [], 0, version, platform)
+    (tmp_path / "log.dat").write_bytes(log)
+    found = read_ti_uart(tmp_path / "log.dat")
+    assert (found.frame_number.tolist(), found.skipped) == ([1, 2], 0)
+    cloud = found.points
+    assert (cloud.x_m[0], cloud.y_m[0], cloud.z_m[0], cloud.intensity.tolist()) == (0.5, 2.0, -0.25, [900, 40000])
+    assert np.isnan(cloud.radial_velocity_mps).all()
+
+
+def test_low_power_devices_compress_points(tmp_path: Path):
+    """TLV 301: units, counts of large and small movements, then places, velocity, SNR and noise of each point."""
+    units = struct.pack("<4f2H", 0.001, 0.002, 0.25, 0.25, 1, 1)
+    points = struct.pack("<4h2B", -500, 2000, 100, -200, 80, 20) + struct.pack("<4h2B", 0, 1000, 0, 50, 40, 20)
+    (tmp_path / "log.dat").write_bytes(packet(3, [(301, units + points)], 2, 0x05050004, 0xA6432))
     cloud = read_points(tmp_path / "log.dat")
-    assert (cloud.x_m[0], cloud.y_m[0], cloud.z_m[0], cloud.intensity[0]) == (0.5, 2.0, -0.25, 900)
+    assert np.allclose(np.column_stack([cloud.x_m, cloud.y_m, cloud.z_m]), [[-0.5, 2, 0.1], [0, 1, 0]])
+    assert (cloud.radial_velocity_mps.tolist(), cloud.snr_db.tolist()) == (pytest.approx([-0.4, 0.1]), [20.0, 10.0])
+
+
+def test_people_counting_counts_its_own_headers(tmp_path: Path):
+    """The predecessor of 3D People Tracking: a header of 48 bytes, TLVs 6 (points) and 8 (whose they are)."""
+    units = struct.pack("<5f", 0.01, 0.01, 0.05, 0.002, 0.04)
+    points = struct.pack("<bbhHH", 10, -20, 8, 1000, 500)
+    tlvs = [(6, units + points), (8, bytes([253]))]
+    body = b"".join(struct.pack("<II", kind, len(data) + 8) + data for kind, data in tlvs)
+    head = struct.pack("<8s9I2H", MAGIC, 0x03040006, 48 + len(body), 0xA6843, 77, 0, 9, 8, 7, 6, len(tlvs), 0)
+    (tmp_path / "log.dat").write_bytes(head + body)
+    found = read_ti_uart(tmp_path / "log.dat")
+    assert found.frame_number.tolist() == [77]
+    place = [found.points.x_m[0], found.points.y_m[0], found.points.z_m[0]]
+    assert np.linalg.norm(place) == pytest.approx(2.0)
+    assert (np.arctan2(place[0], place[1]), np.arcsin(place[2] / 2)) == pytest.approx((-0.2, 0.1))
 
 
 def test_people_tracking_has_compressed_points_and_targets(tmp_path: Path):

@@ -1,11 +1,14 @@
 """The data port of TI's demos, as logged to a .dat: packets of TLVs after a magic word, little-endian.
 
-Out-of-box demos: TLV 1 are detected points, x, y, z in m and velocity in m/s as float32 (SDK 2 and later), or integers
-with a Q format (SDK 1, whose header has no sub-frame number); TLV 7 are SNR and noise in 0.1 dB. 3D People Tracking:
-TLV 1020 are compressed spherical points with their units, TLV 1010 tracked targets. Packets that are cut or whose
-lengths make no sense are skipped and counted.
+Out-of-box demos: TLV 1 are detected points, x, y, z in m and velocity in m/s as float32 (SDK 3 and later), or integers
+with a Q format (SDK 1 and 2); TLV 7 are SNR and noise in 0.1 dB; TLV 301 are compressed points with their units
+(xWRL6432, xWRL1432). The header ends with a sub-frame number, but on an xWR1443. 3D People Tracking: TLV 1020 are
+compressed spherical points with their units, TLV 1010 tracked targets. Its predecessor, 3D People Counting, has
+another header, and TLV lengths that count their own eight bytes; its TLV 6 is that of 1020. Packets that are cut or
+whose lengths make no sense are skipped and counted.
 
-Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D People Tracking, "UART output data format".
+Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D People Tracking, "UART output data
+format"; TI's ROS driver (sub-frame number, SDK 1 and 2); parsers of TI's Industrial Visualizer (TLV 301 and 6).
 """
 
 import struct
@@ -23,10 +26,14 @@ from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
 MAGIC = bytes([2, 1, 4, 3, 6, 5, 8, 7])
 MAX_BYTES = 2000 * MEGABYTE
 HEADER = struct.Struct("<8sIIIIIII")  # magic, version, length, platform, frame, CPU cycles, objects, TLVs
+COUNTING_HEADER = struct.Struct("<8sIIIIIIIIIHH")  # ..., frame, sub-frame, margins, times, TLVs, checksum
 TLV = struct.Struct("<II")
 MAX_PACKET, MAX_TLVS = 1 << 17, 30
-POINTS, SIDE_INFO, TARGETS, SPHERICAL = 1, 7, 1010, 1020
-SDK1_POINT_BYTES = 12
+MOST_PADDING = 32  # bytes of a packet after its last TLV
+POINTS, SIDE_INFO, COMPRESSED, TARGETS, SPHERICAL, COUNTED = 1, 7, 301, 1010, 1020, 6
+LARGEST_KIND = 2000  # of a TLV
+WITHOUT_SUB_FRAME = 0x1443  # lower half of the platform
+INTEGER_POINT_BYTES = 12
 TARGET_BYTES = 112
 
 
@@ -110,56 +117,89 @@ def _packet(data: bytes, at: int) -> tuple[int, np.ndarray, np.ndarray, int] | N
     """Frame number, points (point, 6), targets (target, 7) and the end of the packet at a place; None if damaged."""
     if at + HEADER.size > len(data):
         return None
-    _, version, length, _, number, _, objects, tlvs = HEADER.unpack_from(data, at)
-    if not HEADER.size <= length <= MAX_PACKET or tlvs > MAX_TLVS or at + length > len(data):
+    _, _, length, platform, number, _, objects, tlvs = HEADER.unpack_from(data, at)
+    end = at + length
+    if not HEADER.size <= length <= MAX_PACKET or end > len(data):
         return None
-    body = at + HEADER.size + (4 if version >> 24 >= 2 else 0)  # the sub-frame's number, from SDK 2 on
+    sub_frame = 0 if platform & 0xFFFF == WITHOUT_SUB_FRAME else 4
+    for header in (HEADER.size + sub_frame, HEADER.size + 4 - sub_frame):
+        found = _tlvs(data, at + header, end, tlvs)
+        points = None if found is None else _points(found, objects)
+        if found is not None and points is not None:
+            return number, points, _targets(found.get(TARGETS, b"")), end
+    if at + COUNTING_HEADER.size <= end:
+        tlvs = COUNTING_HEADER.unpack_from(data, at)[-2]
+        found = _tlvs(data, at + COUNTING_HEADER.size, end, tlvs, own_bytes=TLV.size)
+        points = (
+            None if found is None else _spherical(found.get(COUNTED, b"")) if COUNTED in found else np.zeros((0, 6))
+        )
+        if points is not None:
+            return number, points, _targets(b""), end
+    return None
+
+
+def _tlvs(data: bytes, at: int, end: int, count: int, own_bytes: int = 0) -> dict[int, bytes] | None:
+    """The TLVs between two places by kind; None where they do not fill it. `own_bytes`: of each that it counts."""
     found: dict[int, bytes] = {}
-    for _ in range(tlvs):
-        if body + TLV.size > at + length:
+    if count > MAX_TLVS:
+        return None
+    for _ in range(count):
+        if at + TLV.size > end:
             return None
-        kind, size = TLV.unpack_from(data, body)
-        body += TLV.size
-        if body + size > at + length:
+        kind, size = TLV.unpack_from(data, at)
+        at, size = at + TLV.size, size - own_bytes
+        if not 0 < kind <= LARGEST_KIND or not 0 <= size <= end - at:
             return None
-        found[kind] = data[body : body + size]
-        body += size
-    points = _points(found, objects, is_integer=version >> 24 < 2)
-    return None if points is None else (number, points, _targets(found.get(TARGETS, b"")), at + length)
+        found[kind] = data[at : at + size]
+        at += size
+    return found if end - at < MOST_PADDING else None
 
 
-def _points(found: dict[int, bytes], objects: int, *, is_integer: bool) -> np.ndarray | None:
+def _points(found: dict[int, bytes], objects: int) -> np.ndarray | None:
     """Columns x, y, z, velocity, SNR in dB and intensity; None where lengths do not agree."""
     if SPHERICAL in found:
         return _spherical(found[SPHERICAL])
+    if COMPRESSED in found:
+        return _compressed(found[COMPRESSED])
     raw = found.get(POINTS, b"")
     if not raw:
         return np.zeros((0, 6))
-    if is_integer:
-        return _sdk1_points(raw)
     if len(raw) == 16 * objects:
         points = np.frombuffer(raw, "<f4").reshape(-1, 4).astype(float)
         side = found.get(SIDE_INFO, b"")
         has_side = len(side) == 4 * objects
         snr_db = np.frombuffer(side, "<i2").reshape(-1, 2)[:, 0] / 10 if has_side else np.full(objects, np.nan)
         return np.column_stack([points, snr_db, np.full(objects, np.nan)])
-    return None
+    return _integer_points(raw)
 
 
-def _sdk1_points(raw: bytes) -> np.ndarray | None:
+def _integer_points(raw: bytes) -> np.ndarray | None:
     """Descriptor (count, Q format), then range bin, Doppler bin, peak, x, y, z as 16-bit integers.
 
-    The velocity is left as its Doppler bin's sign and number: its unit is in the board's .cfg alone.
+    The velocity is left out: its unit is in the board's .cfg alone.
     """
     if len(raw) < 4:
         return None
     count, q_format = struct.unpack_from("<HH", raw)
-    if len(raw) < 4 + SDK1_POINT_BYTES * count or q_format > 15:
+    if len(raw) != 4 + INTEGER_POINT_BYTES * count or q_format > 15:
         return None
     table = np.frombuffer(raw, "<i2", count=6 * count, offset=4).reshape(-1, 6).astype(float)
     peak = table[:, 2] % (1 << 16)
     nothing = np.full(count, np.nan)
     return np.column_stack([table[:, 3:6] / (1 << q_format), nothing, nothing, peak])
+
+
+def _compressed(raw: bytes) -> np.ndarray | None:
+    """Units of place, velocity, SNR, noise and two counts; int16 x, y, z, Doppler and uint8 SNR, noise of each."""
+    if len(raw) < 20 or (len(raw) - 20) % 10:
+        return None
+    place_unit, velocity_unit, snr_unit, _ = struct.unpack_from("<4f", raw)
+    kind = np.dtype([("place", "<i2", 3), ("doppler", "<i2"), ("snr", "u1"), ("noise", "u1")])
+    table: Any = np.frombuffer(raw, kind, offset=20)
+    return np.column_stack(
+        [table["place"] * place_unit, table["doppler"] * velocity_unit, table["snr"] * snr_unit,
+         np.full(len(table), np.nan)]
+    )  # fmt: skip
 
 
 def _spherical(raw: bytes) -> np.ndarray | None:
