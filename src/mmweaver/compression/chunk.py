@@ -37,6 +37,7 @@ HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
+KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
@@ -307,7 +308,7 @@ class ChunkEncoder:
         """The scatterers worth coding, refined without the others."""
         count = int((layers.points.amplitude.abs() / steps.amplitude >= LEAST_SIZE).sum())
         kept = strongest(layers.points, count)
-        if not count:
+        if not count or count >= KEPT_SHARE * int((layers.points.amplitude != 0).sum()):
             return kept
         if self._refined_points is not None and abs(self._refined_points[0] / count - 1) < SAME_COUNT:
             return self._refined_points[1]

@@ -14,7 +14,9 @@ from mmweaver.fields.scatterers.layers import Layers
 
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_A_FRAME = 50
-FIT_STAGES, LAST_STEPS, LEAST_GAIN = 20, 6, 12.0
+FIT_STAGES, LAST_STEPS, LEAST_GAIN = 16, 3, 12.0
+SIGNAL_GAIN, MARGIN = 2.0, 3  # of cells that scatterers are fitted to: power over that of noise, cells around them
+CLEAR = 0.995  # of the cost without layers: what layers must have, for estimates are not better
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
 FREE_MODES = ("transforms", "scatterers", "low rank", "noise layer", "DCT of ranges")
@@ -66,7 +68,7 @@ class ModeChooser:
         samples = [self.encoder.sample(self.plain.transform)]
         samples += [self.encoder.draft(step, mode, coarser).sample() for mode in modes[1:]]
         costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
-        best = int(np.argmin(costs))
+        best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
         self.mode, self.sample = modes[best], samples[best]
 
     def _layered(self, step: float, coarser: int) -> list[ChunkMode]:
@@ -87,11 +89,37 @@ class ModeChooser:
 
 
 def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
-    window = encoder.frames.fit_window()
-    frames = encoder.frames.num_frames
+    """Scatterers and static layer of a chunk, fitted where there is signal."""
+    window, frames = encoder.frames.fit_window(), encoder.frames.num_frames
     # a single frame cannot separate static clutter from slow motion
     recipe = FitRecipe(
         num_points=min(POINTS_A_FRAME * frames, int(num_bytes / BYTES_A_POINT)), with_static=frames > 1,
         with_calibration=True, stages=FIT_STAGES, last_steps=LAST_STEPS, least_gain=LEAST_GAIN,
+        most_noise=encoder.noise_power,
     )  # fmt: skip
-    return fitted(torch.from_numpy(encoder.target), window, recipe)
+    ranges, bins = _box(encoder.target, encoder.noise_power, with_static=recipe.with_static)
+    axes = replace(window.axes, range_bin=window.axes.range_bin[ranges], doppler_bin=window.axes.doppler_bin[bins])
+    target = torch.from_numpy(np.ascontiguousarray(encoder.target[:, ranges, bins]))
+    layers = fitted(target, replace(window, axes=axes), recipe)
+    static = torch.zeros(encoder.target.shape[1], encoder.target.shape[3], dtype=layers.static.dtype)
+    static[ranges] = layers.static
+    return replace(layers, static=static)
+
+
+def _box(target: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[slice, slice]:
+    """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that hold signal, and some more.
+
+    With static clutter all ranges: a mean over frames finds it below the noise of their cells.
+    """
+    power = np.square(target.real).sum(axis=3) + np.square(target.imag).sum(axis=3)
+    strong = (power > SIGNAL_GAIN * (target.shape[3] + LEAST_GAIN) * noise_power).any(axis=0)
+    bins = strong.any(axis=0)
+    if with_static:
+        bins[len(bins) // 2] = True
+    return slice(None) if with_static else _around(strong.any(axis=1)), _around(bins)
+
+
+def _around(mask: np.ndarray) -> slice:
+    """From the first to the last that is set, with a margin; all where none is."""
+    found = np.flatnonzero(mask)
+    return slice(max(0, found[0] - MARGIN), found[-1] + 1 + MARGIN) if len(found) else slice(None)

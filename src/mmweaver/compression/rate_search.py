@@ -22,6 +22,7 @@ TRIALS, EVALUATIONS = 9, 24
 SMALL_EXCESS = 3e-3  # relative error of a size or error that an estimate is asked for
 DECISIONS = 2
 CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
+CLOSEST = 1.002  # ratio of steps that are tried one after the other, at least
 CLOSE_FIRST = 0.2  # difference of log(bytes) up to which the first file tells the error of one of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
 EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
@@ -186,12 +187,12 @@ def _coded(segment: SegmentEncoder, step: float, coarser: int, noise_step: float
 
 
 def _estimated_step(one: Found, num_bytes: int, low: float, high: float) -> float:
-    """Where the estimate, calibrated by a trial, has the size; a little beyond, so that the next one may bracket it."""
+    """Where the estimate, calibrated by a trial, has the size."""
     samples = [chunk.sample for chunk in one.coded]
     estimated = sum(sample.at(one.step, one.coarser).num_bytes for sample in samples)
     wanted = AIM * num_bytes * estimated / one.num_bytes
     step = _step_of_size(samples, wanted, one.coarser, max(low, one.step / 8), min(high, one.step * 8))
-    return min(step, high / 1.02) if one.num_bytes <= num_bytes else max(step, low * 1.02)
+    return min(step, high / CLOSEST) if one.num_bytes <= num_bytes else max(step, low * CLOSEST)
 
 
 def _between(larger: Found, fits: Found, num_bytes: int, *, is_even: bool) -> float:
@@ -246,6 +247,8 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
         if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR:
             return one
     while True:
+        if coarser == 1 and segment.decide(step, 1):  # cells without signal count as much now
+            step = _step_of_size(segment.decided_samples(), AIM * num_bytes / even_factor, 1, *bounds)
         one = _finest(segment, num_bytes, step, coarser, progress)
         if coarser == 1 or one.all_error <= allowed * CLOSE_ERROR:
             return one

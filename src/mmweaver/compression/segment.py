@@ -73,11 +73,11 @@ class SegmentEncoder:
         """Steps below it have levels that cannot be coded."""
         return self.coarsest_step / LARGEST_LEVEL
 
-    def decide(self, step: float) -> bool:
+    def decide(self, step: float, coarser: int | None = None) -> bool:
         """Decides on the mode of each chunk near a step; whether any is another one than before."""
         before = [chooser.mode for chooser in self._choosers]
         for chooser in self._choosers:
-            chooser.decide(step, self.coarser)
+            chooser.decide(step, self.coarser if coarser is None else coarser)
         return before != [chooser.mode for chooser in self._choosers]
 
     @property

@@ -10,7 +10,9 @@ from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 BEAMS_A_WAVELENGTH = 2.2  # slightly denser than the array's resolution
 CELLS_A_POINT, CELLS_AT_ONCE = 16, 8192
+LEAST_BEND = 0.5  # of a parabola, relative to its peak
 ROUNDED = 1e-4
+PEAK_SHARE = 0.9  # of the peak that a new scatterer gets, for neighbours share its energy
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,11 +107,33 @@ def next_points(
         direction=torch.zeros(frames, size, 2),
         amplitude=torch.zeros(frames, size, dtype=torch.complex64),
     )
-    points.range_bin[frame, slot] = axes.range_bin[place // num_doppler]
-    points.doppler_bin[frame, slot] = axes.doppler_bin[place % num_doppler]
-    points.direction[frame, slot] = beams.direction[beam.flatten()[chosen]]
-    received = residual.flatten(0, 2)[chosen]
     steer = beams.steer.T[beam.flatten()[chosen]] / len(axes.place) ** 0.5
-    # half of the peak: neighbours share its energy, and the refinement finds the rest
-    points.amplitude[frame, slot] = 0.5 * (received * steer).sum(-1)
+    row, column = place // num_doppler, place % num_doppler
+    received = _Received(residual.flatten(0, 2), chosen, steer)
+    range_offset, by_range = received.offset(row, num_range, num_doppler, response.range_kernel)
+    doppler_offset, by_doppler = received.offset(column, num_doppler, 1, response.doppler_kernel)
+    points.range_bin[frame, slot] = axes.range_bin[row] + range_offset
+    points.doppler_bin[frame, slot] = axes.doppler_bin[column] + doppler_offset
+    points.direction[frame, slot] = beams.direction[beam.flatten()[chosen]]
+    points.amplitude[frame, slot] = PEAK_SHARE * received.peak / (by_range * by_doppler)
     return points
+
+
+class _Received:
+    """Complex amplitudes in a beam each at peaks of the residual (cell, antenna) and at the cells next to them."""
+
+    def __init__(self, residual: Tensor, cell: Tensor, steer: Tensor):
+        self.residual, self.cell, self.steer = residual, cell, steer
+        self.peak = (residual[cell] * steer).sum(-1)
+
+    def offset(self, index: Tensor, size: int, stride: int, kernel) -> tuple[Tensor, Tensor]:
+        """Offset in bins of a parabola through each peak and its neighbours along an axis, and the kernel there.
+
+        `index`: of the peaks along the axis of `size` cells, `stride` apart.
+        """
+        before, after = (
+            (self.residual[self.cell + side * stride * inside] * self.steer).sum(-1).div(self.peak).real * inside
+            for side, inside in ((-1, index > 0), (1, index < size - 1))
+        )
+        offset = ((after - before) / (2 * (2 - after - before)).clamp(min=LEAST_BEND)).clamp(-0.5, 0.5)
+        return offset, kernel(offset)[0]

@@ -15,7 +15,9 @@ from mmweaver.fields.scatterers.layers import select_points
 
 LARGEST_STEP_BINS = 0.5
 LARGEST_STEP_DIRECTION = 0.25
-DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 1e-3, 1e-5, 1e3
+DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 3e-2, 3e-3, 1e3
+DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a step that is rejected costs as much as one that is not
+LEAST_BATCH, MOST_BATCHES, WORTH_BATCHES = 5, 6, 12  # frames, batches; points from which on they pay
 HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
 # parameter: range bin, Doppler bin, direction x, direction z, real and imaginary amplitude
@@ -46,7 +48,7 @@ class Damping:
 
     def learn(self, is_better: Tensor) -> None:
         """Lowers the damping of frames (frame,) whose step was accepted, raises that of the others."""
-        changed = torch.where(is_better, self.value / 4, self.value * 6)
+        changed = torch.where(is_better, self.value / DAMPING_DOWN, self.value * DAMPING_UP)
         self.value = changed.clamp(DAMPING_LEAST, DAMPING_MOST)
 
 
@@ -68,6 +70,36 @@ def refined(
     points have amplitude zero and stay. `residual`: that of the points at the start, if known.
     """
     residual = target - response.render(points, axes) if residual is None else residual
+    batches = _alike(points, largest)
+    if len(batches) == 1:
+        return _refined(points, target, response, axes, damping, steps, largest, residual)
+    points, residual = points.map(lambda tensor: tensor.clone()), residual.clone()
+    for frames, count in batches:
+        own = Damping(damping.value[frames])
+        some, rest = _refined(
+            points[frames, :count], target[frames], response, axes, own, steps, largest, residual[frames]
+        )
+        for name in vars(points):
+            getattr(points, name)[frames, :count] = getattr(some, name)
+        residual[frames], damping.value[frames] = rest, own.value
+    return points, residual
+
+
+def _alike(points: Points, largest: int) -> list[tuple[Tensor, int]]:
+    """Frames of about as many scatterers, and how many at most: of fewer, normal matrices are smaller."""
+    counts = (points.amplitude != 0).sum(dim=1)
+    most = int(counts.max()) if counts.numel() else 0
+    if len(counts) < 2 * LEAST_BATCH or most < WORTH_BATCHES or most > largest:
+        return [(torch.arange(len(counts)), points.range_bin.shape[1])]
+    order = counts.argsort()
+    return [(some, int(counts[some[-1]])) for some in order.tensor_split(min(len(order) // LEAST_BATCH, MOST_BATCHES))]
+
+
+def _refined(
+    points: Points, target: Tensor, response: PointResponse, axes: Axes, damping: Damping, steps: int, largest: int,
+    residual: Tensor,
+) -> tuple[Points, Tensor]:  # fmt: skip
+    """As `refined`, of frames that are padded to the same number of points."""
     cost = _energy(residual)
     for _ in range(steps):
         count = points.range_bin.shape[1]
@@ -91,8 +123,7 @@ def refined(
 
 
 def _energy(residual: Tensor) -> Tensor:
-    parts = torch.view_as_real(residual).flatten(1)
-    return (parts[:, None, :] @ parts[:, :, None]).flatten()
+    return torch.linalg.vector_norm(torch.view_as_real(residual).flatten(1), dim=1).square()
 
 
 def _sorted_by_range(points: Points) -> Points:
@@ -164,7 +195,9 @@ def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Ax
     least = 1e-6 * diagonal.amax(dim=-1, keepdim=True) + 1e-30
     diagonal.add_(damping[:, None, None] * (diagonal + least))
     root, _ = torch.linalg.cholesky_ex(matrix)
-    step = torch.cholesky_solve(gradient[..., None], root)[..., 0]
+    # two triangular systems: cholesky_solve copies the matrix, five times the time
+    half = torch.linalg.solve_triangular(root, gradient[..., None], upper=False)
+    step = torch.linalg.solve_triangular(root.mT, half, upper=True)[..., 0]
     step = torch.nan_to_num(step).unflatten(-1, (num, -1))
     is_real = (points.amplitude != 0).to(step.dtype)
     return _moved(points, step * is_real[..., None, :], response)
