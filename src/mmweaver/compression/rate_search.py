@@ -22,6 +22,7 @@ TRIALS, EVALUATIONS = 9, 24
 SMALL_EXCESS = 3e-3  # relative error of a size or error that an estimate is asked for
 DECISIONS = 2
 CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
+CLOSER, AIM_CLOSER = 0.995, 0.998  # with a noise layer, which has most of the bytes and is coded once
 CLOSEST = 1.002  # ratio of steps that are tried one after the other, at least
 CLOSE_FIRST = 0.2  # difference of log(bytes) up to which the first file tells the error of one of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
@@ -56,6 +57,11 @@ class Found:
     def num_bytes(self) -> int:
         """Of all chunks."""
         return sum(len(chunk.data) for chunk in self.coded)
+
+    @property
+    def aim(self) -> float:
+        """Share of the bytes allowed that the next trial aims at."""
+        return AIM_CLOSER if self.noise_step else AIM
 
     @property
     def active_error(self) -> float:
@@ -166,7 +172,7 @@ def _finest(
         progress(f"trial {trial + 1}")
         if one.num_bytes <= num_bytes:
             fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
-            if one.num_bytes >= CLOSE_ENOUGH * num_bytes or step <= segment.finest_step:
+            if one.num_bytes >= (CLOSER if noise_step else CLOSE_ENOUGH) * num_bytes or step <= segment.finest_step:
                 break
         else:
             larger, low = one, step
@@ -190,7 +196,7 @@ def _estimated_step(one: Found, num_bytes: int, low: float, high: float) -> floa
     """Where the estimate, calibrated by a trial, has the size."""
     samples = [chunk.sample for chunk in one.coded]
     estimated = sum(sample.at(one.step, one.coarser).num_bytes for sample in samples)
-    wanted = AIM * num_bytes * estimated / one.num_bytes
+    wanted = one.aim * num_bytes * estimated / one.num_bytes
     step = _step_of_size(samples, wanted, one.coarser, max(low, one.step / 8), min(high, one.step * 8))
     return min(step, high / CLOSEST) if one.num_bytes <= num_bytes else max(step, low * CLOSEST)
 
@@ -198,8 +204,8 @@ def _estimated_step(one: Found, num_bytes: int, low: float, high: float) -> floa
 def _between(larger: Found, fits: Found, num_bytes: int, *, is_even: bool) -> float:
     """Interpolates the logarithms of sizes and steps, or halves."""
     low, high = math.log(larger.step), math.log(fits.step)
-    above = math.log(larger.num_bytes / num_bytes / AIM)
-    below = math.log(fits.num_bytes / num_bytes / AIM)
+    above = math.log(larger.num_bytes / num_bytes / fits.aim)
+    below = math.log(fits.num_bytes / num_bytes / fits.aim)
     share = 0.5 if is_even else min(max(above / (above - below), 0.05), 0.95)
     return math.exp(low + share * (high - low))
 
@@ -230,29 +236,41 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
         step = _step_of_size(samples, num_bytes / (factor**share * even_factor ** (1 - share)), coarser, *bounds)
         if coarser == 1 or error_factor * sum(sample.at(step, coarser).all_error for sample in samples) <= allowed:
             break
-    noise_step, with_noise, tried = 0.0, 0.0, None
     if "noise layer" not in segment.without:
-        noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
-    if noise_step and with_noise < step:
-        trial = _coded(segment, with_noise, 0, noise_step)
-        noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded)
-        noise_bytes -= sum(one.front_at(with_noise) for one in samples)
-        estimated = sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples())
-        noise_factor = max(noise_bytes, 1.0) / max(estimated, 1.0)
-        noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor, noise_factor)
-        if noise_step and abs(math.log(noise_step / trial.noise_step)) < SAME_STEP:
-            noise_step, with_noise, tried = trial.noise_step, trial.step, trial
-    if noise_step and with_noise < step:
-        one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step, first=tried)
-        if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR:
+        one = _with_noise(segment, num_bytes, allowed, samples, factor, step, progress)
+        if one is not None:
             return one
-    while True:
-        if coarser == 1 and segment.decide(step, 1):  # cells without signal count as much now
-            step = _step_of_size(segment.decided_samples(), AIM * num_bytes / even_factor, 1, *bounds)
+    while coarser > 1:
         one = _finest(segment, num_bytes, step, coarser, progress)
-        if coarser == 1 or one.all_error <= allowed * CLOSE_ERROR:
+        if one.all_error <= allowed * CLOSE_ERROR:
             return one
         coarser -= 1
+    if segment.decide(step, 1):  # modes were chosen for cells without signal that count less
+        step = _step_of_size(segment.decided_samples(), AIM * num_bytes / even_factor, 1, *bounds)
+    return _finest(segment, num_bytes, step, 1, progress)
+
+
+def _with_noise(
+    segment: SegmentEncoder, num_bytes: int, allowed: float, samples: list[CellSample], factor: float, step: float,
+    progress: Progress,
+) -> Found | None:  # fmt: skip
+    """The chunks with a noise layer and no more error than allowed; None where their step is no finer than `step`."""
+    noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
+    if not noise_step or with_noise >= step:
+        return None
+    trial = _coded(segment, with_noise, 0, noise_step)
+    noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded)
+    noise_bytes -= sum(one.front_at(with_noise) for one in samples)
+    estimated = sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples())
+    noise_factor = max(noise_bytes, 1.0) / max(estimated, 1.0)
+    noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor, noise_factor)
+    tried = None
+    if noise_step and abs(math.log(noise_step / trial.noise_step)) < SAME_STEP:
+        noise_step, with_noise, tried = trial.noise_step, trial.step, trial
+    if not noise_step or with_noise >= step:
+        return None
+    one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step, first=tried)
+    return one if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR else None
 
 
 def _over_range(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Progress) -> Found:

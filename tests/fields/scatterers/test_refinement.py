@@ -42,6 +42,22 @@ def test_perturbed_points_are_recovered(largest: int):
     assert torch.allclose(target - RESPONSE.render(found, AXES), residual, atol=1e-5)
 
 
+def test_frames_of_few_scatterers_and_of_none_are_refined_as_if_alone():
+    truth = random_points(14, num_frames=10)
+    counts = [0, 0, 0, 0, 0, 2, 3, 14, 13, 14]
+    for frame, count in enumerate(counts):
+        truth.amplitude[frame, count:] = 0
+    target = RESPONSE.render(truth, AXES)
+    start = truth.map(lambda tensor: tensor.clone())
+    start.range_bin.add_(0.1)
+    found, residual = refined(start, target, RESPONSE, AXES, Damping.fresh(10), steps=2, largest=50)
+    for frame, count in enumerate(counts):
+        alone, left = refined(start[[frame]], target[[frame]], RESPONSE, AXES, Damping.fresh(1), steps=2, largest=50)
+        assert torch.allclose(found.amplitude[[frame]], alone.amplitude, atol=1e-4)
+        assert torch.allclose(residual[[frame]], left, atol=1e-4)
+        assert (found.amplitude[frame] != 0).sum() == count
+
+
 def test_no_step_increases_the_error_and_padding_stays():
     truth = random_points(6)
     target = RESPONSE.render(truth, AXES)

@@ -86,13 +86,18 @@ def refined(
 
 
 def _alike(points: Points, largest: int) -> list[tuple[Tensor, int]]:
-    """Frames of about as many scatterers, and how many at most: of fewer, normal matrices are smaller."""
-    counts = (points.amplitude != 0).sum(dim=1)
+    """Frames of about as many scatterers, and how many at most: of fewer, normal matrices are smaller.
+
+    Without frames that have none, where others have many.
+    """
+    places = torch.arange(1, points.amplitude.shape[1] + 1)
+    counts = (places * (points.amplitude != 0)).amax(dim=1) if len(places) else torch.zeros(0)
     most = int(counts.max()) if counts.numel() else 0
     if len(counts) < 2 * LEAST_BATCH or most < WORTH_BATCHES or most > largest:
         return [(torch.arange(len(counts)), points.range_bin.shape[1])]
     order = counts.argsort()
-    return [(some, int(counts[some[-1]])) for some in order.tensor_split(min(len(order) // LEAST_BATCH, MOST_BATCHES))]
+    batches = order.tensor_split(min(len(order) // LEAST_BATCH, MOST_BATCHES))
+    return [(some, int(counts[some[-1]])) for some in batches if counts[some[-1]]]
 
 
 def _refined(
