@@ -40,6 +40,7 @@ from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, batch_sampler
+from mmweaver.training.power_training import PowerRecipe, initial_power_network, measure_codes
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
@@ -120,7 +121,10 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
     recipe = replace(recipe, **dict(variant.recipe))
     rooms, unseen = material.sampled if variant.is_sampled else material.mean
     torch.manual_seed(recipe.seed)
-    learner = _PartOfLoss(network_of(variant), rooms[0].room.config, excluded=variant.terms_without)
+    network = network_of(variant)
+    if isinstance(network, PowerNetwork):
+        measure_codes(network, rooms)
+    learner = _PartOfLoss(network, rooms[0].room.config, excluded=variant.terms_without)
     if recipe.steps > 0:
         trainer = Trainer(
             learner, recipe, out, train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
@@ -134,7 +138,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
 def network_of(variant: AblationVariant) -> EchoNetwork:
     """The variant's network before training."""
     if variant.power:
-        return PowerNetwork(is_anchored=variant.power == "anchored")
+        return initial_power_network(PowerRecipe(is_anchored=variant.power == "anchored"))
     return WeaverNetwork(without=variant.without)
 
 

@@ -1,14 +1,20 @@
 """Recipe paper_power on a tiny data set: a step trains, and its weights are read back."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import torch
 
 from mmweaver.core.errors import InputError
+from mmweaver.models.environment_encoder import Z_ENV
 from mmweaver.models.power_network import RECIPE, PowerNetwork
-from mmweaver.models.weights import load_network, load_weights
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.models.weights import load_network, load_weights, shipped_weights
+from mmweaver.training.network_examples import examples
+from mmweaver.training.network_training import NetworkLearner
 from mmweaver.training.power_training import PowerRecipe, train_power, write_power_weights
+from mmweaver.training.reflection_augmentation import reflected_scene
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("blank_training_pictures")
@@ -22,7 +28,40 @@ def test_one_step_trains_and_its_weights_are_read_back(tiny_geometry: Path, tmp_
     assert (card.recipe, card.steps) == (RECIPE, 1)
     own = trainer.learner.state_dict()["network.person.layers.0.weight"]
     assert torch.allclose(network.person.layers[0].weight, own, atol=1e-3)
+    assert _is_the_encoder_of_weaver(network)
     page = (tmp_path / "README.md").read_text()
     assert all(row in page for row in ("this network", "initial weights", "empty maps"))
     with pytest.raises(InputError, match="give those of: mmweaver train weaver"):
         load_weights(tmp_path / "weights.safetensors")
+
+
+def _is_the_encoder_of_weaver(network: PowerNetwork) -> bool:
+    weaver, _ = load_weights(shipped_weights())
+    own, known = network.environment.state_dict(), weaver.environment.state_dict()
+    return all(torch.equal(own[name], known[name]) for name in known)
+
+
+def test_what_the_hypernetwork_reads_differs_between_rooms_and_poses(tiny_geometry: Path, tmp_path: Path):
+    """Codes differ by a few percent of their mean, whitened ones by more than their mean."""
+    network = _trained(tiny_geometry, tmp_path, TINY)
+    (one, *_), mirrored = examples(tiny_geometry, "train"), reflected_scene
+    scene = SceneTensors.stack([one.scene])
+    both = [network.environment(view.image)[0] for view in (scene, mirrored(scene))]
+    raw, white = (
+        (part[0] - part[1]).norm() / part[0].norm() for part in (both, [network.env_whitening(z) for z in both])
+    )
+    assert raw < 0.2
+    assert white > 1
+
+
+def test_without_codes_the_same_is_written_for_every_room(tiny_geometry: Path, tmp_path: Path):
+    network = _trained(tiny_geometry, tmp_path, replace(TINY, reads_codes=False))
+    codes = 5 * torch.randn(2, Z_ENV)
+    assert torch.equal(*network.room_writer(network.env_whitening(codes)))
+
+
+def _trained(data: Path, out: Path, recipe: PowerRecipe) -> PowerNetwork:
+    learner = train_power(data, out, recipe).learner
+    assert isinstance(learner, NetworkLearner)
+    assert isinstance(learner.network, PowerNetwork)
+    return learner.network

@@ -62,15 +62,19 @@ class PowerField(nn.Module):
 
 
 class FieldWriter(nn.Module):
-    """The hypernetwork: codes (..., size) -> the numbers of a field (..., NUM_WRITTEN), near zero before training."""
+    """The hypernetwork: whitened codes (..., size) -> the numbers of a field (..., NUM_WRITTEN).
+
+    They are small before training. What all fields have in common comes from a constant of the same size as what
+    differs, so that it is learned as fast as without codes (decision 167).
+    """
 
     def __init__(self, size: int, width: int = 512) -> None:
         super().__init__()
-        self.trunk = nn.Sequential(
-            nn.Linear(size, width), nn.GELU(), nn.Linear(width, width), nn.GELU(), nn.LayerNorm(width)
-        )
+        norm = nn.LayerNorm(width)
+        nn.init.ones_(norm.bias)
+        self.trunk = nn.Sequential(nn.Linear(size, width), nn.GELU(), nn.Linear(width, width), nn.GELU(), norm)
         self.head = nn.Linear(width, NUM_WRITTEN)
-        nn.init.normal_(self.head.weight, std=0.3 / math.sqrt(width))
+        nn.init.normal_(self.head.weight, std=0.1 / math.sqrt(width))
         nn.init.zeros_(self.head.bias)
 
     def forward(self, code: Tensor) -> Tensor:

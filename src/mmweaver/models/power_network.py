@@ -1,8 +1,12 @@
 """The paper's idea with a target that can be learnt: a hypernetwork that writes fields of log power.
 
-    picture --EnvironmentEncoder--> z_env --+--> 272 numbers --> field of the room over (r, azimuth, elevation)
-                                            |
-    joints ---PoseEncoder---------> z_pose -+--> 272 a frame --> field of the person over (r, d, azimuth, elevation)
+    picture --EnvironmentEncoder--> z_env --> whitened --+--> 272 numbers --> field of the room over (r, azimuth,
+                                                         |                    elevation)
+    joints ---PoseEncoder---------> z_pose -> whitened --+--> 272 a frame --> field of the person over (r, d, azimuth,
+                                                                              elevation)
+
+Encoders are those of recipe `weaver` and stay as they are; their codes are whitened over the training set, so that
+what differs between rooms and poses reaches the hypernetwork at unit spread (decision 167).
 
 Fields give the radar cross section of cells (`power_cells`); each cell that matters becomes one scatterer of unknown
 phase, and the radar's own response makes the signal of them (`paths.random_phases`). Coordinates are those of the
@@ -17,6 +21,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.geometry.pinhole import pixel_coordinates
+from mmweaver.models.code_whitening import CodeWhitening
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
@@ -41,6 +46,7 @@ from mmweaver.paths.mean_echoes import MeanEchoes
 RECIPE = "paper_power"
 ROOM_OCTAVES, PERSON_OCTAVES = (7, 6, 4, 4), (6, 6, 4, 4)
 SURFACE_FEATURES, PERSON_FEATURES = 4, 2
+ENV_PARTS, POSE_PARTS = 4, 32  # principal components of the codes that the hypernetwork reads
 MIDDLE_M = 2.2  # of the ranges that a field is read at
 SURFACE_REACH_M = 1.0  # before and behind the photographed surface
 MOST_MOVING = 1024  # cells of a frame, the strongest
@@ -75,7 +81,10 @@ class PowerNetwork(EchoNetwork):
         super().__init__()
         self.is_anchored = is_anchored
         self.environment, self.pose = EnvironmentEncoder(), PoseEncoder()
-        self.room_writer, self.person_writer = FieldWriter(Z_ENV), FieldWriter(Z_ENV + Z_POSE)
+        for encoder in (self.environment, self.pose):
+            encoder.requires_grad_(False)
+        self.env_whitening, self.pose_whitening = CodeWhitening(Z_ENV, ENV_PARTS), CodeWhitening(Z_POSE, POSE_PARTS)
+        self.room_writer, self.person_writer = FieldWriter(ENV_PARTS), FieldWriter(ENV_PARTS + POSE_PARTS)
         self.nearness = BodyNearness()
         self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES + SURFACE_VALUES)
         self.person = PowerField(octave_size(PERSON_OCTAVES) + PERSON_FEATURES + BODY_VALUES)
@@ -83,12 +92,23 @@ class PowerNetwork(EchoNetwork):
             self.room.begin_with(ROOM_LOG, ROOM_SLOPES, SURFACE_VALUES)
             self.person.begin_with(PERSON_LOG, PERSON_SLOPES, BODY_VALUES)
 
+    def train(self, mode: bool = True) -> "PowerNetwork":
+        """Training or not, encoders drop nothing."""
+        super().train(mode)
+        for encoder in (self.environment, self.pose):
+            encoder.eval()
+        return self
+
+    def pose_codes(self, joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
+        """z_pose (room, frame, 512) of motions (room, frame, 22, 3)."""
+        return self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
+
     def encode_room(self, view: SceneTensors, sizes: CellSizes | None = None) -> PowerEncoding:
         """Rooms (room, ...) -> their code, with echoes of all cells at rest (room, cell); `sizes`: of cells."""
         z_env, _ = self.environment(view.image)
         code = PowerEncoding(
             view=view, z_env=z_env, surface=_surfaces(view), volume=surface_volume(view),
-            written=self.room_writer(z_env), sizes=sizes or CellSizes(), static=_no_echoes(z_env),
+            written=self.room_writer(self.env_whitening(z_env)), sizes=sizes or CellSizes(), static=_no_echoes(z_env),
         )  # fmt: skip
         cells = code.sizes.room_cells().to(z_env.device)[None].expand(len(z_env), -1, -1)
         level = self.room_level(code, cells)
@@ -107,9 +127,9 @@ class PowerNetwork(EchoNetwork):
 
     def write_person(self, code: PowerEncoding, joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
         """What the hypernetwork writes of a motion (room, frame, 22, 3): (room, frame, NUM_WRITTEN)."""
-        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
-        z_env = code.z_env[:, None].expand(-1, z_pose.shape[1], -1)
-        return self.person_writer(torch.cat([z_env, z_pose], dim=-1))
+        of_pose = self.pose_whitening(self.pose_codes(joints_m, velocity_mps))
+        of_room = self.env_whitening(code.z_env)[:, None].expand(-1, of_pose.shape[1], -1)
+        return self.person_writer(torch.cat([of_room, of_pose], dim=-1))
 
     def person_level(self, written: Tensor, body: Tensor, at: Tensor) -> Tensor:
         """Logarithm of the cross section (m2) of reference cells at (field, place, 4) -> (field, place).

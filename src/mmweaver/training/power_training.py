@@ -1,4 +1,7 @@
-"""Training of recipe `paper_power`: fields of log power by a hypernetwork, with the loss of recipe `weaver`."""
+"""Training of recipe `paper_power`: fields of log power by a hypernetwork, with the loss of recipe `weaver`.
+
+Its encoders are those of the weights that are included and stay as they are; hypernetwork and fields are trained.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,11 +11,14 @@ import torch
 from torch import Tensor
 
 from mmweaver.models.power_network import RECIPE, PowerNetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import POWER
 from mmweaver.training.network_examples import RoomExamples, examples, sample_batch
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, compare_with_start
 from mmweaver.training.recipe_weights import write_recipe_weights
+from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene
 from mmweaver.training.trainer import BatchSampler, Listener, LoopRecipe, Trainer
 
 
@@ -27,6 +33,7 @@ class PowerRecipe(LoopRecipe):
     warm_up_steps: int = 30
     mirror: bool = True  # reflect every second batch left-right
     is_anchored: bool = True  # coordinates are counted from photographed surfaces and from the body, too
+    reads_codes: bool = True  # else the hypernetwork writes the same for all, to see what codes are worth
 
 
 def train_power(
@@ -40,7 +47,9 @@ def train_power(
     rooms, unseen = examples(data, "train"), examples(data, "validation")
     validation = _sampler(unseen, recipe, VALIDATION_SEED + recipe.seed)
     network = initial_power_network(recipe)
-    if start is not None:
+    if start is None:
+        measure_codes(network, rooms if recipe.reads_codes else [])
+    else:
         network.load_state_dict(start)
     learner = NetworkLearner(network, rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
     trainer = Trainer(
@@ -52,9 +61,27 @@ def train_power(
 
 
 def initial_power_network(recipe: PowerRecipe) -> PowerNetwork:
-    """The network that training starts from."""
+    """The network that training starts from, but for what is measured over the training set."""
     torch.manual_seed(recipe.seed)
-    return PowerNetwork(is_anchored=recipe.is_anchored)
+    network = PowerNetwork(is_anchored=recipe.is_anchored)
+    weaver, _ = load_weights(shipped_weights())
+    network.environment.load_state_dict(weaver.environment.state_dict())
+    network.pose.load_state_dict(weaver.pose.state_dict())
+    return network
+
+
+def measure_codes(network: PowerNetwork, rooms: list[RoomExamples]) -> None:
+    """Measures how codes of rooms and poses differ over a training set and its reflection; none without rooms."""
+    env, pose = [], []
+    with torch.no_grad():
+        for one in rooms:
+            motion = [torch.from_numpy(part[one.indices]) for part in (one.room.joints_m, one.room.joint_velocity_mps)]
+            scene = SceneTensors.stack([one.scene])
+            reflected = [reflected_joints(part) for part in motion]
+            env += [network.environment(view.image)[0] for view in (scene, reflected_scene(scene))]
+            pose += [network.pose_codes(*way).flatten(0, 1) for way in (motion, reflected)]
+    for whitening, codes in ((network.env_whitening, env), (network.pose_whitening, pose)):
+        whitening.measure(torch.cat(codes) if codes else torch.zeros(1, len(whitening.mean)))
 
 
 def _sampler(rooms: list[RoomExamples], recipe: PowerRecipe, seed: int, mirror: bool = False) -> BatchSampler:
