@@ -188,14 +188,13 @@ def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None
 def parsed_text(text: str) -> MotionPlan:
     """The parsed sentence; activities of plug-ins are looked up where it is not understood without.
 
-    Raises InputError where it is not understood at all.
+    Raises InputError where less than half of it is understood.
     """
     try:
         return parse(text)
     except InputError:
-        if not load_activity_plugins():
-            raise
-        return parse(text)
+        load_activity_plugins()
+        return parse(text, in_part=True)
 
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:

@@ -89,7 +89,7 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
     found = {}
     for sentence in sentences:
         try:
-            found[sentence.name] = reading_of(parse(sentence.text))
+            found[sentence.name] = reading_of(parse(sentence.text, in_part=True))
         except InputError:
             continue
     return found

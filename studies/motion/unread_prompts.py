@@ -39,7 +39,7 @@ def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
     today = {}
     for prompt in prompts:
         try:
-            today[name_of(prompt)] = reading_of(parse(prompt))
+            today[name_of(prompt)] = reading_of(parse(prompt, in_part=True))
         except InputError:
             continue
     judged = [judgements[name] for name in map(name_of, prompts) if name in judgements]

@@ -290,8 +290,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     if word.lemma == "face":
         put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
         return bool(found) or put or before in OWN or before in ("the", "a")
-    if word.lemma == "pace" and {"at", "a"} <= {other.text for other in words[max(i - 4, 0) : i]}:
-        return True  # "at a moderate pace"
+    if word.text == "pace":
+        return before not in ("to", "they", "i", "we", "you", "")  # "at a moderate pace", "increases pace"
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
     if word.lemma == "box" and word.form == "base":

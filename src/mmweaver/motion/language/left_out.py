@@ -19,10 +19,12 @@ from mmweaver.motion.language.lexicon import (
     NOT_HUMAN,
     NOUNS_LIKE_VERBS,
     OTHER_MOVEMENT,
+    PRONOUNS,
     SEATS,
     TARGETS,
 )
 from mmweaver.motion.language.places import MARK as PLACE
+from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
 
@@ -49,6 +51,7 @@ _WHOLE_BODY = (
 )
 _HOW = words_in("with without using by because since that which where like as if for in showing supported")
 _BEFORE_HOW = words_in("and then thereby always a bit little maybe perhaps possibly quite almost kind of")
+_SUBJECTS = PRONOUNS | words_in("person man woman human user guy girl boy subject figure")
 _MOST_PHRASES = 2
 
 
@@ -79,6 +82,26 @@ def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
         parsed.approximate(f"{clause.text!r} is not shown")
         return parsed
     return parse_clause(Clause(clause.link, words, clause.number))
+
+
+def may_be_missed(clause: Clause) -> bool:
+    """Whether a clause that is not understood may be recorded as not done, where the others are understood.
+
+    Not where it is about several people or animals, says what is not done, or names a movement of the whole body.
+    """
+    return not {word.text for word in clause.words} & (_WHOLE_BODY | NEGATIONS)
+
+
+def says_more_of(missed: Clause, clause: Clause) -> bool:
+    """Whether it only goes on with one that is not understood: 'the arm comes over, then goes back', 'and back'."""
+    verb = next((word for word in clause.words if word.is_activity or word.is_going), None)
+    if verb is None:
+        return True
+    own_subject = {word.text for word in clause.words[: clause.words.index(verb)]} & _SUBJECTS
+    limb = {word.text for word in missed.words[:4]} & (ARMS | LEGS) and not _SUBJECTS & {
+        w.text for w in missed.words[:4]
+    }
+    return not own_subject and bool(limb or (clause.link == "and" and verb.form == "past"))
 
 
 def _only_says_how(clause: Clause) -> bool:

@@ -62,7 +62,7 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\b(?:starting|beginning|starts?|begins?) (?:with|by|on) (?:the |his |her |their )?(?:left|right)"
      r"(?: (?:leg|foot))?\b",
      " leading-foot "),
-    (r"\ban? ((?:small |big |large |quick |slow |short |long |little |single |fast )?step)\b", r" one \1 "),
+    (r"\ban? ((?:(?!person|man|woman|human|few)[a-z]+ ){0,2}?step)\b(?! ladder)", r" one \1 "),
     (r"\b((?:(?:counter|anti)[- ]?)?clockwise) ((?:small |big |large |wide )?circles?)\b", r"\2 \1"),
     (r"\b(?:in|on|along|around)(?: an?| the)?(?: (?:small|big|large|wide|tight|narrow|full|whole|complete|little|slow|"
      r"fast|quick|huge|single|one|two|three|four|few|very|slightly|his|her|its)){0,2} circles?\b"
@@ -86,7 +86,9 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bhands and knees\b|\ball fours\b", " allfours "),
     (r"(?<!the )(?<!his )(?<!her )(?<!its )\bright (after|before|then|now)\b", r" \1 "),
     (r"\ba (?:couple|pair) of (times|steps)\b", r" 2 \1 "),
-    (r"\b(?:several|many|a few|multiple|some|few) (times|steps|punches|squats|jumps|claps|sips)\b", r" 3 \1 "),
+    (r"\b(?:several|many|a few|multiple|some|few) "
+     r"((?:(?:more |other |small |large |big |little |short |long |quick |slow )*(?:[a-z]+ )?)??)"
+     r"(times|steps|punches|squats|jumps|claps|sips|kicks|hops|strides|bows|lunges)\b", r" 3 \1\2 "),
     (r"\bonce again\b|\bagain\b|\bonce more\b", " "),
     (r"\bone[- ]two\b", " "),
 )  # fmt: skip

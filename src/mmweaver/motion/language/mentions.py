@@ -129,9 +129,14 @@ _RISING = ("stand_up", "kneel_up", "get_up", "sit_up")
 _GOING_ON = ("walk", "jog", "turn", "sidestep", "leap", "stand")
 
 
+def without_no_limbs(text: str) -> str:
+    """The sentence in lower case, with "_" for the letters of phrases that name a limb and move none."""
+    return _NO_LIMB.sub(lambda found: "_" * len(found[0]), " ".join(text.lower().split()))
+
+
 def not_in_any_step(text: str, steps: Sequence[Step], records: dict[int, ClauseRecord]) -> list[tuple[str, str]]:
     """(words, what of them is not shown): each limb, side, way and thing that the sentence names and no step has."""
-    folded = _NO_LIMB.sub(lambda found: "_" * len(found[0]), " ".join(text.lower().split()))
+    folded = without_no_limbs(text)
 
     def steps_of(words: str) -> Sequence[Step]:
         numbers = {number for number, record in records.items() if words in record.clause}

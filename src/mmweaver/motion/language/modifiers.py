@@ -3,12 +3,15 @@
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, SEATS, SPEEDS, TIMES
+from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, RADAR, SEATS, SPEEDS, TARGETS, TIMES
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.words import Word
 
 OPPOSITE = {"left": "right", "right": "left"}
 MOST_TIMES = 60
+_WHOM = frozenset({"it", "them", "someone", "somebody", "you", "him", "her", "then", "and", "person", "front"})
+_LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", "move", "sidestep", "squat", "skip"})
+_THAT_ONE = ("first", "second", "this", "that", "the", "other", "each", "every", "no", "which")
 _TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
 
@@ -74,12 +77,9 @@ def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
         direction = "back"
     if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
         return about
-    if text == "towards" or text == "toward":
-        if following & SEATS:
-            return replace(about, direction=about.direction or "seat")
-        if following & {"left", "right"}:
-            return about
-    if text == "away" and following & {"left", "right"}:
+    if text in ("towards", "toward") and following & SEATS:
+        return replace(about, direction=about.direction or "seat")
+    if _is_no_direction(text, words, i, following):
         return about
     if direction == "forwards" and about.direction:
         return about
@@ -90,10 +90,22 @@ def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
     return replace(about, direction=direction)
 
 
+def _is_no_direction(text: str, words: list[Word], i: int, following: set[str]) -> bool:
+    """Whether a word for a direction aims at what is not known (`accounts` says so), or belongs to a limb."""
+    if text in ("towards", "toward", "away") and following & {"left", "right"}:
+        return True
+    if text in ("towards", "toward") and following and not following & (RADAR | TARGETS.keys() | _WHOM):
+        return True
+    of_an_arm = i and words[i - 1].text in ARMS and text != "in_circle"
+    return bool(of_an_arm and any(word.lemma in _LEGGED for word in words))  # "jumps with the arms away from the body"
+
+
 def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
     """'three times', 'two steps', 'five squats' count; 'two seconds' is a duration; 'one hand' is neither."""
     value = float(NUMBERS[text]) if text in NUMBERS else float(text)
     following = [word.text for word in words[i + 1 : i + 4]]
+    if text == "one" and i and words[i - 1].text in _THAT_ONE:
+        return about
     if text in TIMES:
         return replace(about, count=int(value))
     if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):

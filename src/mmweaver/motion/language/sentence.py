@@ -1,23 +1,25 @@
 """From a sentence to a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
 
 import re
+from copy import deepcopy
 from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.accounts import unaccounted
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
-from mmweaver.motion.language.clauses import split_clauses
+from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.described_person import described_person
-from mmweaver.motion.language.left_out import parse_with_less
+from mmweaver.motion.language.left_out import may_be_missed, parse_with_less, says_more_of
 from mmweaver.motion.language.lexicon import OWN
-from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names
+from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
-from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.spelling import correct_spelling
@@ -29,15 +31,17 @@ LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
+_IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
 JUMPING = ("jump", "leap", "hop")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
-def parse(text: str) -> MotionPlan:
+def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     """Parses what a person does into steps in temporal order, not scheduled yet.
 
     What is not understood as it is, is tried in other words (`normal_forms`), then with similar movements instead of
-    unknown ones (`approximations`), which the clause's record says.
+    unknown ones (`approximations`), which the clause's record says. `in_part`: last, clauses that are not understood
+    are recorded as not done, where at least as many are understood; labelled data is parsed without.
 
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
     InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
@@ -52,14 +56,18 @@ def parse(text: str) -> MotionPlan:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
-        return _several_times(parse(repeated.text), repeated, given_text)
+        return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
     try:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
         normal, similar = (with_approximations(in_normal_form(text), only_always=only) for only in (True, False))
-        for other, leave_out in ((normal, False), (similar, False), (normal, True), (similar, True)):
+        attempts = (
+            (normal, False, False), (similar, False, False), (normal, True, False), (similar, True, False),
+            (similar, True, True),
+        )  # fmt: skip
+        for other, leave_out, miss in attempts if in_part else attempts[:-1]:
             try:
-                return _parsed(other, given_text, leave_out=leave_out)
+                return _parsed(other, given_text, leave_out=leave_out, miss=miss)
             except InputError:
                 continue
         raise error from None
@@ -82,12 +90,13 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
     return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
 
 
-def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPlan:
-    """The plan of one wording of a sentence; `leave_out`: without phrases that only say how, which is said."""
+def _parsed(text: str, given_text: str, *, leave_out: bool = False, miss: bool = False) -> MotionPlan:
+    """The plan of one wording of a sentence; `leave_out`: without phrases that only say how, which is said; `miss`:
+    without clauses that are not understood, which are recorded as not done."""
     text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leave_out=leave_out)
+    parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leave_out=leave_out, miss=miss)
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
     sequence = _in_sequence(parsed_clauses, one_by_one=leave_out)
@@ -113,14 +122,21 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPla
 
 
 def _parsed_clauses(
-    words: list[Word], notes: list[str], *, leave_out: bool
+    words: list[Word], notes: list[str], *, leave_out: bool, miss: bool
 ) -> tuple[list[ParsedClause], list[ParsedClause], dict[int, ClauseRecord]]:
     """The clauses that name an activity, all clauses, and a record of every clause by its number."""
     found: list[ParsedClause] = []
     every_clause: list[ParsedClause] = []
     records: dict[int, ClauseRecord] = {}
     ahead: ParsedClause | None = None  # modifiers before the first verb: "is carefully and slowly walking"
+    missed: Clause | None = None
     for clause in split_clauses(words):
+        goes_on = missed is not None and says_more_of(missed, clause)
+        missed = clause if miss and (goes_on or not _is_understood(clause, found)) else None
+        if missed is not None:
+            records[clause.number] = ClauseRecord(clause.text, NOT_DONE, "no activity in it is known")
+            notes.append(f"{clause.text!r} is not done: no activity in it is known")
+            continue
         parsed = parse_with_less(clause, is_first=not found) if leave_out else parse_clause(clause)
         if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
             parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
@@ -135,7 +151,21 @@ def _parsed_clauses(
         if ahead is not None and found:
             found[0].absorb(ahead)
             ahead = None
+    not_done = sum(record.status == NOT_DONE for record in records.values())
+    if not_done > sum(bool(parsed.steps) for parsed in every_clause):
+        raise InputError(not_known(next(r.clause for r in records.values() if r.status == NOT_DONE)))
     return found, every_clause, records
+
+
+def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
+    """Whether a clause gives a step or says more of one before; raises InputError for one that may not be missed."""
+    try:
+        _take(parse_with_less(deepcopy(clause), is_first=not found), deepcopy(found))
+    except InputError:
+        if not may_be_missed(clause):
+            raise
+        return False
+    return True
 
 
 def _note_what_is_not_shown(
@@ -148,7 +178,7 @@ def _note_what_is_not_shown(
     """Says of each clause what its steps do not show; sizes are looked for in the sentence: phrases take them away."""
 
     def say(number: int, how: str) -> None:
-        if how not in records[number].how:
+        if how not in records[number].how and records[number].status != NOT_DONE:
             records[number] = records[number].lowered_to(APPROXIMATED, how)
             notes.append(f"of {records[number].clause!r}, {how}")
 
@@ -164,6 +194,10 @@ def _note_what_is_not_shown(
     for words, how in not_in_any_step(given_text, steps, records):
         if not any(words in record.how for record in records.values()):
             say(next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how)
+    otherwise = {parsed.number for parsed in every_clause if parsed.approximations}
+    for number, how in unaccounted(without_no_limbs(given_text), steps, records, otherwise):
+        if how.split("'")[1:2] == [] or not any(how.split("'")[1] in record.how for record in records.values()):
+            say(number, how)
 
 
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
@@ -304,15 +338,21 @@ def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False
         first, rest = parsed.steps[0], parsed.steps[1:]
         if steps and _goes_together(parsed_clauses[i - 1], parsed):
             try:
-                steps[-1:] = _joined(steps[-1], first)
+                before = steps.pop()
+                steps += _joined(before, first)
+                if {before.lower, first.lower} in _IN_TURN and steps[-1] is first:
+                    parsed.lost.append(f"{before.name} and {first.name} are shown one after the other")
             except InputError:
+                steps.append(before)
                 arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
                 if not one_by_one or (steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
                 parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
         else:
-            if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed):  # "dances, jumping"
+            if steps and _reads_as_at_once(
+                parsed_clauses[i - 1], parsed
+            ):  # "dances, jumping", "is dancing and jumping"
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
@@ -377,7 +417,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
             return True  # one hand stays up; `overlay` refuses it
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             return one.lower == "sit" or before.form == parsed.form
-        return compatible and before.form == parsed.form == "ing"
+        return compatible and before.form == parsed.form == "ing" and not (one.count and one.moves)
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
 
 
@@ -385,6 +425,11 @@ def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
     """Whether a participle after a comma names what is done during the movement before, on the spot."""
     step = parsed.steps[0]
     on_the_spot = bool(step.upper) or not (step.moves or step.lower in ("turn", "stand", "stumble", "fall"))
+    if parsed.link == "and":  # "is walking and bending", not "is walking and then bends", "sitting and standing up"
+        ends = (
+            BY_KEY[before.steps[-1].lower].once or BY_KEY[step.lower].once or before.steps[-1].posture != step.posture
+        )
+        return parsed.form == before.form == "ing" and on_the_spot and not (ends or before.steps[-1].count)
     return parsed.link == "comma" and parsed.form == "ing" and before.form != "ing" and on_the_spot
 
 

@@ -73,6 +73,7 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bhalf (?:of )?an? round\b", "half circle"),
     (r"\b(walks?|walking|runs?|running|moves?|moving) circular(?:ly)?\b", r"\1 in a circle"),
     (r"\b(?:performs?|does|doing|makes) an? circular (walk|run)\b", r" \1 in a circle"),
+    (r"\b(?:three|3)[- ](?:quarters?|fourths?)(?: of an?)? (?:turn|rotation|spin)\b", " 270 degree turn "),
     (r"\b((?:full|whole|complete|half|quarter)(?: of an?)?)(?<!with a half)(?<!with a full) turn\b(?! (?:kick|jump))", r" \1 turn turn "),
     # punches
     (r"\b(?:throws?|throwing|performs?|performing|does|doing|makes|making|lands?) (?:an? )?(?:quick |fast |hard |short )?(left|right)"

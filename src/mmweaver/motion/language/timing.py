@@ -23,7 +23,7 @@ def plan_motion(text: str, duration_s: float | None = None) -> MotionPlan:
     >>> [(step.name, round(step.start_s, 2), round(step.end_s, 2)) for step in plan.steps]
     [('bowing', 0.0, 2.2), ('waving', 2.2, 4.0)]
     """
-    plan = parse(text)
+    plan = parse(text, in_part=True)
     if duration_s is None:
         return schedule(plan, natural_s(plan))
     return schedule(repeated(plan, duration_s), duration_s)

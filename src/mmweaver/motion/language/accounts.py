@@ -1,0 +1,234 @@
+"""Every word of the sentence that says what is seen is shown by a step of its clause, or it is named as not shown.
+
+`coverage` and `mentions` look for what the grammar is known to lose. Here it is the other way round: the words of the
+sentence as it was given (verbs, parts of the body, ways, sides, numbers, manners) are held against the steps of the
+clause that they stand in, whatever patterns have made of it, and a word that no step accounts for is named.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+from difflib import SequenceMatcher
+
+from mmweaver.motion.language.coverage import goes_aside
+from mmweaver.motion.language.lexicon import ARMS, FILLERS, SPEEDS
+from mmweaver.motion.language.plan import ClauseRecord, Step
+from mmweaver.motion.language.verb_steps import LEGS
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
+from mmweaver.motion.language.words import word_of
+
+_TOKEN = re.compile(r"[a-z]+(?:'[a-z]+)?|\d+(?:\.\d+)?|[,.;:_]+")
+_CONNECTIVES = words_in(", . ; : and then while before after until")
+_UNDERFOOT = "walk jog sidestep limp stagger crawl leap stumble"
+_LIFTED = "raise raise_hold hands_up arm_extension"
+
+# (words, activities that show what the words say): what is done with a part of the body, or which way.
+SHOWN_BY: tuple[tuple[str, str], ...] = (
+    (
+        "leg legs foot feet knee knees thigh thighs ankle ankles shin shins heel heels toe toes tiptoe tiptoes",
+        """
+        kick stomp raise_leg one_leg hop_one_leg lunge side_lunge limb_extension kneel kneel_down kneel_up squat crouch
+        march limp tree_pose warrior_pose downward_dog stairs crawl push_ups jump leap hop jumping_jacks bend
+        """,
+    ),
+    (
+        "neck chin forehead nose ear ears cheek mouth face eye eyes",
+        "nod shake_head look_around drink eat phone brush_teeth comb yawn cough",
+    ),
+    ("elbow elbows", "knock_elbow plank"),
+    ("shoulder shoulders", "shrug arm_circles arms_out look_around stumble"),
+    ("hip hips waist pelvis", "hips twist dance lean"),
+    (
+        "torso trunk chest stomach belly sternum breast",
+        """
+        twist lean bend bow hips dance golf cross_arms carry push push_hand pull_hand breathe cough yawn lie lie_down
+        lie_on_seat recline fall get_up push_ups plank crawl stumble
+        """,
+    ),
+    (
+        "together",
+        "clap jump leap hop jumping_jacks wipe",
+    ),
+    ("apart outward outwards wide", "arms_out jumping_jacks side_lunge arm_extension limb_extension stretch"),
+    (
+        "up upward upwards upright",
+        f"""
+        stand_up get_up kneel_up sit_up raise_leg jump leap hop hop_one_leg stairs pick_up stretch jumping_jacks carry
+        stand sit march push_ups one_leg knock_elbow draw_circle draw_z reach jacket_off wave {_LIFTED} {_UNDERFOOT}
+        arm_circles breathe yawn kick look_around
+        """,
+    ),
+    (
+        "down downward downwards",
+        f"""
+        sit_down lie lie_down kneel kneel_down crouch squat bend bow put_down lower_arm fall fall_off recline
+        lie_on_seat lunge stairs pick_up jump leap hop hop_one_leg jumping_jacks raise_leg raise stomp downward_dog
+        push_ups sit raise knock_elbow arm_extension stand dance look_around type write {_UNDERFOOT}
+        """,
+    ),
+    (
+        "forward forwards front ahead",
+        f"""
+        kick punch push throw reach lunge bend bow fall point push_hand golf carry open_door knock wipe sweep vacuum
+        {_UNDERFOOT}
+        """,
+    ),
+    ("diagonal diagonally sideways laterally", ""),
+    ("toward towards", "reach turn point push"),
+    ("clockwise counterclockwise anticlockwise", "draw_circle stir arm_circles"),
+)  # fmt: skip
+_SHOWN_BY = {word: words_in(keys) for words, keys in SHOWN_BY for word in words.split()}
+_ALSO: dict[str, Callable[[Step], bool]] = {
+    **dict.fromkeys(
+        ("forward", "forwards", "front", "ahead"),
+        lambda step: step.direction in ("forwards", "towards") or step.facing == "towards" or step.lower == "turn",
+    ),
+    **dict.fromkeys(("diagonal", "diagonally", "sideways", "laterally"), goes_aside),
+    **dict.fromkeys(
+        ("clockwise", "counterclockwise", "anticlockwise"), lambda step: bool(step.arc_deg or step.lower == "turn")
+    ),
+    "face": lambda step: bool(step.facing) or step.lower == "turn",
+    **dict.fromkeys(
+        ("toward", "towards"), lambda step: bool(step.direction or step.target or step.facing or step.place)
+    ),
+    **dict.fromkeys(("apart", "outward", "outwards", "wide"), lambda step: step.style == "wide"),
+    **dict.fromkeys(("up", "upward", "upwards"), lambda step: step.direction == "pacing" or step.style == "high"),
+}
+_MEASURES = words_in("step steps hand hands arm arms leg legs foot feet fist fists finger fingers knee knees metres")
+_NO_COUNT = words_in("first second other last this that each every by someone-s the no any")
+_COUNTED = words_in("few several multiple couple many")
+_SIDE = re.compile(r"(?:left|right)(?:wards?)?")
+_OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
+_TO, _WHOSE = words_in("to towards toward on onto at"), words_in("the his her their its")
+_NOUNS = words_in(
+    """
+    step steps box boxes phone comb text point points drink pace paces face faces rest head circle turn turns stop bow
+    bend seat dust lift stretch movement dance march march walk run brush play fiddle cook type reads light
+    """
+)
+
+
+def unaccounted(
+    text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], shown_otherwise: set[int]
+) -> list[tuple[int, str]]:
+    """(number of the clause, what is not shown) for each word of the sentence that no step accounts for.
+
+    `text`: as it was given, in lower case, with "_" for letters that name no limb; `shown_otherwise`: clauses whose
+    record says already that something else is acted out; of the words that are gone from them only sides and numbers
+    are looked for.
+    """
+    tokens = _TOKEN.findall(text)
+    numbers, sure = _clause_of_each(tokens, records)
+    rewritten = {*records} - {number for number, is_sure in zip(numbers, sure, strict=True) if is_sure}
+    lost: list[tuple[int, str]] = []
+    for i in range(len(tokens)):
+        near = {numbers[i]} if sure[i] else {numbers[i], *numbers[i : i + 8], *rewritten}
+        own = [step for step in steps if near & {*step.clauses}] or list(steps)
+        replaced = numbers[i] in shown_otherwise and not sure[i]
+        checks = (_side, _number) if replaced else (_side, _number, _one_step, _word, _manner)
+        for check in checks:
+            how = check(tokens, i, own)
+            if how:
+                lost.append((numbers[i], how))
+                break
+    return list(dict.fromkeys(lost))
+
+
+def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tuple[list[int], list[bool]]:
+    """The number of the clause that each token stands in, by aligning the sentence with its clauses, and if it does."""
+    words = [(word, number) for number, record in sorted(records.items()) for word in record.clause.split()]
+    found: list[int | None] = [None] * len(tokens)
+    for block in SequenceMatcher(None, tokens, [word for word, _ in words], autojunk=False).get_matching_blocks():
+        for k in range(block.size):
+            found[block.a + k] = words[block.b + k][1]
+    last = next((number for number in found if number is not None), min(records))
+    numbers = []
+    for i, number in enumerate(found):
+        if number is None and tokens[i] in _CONNECTIVES:
+            number = next((other for other in found[i:] if other is not None), last)
+        last = last if number is None else number
+        numbers.append(last)
+    return numbers, [number is not None for number in found]
+
+
+def _side(tokens: list[str], i: int, own: list[Step]) -> str:
+    """A side that something goes to, which no step does."""
+    if not _SIDE.fullmatch(tokens[i]) or _OF_A_LIMB & set(tokens[i + 1 : i + 3]):
+        return ""
+    before = tokens[max(i - 2, 0) : i]
+    aimed = len(before) == 2 and before[0] in _TO and before[1] in _WHOSE
+    if not aimed or any(goes_aside(step) or step.turn_deg for step in own):
+        return ""
+    shown = any(step.direction in ("left", "right") and step.lower in ("kick", "fall_off") for step in own)
+    shown = shown or any(step.lower == "side_lunge" for step in own)
+    return "" if shown else "the side is not shown"
+
+
+def _number(tokens: list[str], i: int, own: list[Step]) -> str:
+    """A number of movements that no step has."""
+    token, after = tokens[i], tokens[i + 1 : i + 4]
+    counted = any(word_of(word).is_activity or word in ("steps", "times") for word in after[:3])
+    vague = {"after", "later"} & {*tokens[max(i - 2, 0) : i], *after}
+    if token in _COUNTED and counted and not vague and not any(step.count for step in own):
+        return f"{token!r} is not kept"
+    return ""
+
+
+def _one_step(tokens: list[str], i: int, own: list[Step]) -> str:
+    """ "A step" or "one step", where the steps have no number."""
+    if tokens[i] != "step" or not {"a", "an", "one", "another", "single"} & set(tokens[max(i - 3, 0) : i]):
+        return ""
+    going = [step for step in own if step.lower in ("walk", "sidestep", "jog")]
+    return "that it is one step is not kept" if going and not any(step.count for step in going) else ""
+
+
+def _word(tokens: list[str], i: int, own: list[Step]) -> str:
+    """A verb, a part of the body, or a way that no step has."""
+    token = tokens[i]
+    if token in _SHOWN_BY:
+        also = _ALSO.get(token, lambda step: False)
+        if any({step.lower, step.upper} & _SHOWN_BY[token] or also(step) for step in own):
+            return ""
+        after = tokens[i + 1 : i + 4]
+        if tokens[i - 1 : i + 2] == ["in", "front", "of"] or (token in _TO and {"left", "right"} & {*after}):
+            return ""
+        return f"{token!r} is not shown"
+    word = word_of(token)
+    if not word.is_activity or token in _NOUNS or (word.form == "base" and i and tokens[i - 1] not in ("and", "then")):
+        return ""
+    lower, upper = ACTIVITY_OF_LEMMA[word.lemma]
+    head_bowed = lower == "bow" and any(step.facing == "down" for step in own)
+    jack = lower == "jump" and any(step.lower == "jumping_jacks" for step in own)
+    bent = lower == "bend" and any(step.arc_deg for step in own)
+    if head_bowed or jack or bent or any(_is_like(step, lower, upper) for step in own):
+        return ""
+    return f"{token!r} is not shown"
+
+
+_ALIKE = (
+    words_in("walk jog sidestep limp stagger march stairs crawl turn"), words_in("jump leap hop hop_one_leg"),
+    words_in("sit sit_down stand_up"), words_in("kneel kneel_down kneel_up"), words_in("stumble fall fall_off"),
+    words_in("lie lie_down lie_on_seat recline get_up fall"), words_in("bend bow pick_up lean"),
+    words_in("lunge side_lunge"), words_in("stand stand_up get_up kneel_up one_leg"), words_in("turn twist"),
+)  # fmt: skip
+
+
+def _is_like(step: Step, lower: str, upper: str) -> bool:
+    """Whether a step is what a verb names, or what the grammar makes of it."""
+    if upper:
+        return bool(step.upper) or step.lower in ("pick_up", "put_down", "raise_leg", "stumble", "limb_extension")
+    return lower == "stand" or step.lower == lower or any({step.lower, lower} <= alike for alike in _ALIKE)
+
+
+_NO_MANNER = words_in(
+    "gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
+)
+
+
+def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
+    """An adverb that changes no step and is not among the words that say nothing."""
+    token = tokens[i]
+    if not token.endswith("ly") or token in FILLERS or token in _ALSO or token in _NO_MANNER:
+        return ""
+    if token in SPEEDS and any(step.speed for step in own):
+        return ""
+    return f"{token!r} is not shown"
