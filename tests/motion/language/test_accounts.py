@@ -50,7 +50,7 @@ def test_nothing_is_named_where_all_is_shown(sentence: str) -> None:
         ("a person picks something up and then brushes an object", ["picking up"], 1),
         ("a person walks forward, the right arm comes over, then goes back, then he sits down",
          ["walking", "sitting down"], 2),
-        ("a man sits down and leans over a table", ["sitting down"], 1),
+        ("a man sits down and pets an object", ["sitting down"], 1),
     ],
 )  # fmt: skip
 def test_a_clause_that_is_not_understood_is_not_done(sentence: str, names: list[str], missed: int) -> None:
@@ -75,8 +75,8 @@ def test_more_must_be_understood_than_missed(sentence: str) -> None:
 
 
 def test_labelled_data_is_parsed_whole() -> None:
-    with pytest.raises(InputError, match="leans over a table"):
-        parse("a man sits down and leans over a table")
+    with pytest.raises(InputError, match="pets an object"):
+        parse("a man sits down and pets an object")
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,13 @@ from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import word_of
 
 _TOKEN = re.compile(r"[a-z]+(?:'[a-z]+)?|\d+(?:\.\d+)?|[,.;:_]+")
+_STEM = 4  # letters by which words are aligned: "twists" and "twist"
+_SMALL = words_in(
+    """
+    a an the and then to of in on at as for from by with into while this that his her their its is are was he she it
+    they person man , . ; :
+    """
+)
 _CONNECTIVES = words_in(", . ; : and then while before after until")
 _UNDERFOOT = "walk jog sidestep limp stagger crawl leap stumble"
 _LIFTED = "raise raise_hold hands_up arm_extension"
@@ -41,7 +48,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         "torso trunk chest stomach belly sternum breast",
         """
         twist lean bend bow hips dance golf cross_arms carry push push_hand pull_hand breathe cough yawn lie lie_down
-        lie_on_seat recline fall get_up push_ups plank crawl stumble
+        lie_on_seat recline fall get_up push_ups plank crawl stumble raise_leg
         """,
     ),
     (
@@ -72,29 +79,29 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         {_UNDERFOOT}
         """,
     ),
+    ("high higher", f"kick stretch crouch jumping_jacks {_LIFTED}"),
+    ("low lower", "crouch squat bend bow lower_arm lunge"),
     ("diagonal diagonally sideways laterally", ""),
     ("toward towards", "reach turn point push"),
-    ("clockwise counterclockwise anticlockwise", "draw_circle stir arm_circles"),
 )  # fmt: skip
-_SHOWN_BY = {word: words_in(keys) for words, keys in SHOWN_BY for word in words.split()}
+_SHOWN_BY: dict[str, frozenset[str]] = {word: words_in(keys) for words, keys in SHOWN_BY for word in words.split()}
 _ALSO: dict[str, Callable[[Step], bool]] = {
     **dict.fromkeys(
         ("forward", "forwards", "front", "ahead"),
         lambda step: step.direction in ("forwards", "towards") or step.facing == "towards" or step.lower == "turn",
     ),
     **dict.fromkeys(("diagonal", "diagonally", "sideways", "laterally"), goes_aside),
-    **dict.fromkeys(
-        ("clockwise", "counterclockwise", "anticlockwise"), lambda step: bool(step.arc_deg or step.lower == "turn")
-    ),
     "face": lambda step: bool(step.facing) or step.lower == "turn",
     **dict.fromkeys(
         ("toward", "towards"), lambda step: bool(step.direction or step.target or step.facing or step.place)
     ),
     **dict.fromkeys(("apart", "outward", "outwards", "wide"), lambda step: step.style == "wide"),
+    "upright": lambda step: step.lower in ("stand", "sit"),
+    **dict.fromkeys(("high", "higher"), lambda step: step.style == "high"),
     **dict.fromkeys(("up", "upward", "upwards"), lambda step: step.direction == "pacing" or step.style == "high"),
 }
-_MEASURES = words_in("step steps hand hands arm arms leg legs foot feet fist fists finger fingers knee knees metres")
-_NO_COUNT = words_in("first second other last this that each every by someone-s the no any")
+_ANGLES = words_in("90 180 270 360")
+_ROUND, _NOT_OUT = words_in("draw_circle stir arm_circles"), words_in("raise raise_hold wave clap hands_up")
 _COUNTED = words_in("few several multiple couple many")
 _SIDE = re.compile(r"(?:left|right)(?:wards?)?")
 _OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
@@ -124,7 +131,7 @@ def unaccounted(
         near = {numbers[i]} if sure[i] else {numbers[i], *numbers[i : i + 8], *rewritten}
         own = [step for step in steps if near & {*step.clauses}] or list(steps)
         replaced = numbers[i] in shown_otherwise and not sure[i]
-        checks = (_side, _number) if replaced else (_side, _number, _one_step, _word, _manner)
+        checks = (_side, _number, _turn, _verb) if replaced else _CHECKS
         for check in checks:
             how = check(tokens, i, own)
             if how:
@@ -136,10 +143,13 @@ def unaccounted(
 def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tuple[list[int], list[bool]]:
     """The number of the clause that each token stands in, by aligning the sentence with its clauses, and if it does."""
     words = [(word, number) for number, record in sorted(records.items()) for word in record.clause.split()]
+    words = [(word, number) for word, number in words if word not in _SMALL]
+    places = [i for i, token in enumerate(tokens) if token not in _SMALL]
+    stems = ([tokens[i][:_STEM] for i in places], [word[:_STEM] for word, _ in words])
     found: list[int | None] = [None] * len(tokens)
-    for block in SequenceMatcher(None, tokens, [word for word, _ in words], autojunk=False).get_matching_blocks():
+    for block in SequenceMatcher(None, *stems, autojunk=False).get_matching_blocks():
         for k in range(block.size):
-            found[block.a + k] = words[block.b + k][1]
+            found[places[block.a + k]] = words[block.b + k][1]
     last = next((number for number in found if number is not None), min(records))
     numbers = []
     for i, number in enumerate(found):
@@ -168,59 +178,117 @@ def _number(tokens: list[str], i: int, own: list[Step]) -> str:
     token, after = tokens[i], tokens[i + 1 : i + 4]
     counted = any(word_of(word).is_activity or word in ("steps", "times") for word in after[:3])
     vague = {"after", "later"} & {*tokens[max(i - 2, 0) : i], *after}
-    if token in _COUNTED and counted and not vague and not any(step.count for step in own):
+    if token in _COUNTED and counted and not vague and not any(step.count or step.lower == "dance" for step in own):
         return f"{token!r} is not kept"
     return ""
 
 
 def _one_step(tokens: list[str], i: int, own: list[Step]) -> str:
     """ "A step" or "one step", where the steps have no number."""
-    if tokens[i] != "step" or not {"a", "an", "one", "another", "single"} & set(tokens[max(i - 3, 0) : i]):
+    if (
+        tokens[i] != "step"
+        or tokens[i - 1] == "side"
+        or not {"a", "an", "one", "another", "single"} & set(tokens[max(i - 3, 0) : i])
+    ):
         return ""
     going = [step for step in own if step.lower in ("walk", "sidestep", "jog")]
     return "that it is one step is not kept" if going and not any(step.count for step in going) else ""
 
 
-def _word(tokens: list[str], i: int, own: list[Step]) -> str:
-    """A verb, a part of the body, or a way that no step has."""
+def _turn(tokens: list[str], i: int, own: list[Step]) -> str:
+    """Which way round, or by which angle, where no step turns so."""
     token = tokens[i]
-    if token in _SHOWN_BY:
-        also = _ALSO.get(token, lambda step: False)
-        if any({step.lower, step.upper} & _SHOWN_BY[token] or also(step) for step in own):
+    if token.endswith("clockwise"):
+        sign = (
+            -1.0 if token == "clockwise" and not {"counter", "anti", "against"} & {*tokens[max(i - 2, 0) : i]} else 1.0
+        )
+        side = {-1.0: "right", 1.0: "left"}[sign]
+        if any(step.upper in _ROUND for step in own):
             return ""
-        after = tokens[i + 1 : i + 4]
-        if tokens[i - 1 : i + 2] == ["in", "front", "of"] or (token in _TO and {"left", "right"} & {*after}):
-            return ""
-        return f"{token!r} is not shown"
-    word = word_of(token)
-    if not word.is_activity or token in _NOUNS or (word.form == "base" and i and tokens[i - 1] not in ("and", "then")):
+        turns = any(
+            (step.arc_deg or step.turn_deg) * sign > 0 or (step.lower == "turn" and step.direction == side)
+            for step in own
+        )
+        return "" if turns else f"{token!r} is not shown"
+    if token not in _ANGLES and not (token.isdigit() and "".join(tokens[i + 1 : i + 2]).startswith("deg")):
         return ""
-    lower, upper = ACTIVITY_OF_LEMMA[word.lemma]
-    head_bowed = lower == "bow" and any(step.facing == "down" for step in own)
-    jack = lower == "jump" and any(step.lower == "jumping_jacks" for step in own)
-    bent = lower == "bend" and any(step.arc_deg for step in own)
-    if head_bowed or jack or bent or any(_is_like(step, lower, upper) for step in own):
+    return "" if any(float(token) in _angles(step) for step in own) else f"'{token} degrees' is not shown"
+
+
+def _angles(step: Step) -> set[float]:
+    """The angles that a step turns or bends by."""
+    plain = 90.0 if step.direction in ("left", "right") else 180.0
+    return {abs(step.turn_deg), abs(step.arc_deg), plain if step.lower == "turn" else 0.0}
+
+
+def _way(tokens: list[str], i: int, own: list[Step]) -> str:
+    """A part of the body or a way that no step has."""
+    token = tokens[i]
+    if token == "out":
+        lifted = any(step.upper in _NOT_OUT for step in own) and tokens[i + 1 : i + 2] != ["of"]
+        return "'out' is not shown" if lifted else ""
+    if token not in _SHOWN_BY:
+        return ""
+    also = _ALSO.get(token, lambda step: False)
+    if any(_doing(step) & _SHOWN_BY[token] or also(step) for step in own):
+        return ""
+    after = tokens[i + 1 : i + 4]
+    if tokens[i - 1 : i + 2] == ["in", "front", "of"] or (token in _TO and {"left", "right"} & {*after}):
+        return ""
+    if token == "up" and i and word_of(tokens[i - 1]).lemma in ("stand", "sit", "get", "wind"):
         return ""
     return f"{token!r} is not shown"
 
 
-_ALIKE = (
-    words_in("walk jog sidestep limp stagger march stairs crawl turn"), words_in("jump leap hop hop_one_leg"),
-    words_in("sit sit_down stand_up"), words_in("kneel kneel_down kneel_up"), words_in("stumble fall fall_off"),
-    words_in("lie lie_down lie_on_seat recline get_up fall"), words_in("bend bow pick_up lean"),
-    words_in("lunge side_lunge"), words_in("stand stand_up get_up kneel_up one_leg"), words_in("turn twist"),
+def _doing(step: Step) -> set[str]:
+    """The activities of a step, without the standing during an activity of the hands."""
+    return {step.upper} if step.upper and step.lower == "stand" else {step.lower, step.upper}
+
+
+def _verb(tokens: list[str], i: int, own: list[Step]) -> str:
+    """A verb that no step is like."""
+    token = tokens[i]
+    word = word_of(token)
+    if (
+        token in _SHOWN_BY
+        or not word.is_activity
+        or token in _NOUNS
+        or (word.form == "base" and i and tokens[i - 1] not in ("and", "then"))
+    ):
+        return ""
+    lower, upper = ACTIVITY_OF_LEMMA[word.lemma]
+    head_bowed = lower == "bow" and any(step.facing == "down" for step in own)
+    bent = lower == "bend" and any(step.arc_deg for step in own)
+    stays = (upper or lower) == "stand"
+    if stays or head_bowed or bent or any(_is_like(step, upper or lower) for step in own):
+        return ""
+    return f"{token!r} is not shown"
+
+
+_ALIKE = tuple(
+    words_in(alike)
+    for alike in (
+        "walk jog sidestep limp stagger march stairs crawl", "jump leap hop hop_one_leg jumping_jacks",
+        "sit sit_down stand_up", "kneel kneel_down kneel_up", "stumble fall fall_off push",
+        "bend bow pick_up lean stretch",
+        "lie lie_down lie_on_seat recline get_up fall", "lunge side_lunge", "stand stand_up get_up kneel_up one_leg",
+        "raise raise_hold arms_out arm_extension hands_up stretch limb_extension raise_leg knock_elbow pick_up",
+        "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",
+        "wipe brush_teeth sweep stir", "turn twist", "kick raise_leg", "read text type", "throw punch", "carry walk",
+    )
 )  # fmt: skip
 
 
-def _is_like(step: Step, lower: str, upper: str) -> bool:
+def _is_like(step: Step, activity: str) -> bool:
     """Whether a step is what a verb names, or what the grammar makes of it."""
-    if upper:
-        return bool(step.upper) or step.lower in ("pick_up", "put_down", "raise_leg", "stumble", "limb_extension")
-    return lower == "stand" or step.lower == lower or any({step.lower, lower} <= alike for alike in _ALIKE)
+    round_about = activity == "turn" and (step.arc_deg or step.facing or step.upper in _ROUND | {"look_around"})
+    return bool(
+        round_about or activity in _doing(step) or any(activity in alike and _doing(step) & alike for alike in _ALIKE)
+    )
 
 
 _NO_MANNER = words_in(
-    "gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
+    "finally gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
 )
 
 
@@ -232,3 +300,6 @@ def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
     if token in SPEEDS and any(step.speed for step in own):
         return ""
     return f"{token!r} is not shown"
+
+
+_CHECKS = (_side, _number, _turn, _one_step, _way, _verb, _manner)

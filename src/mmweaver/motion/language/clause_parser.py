@@ -218,7 +218,10 @@ def _start_of(words: list[Word], before: int, at: int) -> int:
     light = [i for i in range(before + 1, at) if words[i].is_verb and not words[i].is_activity]
     if light:
         return light[0]
-    while at - 1 > before and (words[at - 1].text in BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
+    turned = ACTIVITY_OF_LEMMA.get(words[before].lemma) == ("turn", "")  # "turns 180 degrees walks back"
+    while at - 1 > before and (
+        words[at - 1].text in BEFORE_NOUNS or (words[at - 1].text.startswith("deg") and not turned)
+    ):
         at -= 1
     return at
 
@@ -292,6 +295,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return bool(found) or put or before in OWN or before in ("the", "a")
     if word.text == "pace":
         return before not in ("to", "they", "i", "we", "you", "")  # "at a moderate pace", "increases pace"
+    if _is_adjective(words, i):
+        return True
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
     if word.lemma == "box" and word.form == "base":
@@ -312,8 +317,21 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return True  # "jumps onto it with one large step"
     if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
         return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
-    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
-    return same
+    same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
+    # "walks a walk", not "walks to the left, turns around walk back"
+    return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
+
+
+def _is_adjective(words: list[Word], i: int) -> bool:
+    """'a clean kick', 'lowers the raised arms'."""
+    word, before = words[i], words[i - 1].text if i else ""
+    if word.lemma == "clean" and word.form == "base" and (before in SIZES or before in ("a", "an", "the", "very")):
+        return True
+    raised = word.form == "past" and before in (*OWN, "the", "both", "with")  # "lowers their raised arms"
+    arms = words[i + 1 : i + 2] and words[i + 1].text in ARMS
+    if word.text == "types" and before in ("different", "of"):
+        return True
+    return bool(raised and arms and any(other.is_verb for other in words[:i]))
 
 
 def _form(words: list[Word], at: int) -> str:

@@ -211,7 +211,7 @@ FILLERS = words_in(
     rhythm beat smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
     invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat
     lightly stationary motionless motionlessly immobile perfectly completely moment second seconds minute
-    exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish meters metres
+    exercise exercises workout gym set repetitions reps fitness jacks steps pairs large-ish meters metres
     meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them something
     anything first about whole complete successive consecutive row close someone's person's man's user's woman's
     arm's drunk drunken tight careful recovery starting ending performing doing object thing things ball box

@@ -16,6 +16,7 @@ INSTEAD_OF_ANOTHER: tuple[tuple[str, str, str], ...] = (
     (r"(?:,? (?:and|then|before))* ?(?:return(?:s|ing)?|goes back|going back|comes back) to (?:an? |the |his |her |their )?(?:neutral|standing|normal|upright|rest(?:ing)?|natural|relaxed) ?(?:pose|stance|posture|position)?\b",
      ", then stands", "the pose at the end is shown as standing"),
     (rf"(?:,? (?:and|then))* ?bend(?:s|ing) (?:it|them)(?: at {_OWN}elbows?)?{_END}|\bbend(?:s|ing) {_OWN}(?:{_SIDE} )?(?:elbows?|arms?)\b", "", "how the arm is bent is not shown"),
+    (rf"\bpull(?:s|ing)? (?:{_OWN}(?:{_SIDE} )?(?:hands?|arms?)|them|it) (?:back )?down{_END}", "stays", "arms that go down are shown as hanging"),
     (rf"\b(?:lift|rais)(?:s|es|ing) {_OWN}(?:{_SIDE} )?heels?\b(?: (?:off|from|up)[a-z ]*?)?{_END}", "stands", "raised heels are not shown"),
     (r"\b(?:does|do|doing|performs?|performing) (?:an? |some |\w+ )?(?:sit[- ]?ups?|crunch(?:es)?)\b", "sit-ups", ""),
     (rf"\bsits? up from (?:lying|{_OWN}(?:lying|floor|ground))[a-z ]*?{_END}", "gets up from the floor", "sitting up is shown as getting up from the floor"),

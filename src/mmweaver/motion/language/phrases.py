@@ -43,7 +43,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bupper[- ]?body\b|\btorso\b", " torso "),
     (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
      r"to the left and (?:to the )?right)\b", r" \1 "),
-    (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her) (?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass?|mug|bottle|"
+    (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her|their)? ?(?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass?|mug|bottle|"
      r"book|pen|remote|fork|spoon|plate|knife|key|keys|newspaper|magazine|tablet|bag|telephone)\b(?: up)?(?! (?:from|off) the (?:floor|ground))",
      " reach "),
     (r"\bfrom (?:his|her|its|their) (left|right)(?:[- ]hand)?(?: side)?\b", r" from_own_\1 "),
@@ -78,14 +78,14 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bbow(?:s|ed|ing)? (?:down|forwards?)\b", " bows "),
     (r"\bbend(?:s|ed|ing)?(?: himself| herself| itself)? (?:down|over|forwards?|downwards?)(?: (?:over|down|forwards?))?\b",
      " bends "),
-    (r"\b(?:leans?|leaning) (?:far )?(?:down|forwards?)\b(?! (?:on|against))", " bends "),
+    (r"\b(?:leans?|leaning|leaned) (?:far )?(?:down|forwards?|over)\b(?! (?:to|on|against|left|right|sideways))", " bends "),
     (r"\b(pick|lift|take|grab|get|raise|collect)(s|ing|ed)? (?!up (?:his|her|its|their|the|both|a|an|one|left|right)? ?"
      r"(?:arms?|hands?|legs?|foot|feet|knees?))(?:up )?(?:(?!up\b|then\b|and\b|while\b)[a-z]+ ){0,4}(?:up )?(?:from|off|of) "
      r"(?:of )?(?:the )?(?:floor|ground)\b", " pick_up "),
     (r"\bpick(s|ing|ed)? up\b|\bpick(s|ing|ed)? (?:(?:an?|the|his|her|its|something|some|it|box|ball|object|thing|and)"
      r" ?){1,3}up\b|\bpicks? up and object\b", " pick_up "),
-    (r"\b(?:puts?|putting|places?|placing|lays?|sets?|setting|drops?) (?:(?:an?|the|his|her|its|something|it|box|ball|"
-     r"object|thing|some|back) ){1,4}(?:back )?(?:down|(?:on|onto|to) the (?:floor|ground))\b"
+    (r"\b(?:puts?|putting|places?|placing|lays?|sets?|setting|drops?) (?:(?:an?|the|his|her|its|their|something|it|box|ball|"
+     r"object|thing|item|glass|cup|phone|bottle|book|some|back) ){1,4}(?:back )?(?:down|(?:on|onto|to) the (?:floor|ground))\b"
      r"|\b(?:puts?|places?|sets?) down (?:an?|the|something|it)\b", " put_down "),
     (r"\b(?:takes?|grabs?|taking|grabbing) (?:(?:an?|the|his|her|something|cup|glass|book|bottle|it) ){1,3}(?:from|off) "
      r"(?:the |a )?(?:table|desk|shelf|counter|cupboard)\b", " reach "),
@@ -126,7 +126,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:with |puts? |putting |places? |has |having )?(?:his |her |its |their |the |both )*(?:hands|arms)(?: are)? "
      r"(?:on|onto|at|to|in) (?:his |her |its |their |the )*(?:hips?|waist)\b", " hands_on_hips "),
     (r"\bshrug(?:s|ging|ged)?(?: with)?(?: his| her| its| their| the)? shoulders\b", " shrugs "),
-    (r"\bt-? ?pose\b", " arms_out "),
+    (r"\b(?:in(?:to)? )?(?:an? )?t-? ?poses?\b", " arms_out "),
     (r"\b(?:stretch(?:es|ing|ed)?|hold(?:s|ing)?|spread(?:s|ing)?|extend(?:s|ing|ed)?|rais(?:es|ing|ed?)|lift(?:s|ing)?)"
      r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:out )?(?:horizontally )?"
      r"(?:to (?:the|his|her|its|their|both) sides?|sideways|sidewards|horizontally|to (?:the |his |her |its |their )?"
@@ -192,7 +192,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\baround (?:an?|the) corner\b", " arc90 "),
     (r"\b(?:in |along |around |a |an |slight |wide |sharp |big |long |light |small |tight )*(?:curve|arc|bend)\b"
      r"(?! (?:down|over|forward|posture|position|pose|stance|manner|way|legs?|knees?))", " arc60 "),
-    (r"\b(?:counter|anti)[- ]?(?:clock|clook)[- ]?wise\b|\bcounter clock wise\b", " to the left "),
+    (r"\b(?:counter|anti)[- ]*(?:clock|clook)[- ]?wise\b|\bcounter clock wise\b", " to the left "),
     (r"\bclock[- ]?wise\b", " to the right "),
     (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)[a-z ]*"
      r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back_to_start "),

@@ -299,6 +299,8 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
     if not parsed_clauses:
         return False
     before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
+    if [word.text for word in parsed.words[:-1]] in (["the"], ["this"], ["that"]) and _same(before, now):
+        return True  # "turns, and stumbles after the turn"
     if len(parsed.steps) > 1 or before.upper:
         return before.upper == "raise" and now.lower == "put_down" and len(parsed.steps) == 1
     if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
@@ -307,6 +309,10 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
     described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
     lifted = (before.lower, now.lower) == ("march", "raise_leg") and parsed.form == "ing"
     return described or lifted or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+
+
+def _same(one: Step, other: Step) -> bool:
+    return (one.lower, one.upper) == (other.lower, other.upper)
 
 
 def _check_turning_jumps(text: str, words: list[Word]) -> None:
@@ -394,7 +400,7 @@ def _joined(one: Step, other: Step) -> list[Step]:
         return [walk, more, onward]
     if walk.lower in ("walk", "jog") and more.lower == "turn" and not (one.upper or other.upper or more.facing):
         angle = {"left": 90.0, "right": -90.0, "around": 180.0}.get(more.direction, more.turn_deg)
-        if more.direction == "around" and walk.direction:
+        if (more.direction == "around" and walk.direction) or abs(angle) >= 360.0:
             return [one, other]
         bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
         return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]

@@ -13,6 +13,7 @@ _WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
 
 # Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
 SIDED_PHRASES: tuple[tuple[str, str], ...] = (
+    (rf"\b((?:turn|spin|rotat|pivot)[a-z]*(?: [a-z]+){{0,3}}?) in an? ({_CLOCK}) (?:direction|motion|manner|fashion|way)\b", r"\1 \2"),
     # the trunk
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b(?! (?:arm|hand|leg|foot|knee|elbow|wrist|hip|shoulder))", r" lean_over \1 "),
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to (?:the|one|both|each) sides?|from side to side|sideways|left and right|side to side)\b", " lean_over "),

@@ -1,6 +1,7 @@
 """From a verb and the modifiers of its clause to a Step, or an error that says why it cannot be shown."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
@@ -111,7 +112,8 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
     if target and direction in ("towards", "forwards") and not texts & RADAR:
         direction = "" if not step.seat else "seat"
     step = replace(step, direction=direction, hand="", target=target, facing=facing_of(words))
-    if ("sideways" in texts and step.lower == "walk") or _is_step_aside(step, words, at):
+    aside = any(other.text == "sideways" and before.text not in ARMS for before, other in pairwise(words))
+    if (aside and step.lower == "walk") or _is_step_aside(step, words, at):
         return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == "spot":
         return replace(step, lower="march" if step.lower == "walk" else step.lower, arc_deg=0.0, turn_deg=0.0)
