@@ -10,6 +10,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.records import PoseSequence
+from mmweaver.figures import face
+from mmweaver.figures.face import face_capsules
 from mmweaver.geometry.body_capsules import pose_capsules, radii_m, widths_per_depth
 
 Array = np.ndarray
@@ -50,13 +52,17 @@ class BodyPixels:
 
 
 def bodies_of(pose: PoseSequence, instants: Int[Array, " instant"]) -> list[Body]:
-    """The body of a person at some indices of `time_s`."""
+    """The body of a person at some indices of `time_s`: its capsules, then those of the face."""
     posed = pose_capsules(pose.joints_m[instants], pose.height_m)
     ends_m = np.stack([posed.start_m, posed.start_m + posed.axis_m], axis=2)
-    radius_m, wider = radii_m(pose.height_m, pose.girth), widths_per_depth()
+    face_m, face_radius_m = face_capsules(pose.joints_m[instants], pose.height_m)
+    ends_m = np.concatenate([ends_m, face_m], axis=1)
+    radius_m = np.concatenate([radii_m(pose.height_m, pose.girth), face_radius_m])
+    wider = np.append(widths_per_depth(), np.ones(face.COUNT))
+    wide = np.concatenate([posed.rotation[..., 0], np.repeat(posed.rotation[:, :1, :, 0], face.COUNT, axis=1)], axis=1)
     return [
-        Body(ends_m=ends, radius_m=radius_m, wide=rotation[:, :, 0], width_per_depth=wider)
-        for ends, rotation in zip(ends_m, posed.rotation, strict=True)
+        Body(ends_m=ends, radius_m=radius_m, wide=own, width_per_depth=wider)
+        for ends, own in zip(ends_m, wide, strict=True)
     ]
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 LEFT_COLOUR, RIGHT_COLOUR, TRUNK_COLOUR = (0.27, 0.55, 0.82), (0.86, 0.36, 0.28), (0.72, 0.72, 0.74)
+FACE_COLOUR, NOSE_COLOUR = (0.97, 0.80, 0.60), (0.78, 0.42, 0.25)
 SPACING_M = 0.85
 AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
 TILT = 0.18  # upward shift per metre of distance
@@ -144,4 +145,4 @@ def _colour_of(name: str) -> tuple[float, float, float]:
     return LEFT_COLOUR if name.startswith("left") else RIGHT_COLOUR if name.startswith("right") else TRUNK_COLOUR
 
 
-COLOURS = np.array([_colour_of(capsule.end) for capsule in CAPSULES], np.float32)
+COLOURS = np.array([*(_colour_of(capsule.end) for capsule in CAPSULES), FACE_COLOUR, NOSE_COLOUR], np.float32)
