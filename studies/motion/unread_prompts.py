@@ -1,4 +1,4 @@
-"""How many prompts of other text-to-motion projects are understood, and how many correctly? Three draws, read once.
+"""How many prompts of other text-to-motion projects are understood, and how many correctly? Five draws, read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -6,10 +6,14 @@ The file has one prompt a line; it is not part of the project. `first`: 231 exam
 text prompts of MDM, the prompts of STMC's MTT (its first 16,000 characters), a curriculum of prompts for a generator
 and pairs of captions that differ in one word. `second`: 111 prompts of the demos of T2M, MLD, MoLA, LADiff and SMooDi
 and of an evaluation of HY-Motion. `captions`: 145 captions of HumanML3D's validation split (two stretches of its
-labels in BABEL's form, from characters 40,000 and 800,000). Each prompt counts once, without those read to widen the
-grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the
-first, 0a28cc6 before the others); what was understood was evaluated by hand, once, as the sentences of KIT-ML are
-(`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the prompts' sha256.
+labels in BABEL's form, from characters 40,000 and 800,000).
+`third`: 106 prompts of a list for evaluation in English and Chinese and of the demos of MotionLCM, StableMoFusion and
+FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 1,400,000); those from 150,000, 250,000,
+400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. Each prompt counts once, without those read to
+widen the grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before
+the first, 0a28cc6 before the next two, FROZEN before the last two); what was understood was evaluated by hand, once,
+as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the
+prompts' sha256.
 """
 
 import argparse
@@ -20,13 +24,17 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.plan import NOT_DONE
 from mmweaver.motion.language.sentence import parse
 from studies.manifest import StudyRun
 from studies.motion.kitml import Judgements, reading_of, share
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
-DRAWS = {"first": "", "second": "_second", "captions": "_captions"}  # -> ending of the names of their files
+DRAWS = {  # -> ending of the names of their files
+    "first": "", "second": "_second", "captions": "_captions", "third": "_third",
+    "captions_second": "_captions_second",
+}  # fmt: skip
 
 
 def name_of(prompt: str) -> str:
@@ -36,12 +44,14 @@ def name_of(prompt: str) -> str:
 
 def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
     """Shares of the frozen grammar, from the judgements, and what today's grammar understands of the same prompts."""
-    today = {}
+    today, in_part = {}, 0
     for prompt in prompts:
         try:
-            today[name_of(prompt)] = reading_of(parse(prompt, in_part=True))
+            plan = parse(prompt, in_part=True)
         except InputError:
             continue
+        today[name_of(prompt)] = reading_of(plan)
+        in_part += any(clause.status == NOT_DONE for clause in plan.clauses)
     judged = [judgements[name] for name in map(name_of, prompts) if name in judgements]
     verdicts = Counter(one["verdict"] for one in judged)
     return {
@@ -53,6 +63,9 @@ def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
             "understood": share(len(judged), len(prompts), "prompts that gave a plan, of all; frozen grammar"),
             "wrong": share(verdicts["wrong"], len(judged), "wrong by hand without a word, of those understood"),
             "said": share(verdicts["said"], len(judged), "shown otherwise or in part, which the clause's record says"),
+            "in_part_today": share(
+                in_part, len(today), "with a clause that is not done, of those that give a plan today"
+            ),
             "understood_today": share(len(today), len(prompts), "prompts that give a plan today, after what was found"),
         },
     }

@@ -23,7 +23,7 @@ def test_half_of_the_motions_is_for_checking():
 def test_shares_and_judgements(monkeypatch: pytest.MonkeyPatch):
     known, walk = "a person walks forward", parse("a person walks forward")
 
-    def parsed(text: str) -> MotionPlan:  # 8,000 sentences, of which there are two
+    def parsed(text: str, *, in_part: bool = False) -> MotionPlan:  # 8,000 sentences, of which there are two
         if text != known:
             raise InputError("unknown")
         return walk

@@ -11,5 +11,5 @@ def test_shares_are_of_all_prompts_and_of_those_judged():
     }
     row = result_row(prompts, judgements)
     values = {name: metric["value"] for name, metric in row["metrics"].items()}
-    assert values == {"understood": 0.5, "wrong": 0.5, "said": 0.0, "understood_today": 0.5}
+    assert values == {"understood": 0.5, "wrong": 0.5, "said": 0.0, "in_part_today": 0.0, "understood_today": 0.5}
     assert row["read_otherwise_today"] == 1

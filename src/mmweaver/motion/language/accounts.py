@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
 
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.coverage import goes_aside
 from mmweaver.motion.language.lexicon import ARMS, FILLERS, SPEEDS
 from mmweaver.motion.language.plan import ClauseRecord, Step
@@ -233,7 +234,10 @@ def _way(tokens: list[str], i: int, own: list[Step]) -> str:
     if any(_doing(step) & _SHOWN_BY[token] or also(step) for step in own):
         return ""
     after = tokens[i + 1 : i + 4]
-    if tokens[i - 1 : i + 2] == ["in", "front", "of"] or (token in _TO and {"left", "right"} & {*after}):
+    lifted = any(step.upper in _NOT_OUT for step in own)
+    if (tokens[i - 1 : i + 2] == ["in", "front", "of"] and not lifted) or (
+        token in _TO and {"left", "right"} & {*after}
+    ):
         return ""
     if token == "up" and i and word_of(tokens[i - 1]).lemma in ("stand", "sit", "get", "wind"):
         return ""
@@ -287,6 +291,7 @@ def _is_like(step: Step, activity: str) -> bool:
     )
 
 
+_AGAIN = words_in("repeatedly continuously constantly")
 _NO_MANNER = words_in(
     "finally gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
 )
@@ -295,6 +300,8 @@ _NO_MANNER = words_in(
 def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
     """An adverb that changes no step and is not among the words that say nothing."""
     token = tokens[i]
+    if token in _AGAIN and all(BY_KEY[step.lower].once and not step.upper and not step.count for step in own):
+        return f"{token!r} is not shown"
     if not token.endswith("ly") or token in FILLERS or token in _ALSO or token in _NO_MANNER:
         return ""
     if token in SPEEDS and any(step.speed for step in own):

@@ -263,6 +263,10 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
     return word.text == "against" and "pushed" in lemmas
 
 
+_IT = ("them", "it", "him", "her")
+_OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head", "legs", "leg", "knees", "body"})
+
+
 def _verbs(words: list[Word]) -> list[int]:
     """Places of the words that name an activity; light verbs and nouns that only repeat a verb are left out."""
     found: list[int] = []
@@ -277,7 +281,7 @@ def _verbs(words: list[Word]) -> list[int]:
         ):
             continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
-        if word.lemma == "move" and (texts & ARMS or after in ("them", "it", "him", "her")):
+        if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
         goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
         if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):

@@ -77,7 +77,9 @@ def _link(words: list[Word], i: int) -> str:
         and i
         and words[i + 1 : i + 2]
         and words[i + 1].form == "base"
-        and words[i + 1].is_activity
+        and (
+            words[i + 1].is_activity or (words[i + 1].text == "do" and any(w.is_activity for w in words[i + 2 : i + 5]))
+        )
         and words[i + 1].lemma != "face"
     ):
         return "" if any(word.lemma in _AUXILIARY for word in words[max(i - 2, 0) : i]) else "then"

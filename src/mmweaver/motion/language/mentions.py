@@ -79,6 +79,10 @@ def _does(*keys: str) -> Callable[[Step], bool]:
     return lambda step: bool({step.lower, step.upper} & {*keys})
 
 
+def _opens_no_door(step: Step) -> bool:
+    return not _does("open_door")(step)
+
+
 def _goes_to_and_fro(step: Step) -> bool:
     return bool({step.lower, step.upper} & _TO_AND_FRO) or step.direction == "pacing"
 
@@ -102,6 +106,7 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
         _does("drink", "eat", "phone", "brush_teeth", "comb", "yawn", "cough", "raise_hold", "look_around", "nod"),
     ),
     (r"(?:hands|palms) together", lambda step: step.upper in ("clap", "wipe")),
+    (rf"(?:to|at) {_WHOSE} (?:own )?body", lambda step: False),
     (rf"behind {_WHOSE} (?:back|head|neck|body)", lambda step: False),
     (
         rf"(?:above|over) {_WHOSE} heads?|overhead",
@@ -113,7 +118,7 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
     ),
     (
         r"(?<=opens )(?!(?:the |a |an |his |her |their )?(?:[a-z]+ )?doors?\b)[a-z]+(?: [a-z]+)?",
-        lambda step: not _does("open_door")(step),
+        _opens_no_door,
     ),
 )  # fmt: skip
 # "hops on the left foot, then on the right": the same limb of the other side, without its name.
@@ -153,7 +158,8 @@ def not_in_any_step(text: str, steps: Sequence[Step], records: dict[int, ClauseR
                 lost.append((found[0], f"what happens with {found[0]!r} is not shown"))
     for words, has_it in _WAYS:
         for found in re.finditer(rf"\b(?:{words})", folded):
-            if not any(has_it(step) for step in steps_of(found[0])):
+            shown = [has_it(step) for step in steps_of(found[0])]
+            if not (all(shown) if has_it is _opens_no_door else any(shown)):
                 lost.append((found[0], f"{found[0]!r} is not shown"))
     lost += _sides_left_out(folded, steps)
     return list(dict.fromkeys(lost))

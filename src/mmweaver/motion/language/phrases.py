@@ -114,6 +114,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?:laptop|computer|keyboard|pc)\b", " types "),
     (r"\bopen(?:s|ing|ed)? (?:the |a |an |his |her )?(?:front |room |cupboard |fridge |wardrobe )?"
      r"(?:door|fridge|cupboard|window|drawer|wardrobe)\b", " open_door "),
+    (r"\b(is (?!standing|sitting)[a-z]+ing(?: [a-z]+)?) and looking (?:all )?a(?:round|bout)\b", r" \1 while look_around "),
+    (r"\bthan (?=(?:back|forward|turn|walk|run|sit|stand|stop|jump)[a-z]*\b)", " then "),
     (r"\bshak(?:es?|ing) (?:his|her|its|their|the) head\b", " shake_head "),
     (r"\bnod(?:s|ding|ded)? (?:with )?(?:his|her|its|their|the) head\b", " nods "),
     (r"\blook(?:s|ing|ed)? (?:all )?a(?:round|bout)\b|\bturn(?:s|ing)? (?:his|her|its|their|the) head\b", " look_around "),
@@ -133,7 +135,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"shoulders?(?: height| level)?|out|outwards?|apart|to a t-pose)\b", r" arms_out \1 "),
     (r"\b(?:stretch(?:es|ing|ed)?|hold(?:s|ing)?|extend(?:s|ing|ed)?|rais(?:es|ing|ed?)|lift(?:s|ing)?|puts?)"
      r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:straight |out )*"
-     r"(?:forwards?|ahead|to the front|in front of (?:him|her|it|his body|her body|the body|himself|itself))\b",
+     r"(?:forwards?|ahead|to the front|in front of (?:him|her|it|them|his body|her body|the body|himself|itself))\b",
      r" arms_out \1 forwards "),
     (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
      r"(?: out)?\b(?! (?:up|over|above|forward|forwards|in|ahead|behind|low|high|down|together))"

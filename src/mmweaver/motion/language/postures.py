@@ -111,11 +111,15 @@ def _styled(steps: list[Step]) -> list[Step]:
 
 
 def carried_over(steps: list[Step]) -> list[Step]:
-    """'Walks back' returns if the person has walked before, else goes backwards; a raised hand is the one to wave."""
+    """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
+
+    A raised hand is the one to wave.
+    """
     gone = False
     for k, step in enumerate(steps):
-        if step.direction == "back" and not gone:
-            steps[k] = replace(step, direction="backwards")
+        if step.direction == "back" and not gone:  # "turns around and walks back" goes where the person faces then
+            turned = k > 0 and steps[k - 1].lower == "turn"
+            steps[k] = replace(step, direction="forwards" if turned else "backwards")
         gone = gone or step.moves
         before = steps[k - 1]
         if k and step.upper == "wave" and not step.hand and before.upper == "raise":

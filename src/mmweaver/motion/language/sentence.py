@@ -271,6 +271,7 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     direction = parsed.about.direction
     ahead = ("forwards", "backwards", "back")
     sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
+    sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
     return (
         parsed.link in ("then", "comma")
         and last.lower in ("walk", "jog", "sidestep")
@@ -400,7 +401,7 @@ def _joined(one: Step, other: Step) -> list[Step]:
         return [walk, more, onward]
     if walk.lower in ("walk", "jog") and more.lower == "turn" and not (one.upper or other.upper or more.facing):
         angle = {"left": 90.0, "right": -90.0, "around": 180.0}.get(more.direction, more.turn_deg)
-        if (more.direction == "around" and walk.direction) or abs(angle) >= 360.0:
+        if (more.direction == "around" and walk.direction) or abs(angle) >= 360.0 or walk.direction == "circle":
             return [one, other]
         bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
         return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
