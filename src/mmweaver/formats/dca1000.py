@@ -4,7 +4,7 @@ Two lanes (xWR16xx, 18xx, 68xx): frame, loop, transmitter (in firing order), rec
 consecutive samples of one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo,
 SampleSwap 1). Four lanes (xWR12xx, 14xx): frame, loop, transmitter, sample; each eight words hold one sample of the
 receivers 0 to 3, I of all and then Q ("qi": Q first); a receiver that is off has its lane, too. Real samples (AWR2944)
-have one word each in the same order; their mean over each chirp is removed. The wrong I/Q order reverses the range
+have one word each in the same order; the converter's offset is removed. The wrong I/Q order reverses the range
 axis; without one it is the radar's own (`lvds_iq_order`). Of an advanced frame, the words of other sub-frames are
 skipped, and written as zeros.
 
@@ -104,7 +104,9 @@ def _of_real(words: np.ndarray, config: RadarConfig) -> AdcCube:
         values = words.reshape(*words.shape[:3], config.num_samples, LANES)[..., _channels(config)].swapaxes(-1, -2)
     else:
         values = words.reshape(*words.shape[:3], config.num_rx, config.num_samples)
-    values = values - values.mean(axis=-1, keepdims=True, dtype=np.float32)
+    # under the range window: a plain mean holds some of each echo, which would then move at range 0
+    weight = 1 - np.cos(2 * np.pi * np.arange(config.num_samples) / config.num_samples)
+    values = values - (values @ (weight / weight.sum()))[..., None]
     samples = upright(by_transmitter(values.astype(np.complex64), config), config)
     return AdcCube(samples=samples, config=config, scale=float("nan"))
 
