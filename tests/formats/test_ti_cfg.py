@@ -291,3 +291,5 @@ def test_a_file_that_cannot_be_read(tmp_path: Path):
     (tmp_path / "binary.cfg").write_bytes(bytes(range(256)))
     with pytest.raises(InputError, match="mmWave SDK"):
         read_ti_cfg(tmp_path / "binary.cfg")
+    with pytest.raises(InputError, match="pymmw"):
+        read_ti_cfg(written(tmp_path, '{"profileCfg": {"id": 0}}'))

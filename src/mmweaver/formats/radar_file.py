@@ -11,12 +11,13 @@ from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
 from mmweaver.formats.radar_options import RadarOptions, split_radar, with_options
+from mmweaver.formats.studio_script import read_studio_script
 from mmweaver.formats.ti_cfg import read_ti_cfg
 from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
-    """Loads a preset, a TI .cfg, an mmWave Studio .json, or the .json of a RadarConfig.
+    """Loads a preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig.
 
     Options may follow the name: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`). Raises
     InputError where it is none of them, or the file describes no possible radar.
@@ -29,10 +30,12 @@ def load_radar(name_or_path: str) -> RadarConfig:
         return read_ti_cfg(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
     if path.suffix.lower() == ".json" and path.is_file():
         return _from_json(path, options)
+    if path.suffix.lower() == ".lua" and path.is_file():
+        return read_studio_script(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
-        f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json, or a .json"
-        " from: mmweaver radar awr1843 --json"
+        f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"
+        " .lua, or a .json from: mmweaver radar awr1843 --json"
     )
 
 

@@ -48,12 +48,20 @@ def read_ti_cfg(
     lines = ti_cfg_lines(path)
     text = read_text(path, max_bytes=MAX_CFG_BYTES, errors="replace")
     try:
-        chirps = replace(
-            _chirps(path.stem, lines, sub_frame), antennas=antennas or antennas_of_cfg(text),
-            lvds_lanes=lanes or (4 if has_four_lanes(text) or _is_interleaved(lines) else 2),
-            lvds_iq_order=_iq_order(lines),
-        )  # fmt: skip
-        return radar_from_ti(chirps)
+        antennas = antennas or antennas_of_cfg(text)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    lanes = lanes or (4 if has_four_lanes(text) or _is_interleaved(lines) else 2)
+    return radar_of_lines(path, lines, sub_frame=sub_frame, antennas=antennas, lanes=lanes)
+
+
+def radar_of_lines(
+    path: Path, lines: dict[str, list[Line]], *, sub_frame: int | None, antennas: AntennaTable | None, lanes: int
+) -> RadarConfig:
+    """The radar of a file's commands, by command. Raises InputError as `read_ti_cfg` does."""
+    try:
+        chirps = _chirps(path.stem, lines, sub_frame)
+        return radar_from_ti(replace(chirps, antennas=antennas, lvds_lanes=lanes, lvds_iq_order=_iq_order(lines)))
     except InputError as error:
         text = str(error)
         raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
@@ -93,6 +101,8 @@ def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, li
     """
     counts = {**NEEDED, **FRAMES, **OPTIONAL, **(more or {})}
     text = read_text(path, max_bytes=MAX_CFG_BYTES, errors="replace")
+    if text.lstrip().startswith("{"):
+        raise InputError(f"{path} is JSON, as pymmw has it; give the commands that are sent to the board, one per line")
     found: dict[str, list[Line]] = {}
     for number, raw in enumerate(text.splitlines(), 1):
         words = raw.split("%")[0].split()
