@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mmweaver.activity_sets.build_set import PARTS, SetOptions, split_of
+from mmweaver.activity_sets.set_cost import estimate_set_cost
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.datasets.activity_store import bytes_of_signals, read_activity_set
@@ -104,12 +105,35 @@ def test_a_finished_set_is_left_alone(activity_set: Path):
     assert not (activity_set / "parts").exists()
 
 
-def test_an_activity_without_a_place_is_named(tmp_path: Path):
-    text = ACTIVITIES + 'far = "a person walks ten metres to the left, then walks ten metres to the right"\n'
-    made = builder(tmp_path / "set", OPTIONS, text)
-    made._can_do = lambda draw: "'a person walks': no room"  # type: ignore[method-assign]
-    with pytest.raises(InputError, match="no place in room 0 serves all activities"):
+def test_an_activity_without_a_place_is_named_before_anything_is_written(tmp_path: Path):
+    made = builder(tmp_path / "set", OPTIONS)
+    made._obstacle = lambda draw, label: "'a person walks': no room" * (label == 1)  # type: ignore[method-assign]
+    with pytest.raises(InputError, match="no place in room 0 serves 'a person walks': no room"):
         made.make()
+    assert not (tmp_path / "set").exists()
+
+
+def test_whoever_is_drawn_does_all_activities_where_sentences_describe_different_people(tmp_path: Path):
+    mixed = builder(tmp_path, OPTIONS, ACTIVITIES + 'talking = ["an old woman talks on the phone"]\n')
+    assert mixed.ignored_descriptions == ["old woman"]
+    of_draw: dict[int, set[str]] = {}
+    for one in mixed.plan:
+        plan = mixed.request_of(one).people[0].plan
+        of_draw.setdefault(one.draw.index, set()).add(repr(plan.person))
+    assert {len(people) for people in of_draw.values()} == {1}
+    alike = builder(tmp_path, OPTIONS, '[activities]\na = "a child waves"\nb = "a child claps"\n')
+    assert alike.ignored_descriptions == []
+    assert alike.request_of(alike.plan[0]).people[0].plan.person.age == "child"
+
+
+def test_the_cost_counts_what_is_missing(tmp_path: Path):
+    one = builder(tmp_path / "set", OPTIONS)
+    cost = estimate_set_cost(one)
+    assert cost.sequences == len(one.plan) == sum(cost.splits.values())
+    one.make()
+    stored = sum(file.stat().st_size for file in (tmp_path / "set").rglob("*") if file.is_file())
+    assert cost.disk_bytes == pytest.approx(stored, rel=0.3)
+    assert estimate_set_cost(one).sequences == 0
 
 
 @pytest.mark.parametrize("wrong", [{"each": 0}, {"subjects": 0}, {"split_by": "frame"}, {"seed": -1}, {"iq": "int8"}])

@@ -27,6 +27,15 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     assert len(stored) == 2
 
 
+def test_a_dry_run_says_the_cost_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "a.toml").write_text(ACTIVITIES)
+    words = ["dataset", str(tmp_path / "set"), "--room", str(SAMPLE), "--activities", str(tmp_path / "a.toml")]
+    assert main([*words, "--each", "4", "--iq", "none", "--dry-run", "--json"]) == 0
+    cost = json.loads(capsys.readouterr().out)
+    assert cost["sequences"] == sum(cost["splits"].values()) == 8
+    assert not (tmp_path / "set").exists()
+
+
 @pytest.mark.parametrize(
     "options",
     [["--each", "3"], ["--iq", "none"], ["--activities", "missing.toml"], ["--activities", "a.toml"],

@@ -14,8 +14,17 @@ from typing import Any
 import numpy as np
 
 from mmweaver.activity_sets.activity_list import ActivityList
+from mmweaver.activity_sets.described_people import differing_descriptions, done_by_anybody
 from mmweaver.activity_sets.leak_report import circumstances, leak_report
-from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
+from mmweaver.activity_sets.matched_draws import (
+    Draw,
+    PlannedSequence,
+    matched_draws,
+    obstacle_of,
+    places_of,
+    shuffled,
+    why_placed_apart,
+)
 from mmweaver.activity_sets.sentence_draws import GivenPlacing
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
 from mmweaver.core.boards import find_board
@@ -42,6 +51,7 @@ from mmweaver.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
 from mmweaver.generate import Weaver, compose_request
 from mmweaver.generation import Room
+from mmweaver.request import Request
 
 PARTS = "parts"
 SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test
@@ -97,38 +107,43 @@ class SetBuilder:
         options, window_m = self.options, self._window_m
         places = [places_of(room.scene, window_m, options.places, options.seed) for room in self.rooms]
         sequences: list[PlannedSequence] = []
-        for draw in matched_draws(places, options.each, options.subjects, options.seed, self._can_do):
-            sequences += self._of_draw(self._placed(draw))
+        labels = len(self.activities.labels)
+        for draws in matched_draws(places, options.each, options.subjects, options.seed, labels, self._obstacle):
+            sequences += [self._sequence(self._placed(draw), label) for label, draw in enumerate(draws)]
         return shuffled(sequences, options.seed)
 
-    def _of_draw(self, draw: Draw) -> list[PlannedSequence]:
-        return [
-            PlannedSequence(
-                draw=draw, label=label, sentence=(draw.index + label) % len(sentences),
-                text=sentences[(draw.index + label) % len(sentences)],
-            )
-            for label, sentences in enumerate(self.activities.sentences.values())
-        ]  # fmt: skip
+    def _sequence(self, draw: Draw, label: int) -> PlannedSequence:
+        sentences = self.activities.sentences[self.activities.labels[label]]
+        sentence = (draw.index + label) % len(sentences)
+        return PlannedSequence(draw=draw, label=label, sentence=sentence, text=sentences[sentence])
 
-    def _can_do(self, draw: Draw) -> str:
-        """Why a draw does not serve all labels; "" where it does."""
-        for one in self._of_draw(self._placed(draw)):
-            try:
-                compose_request(self._request(one), self.rooms[draw.room].scene)
-            except InputError as error:
-                return f"{one.text!r}: {error}"
+    def _obstacle(self, draw: Draw, label: int) -> str:
+        """Why a draw does not serve a label; "" where it does."""
+        one = self._sequence(self._placed(draw), label)
+        try:
+            compose_request(self.request_of(one), self.rooms[draw.room].scene)
+        except InputError as error:
+            return obstacle_of(one.text, error)
         return ""
 
     def _placed(self, draw: Draw) -> Draw:
         return draw if self.given is None else self.given.applied(draw)
 
-    def _request(self, one: PlannedSequence) -> Any:
+    def request_of(self, one: PlannedSequence) -> Request:
+        """The request of one sequence."""
         draw = one.draw
         height_m = None if self.given is None else self.given.height_m
-        return self.weaver.request(
+        request = self.weaver.request(
             one.text, seconds=self.options.seconds, seed=draw.seed, at=draw.start_m, heading_rad=draw.heading_rad,
             subject=draw.subject, height_m=height_m, board=self._board,
         )  # fmt: skip
+        return done_by_anybody(request) if self.ignored_descriptions else request
+
+    @cached_property
+    def ignored_descriptions(self) -> list[str]:
+        """What sentences say of their person, where they do not all say the same: drawn people do all activities."""
+        texts = [text for sentences in self.activities.sentences.values() for text in sentences]
+        return differing_descriptions(self.weaver.request(text, seconds=self.options.seconds) for text in texts)
 
     @property
     def _window_m(self) -> tuple[float, float]:
@@ -139,6 +154,8 @@ class SetBuilder:
     @property
     def finished(self) -> int:
         """How many sequences are there already."""
+        if (self.out / STORE).is_dir():
+            return len(self.plan)
         return len(list((self.out / PARTS).glob("[0-9]*.npz")))
 
     def make(self, listener: Callable[[int, int], object] | None = None) -> dict[str, Any]:
@@ -154,9 +171,12 @@ class SetBuilder:
         return read_json(self.out / LEAKS_FILE)
 
     def _begin(self) -> None:
+        """Writes what the set is made of. Raises InputError, before anything is written, where no place serves."""
         check_output_folder(self.out, overwrite=True, files=[SET_FILE, LEAKS_FILE])
         if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
             raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")
+        if not (self.out / STORE).is_dir():
+            _ = self.plan
         text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
         held = create_once(self.out / SET_FILE, text)
         if held != text and _without_command(held) != _without_command(text):
@@ -175,7 +195,7 @@ class SetBuilder:
         file = self.out / PARTS / f"{number:06d}.npz"
         if file.is_file():
             return
-        request, room = self._request(one), self.rooms[one.draw.room]
+        request, room = self.request_of(one), self.rooms[one.draw.room]
         people = tuple(replace(each, pose=storable(each.pose)) for each in compose_request(request, room.scene))
         made = self.weaver.carry_out(request, room, people)
         iq, iq_scale = packed_iq(made.cube, self.options.iq)
@@ -213,7 +233,7 @@ class SetBuilder:
             ),
             "iq_scale": np.array([float(part["iq_scale"]) for part in parts]),
         }
-        config = self._request(self.plan[0]).config
+        config = self.request_of(self.plan[0]).config
         with staged_folder(self.out, overwrite=True) as stage:
             signals = self._geometry(parts) if self.options.iq == "none" else self._of_parts("iq")
             write_set(stage, config, self.activities.labels, columns, arrays, signals, self.options.iq)
@@ -229,11 +249,11 @@ class SetBuilder:
     def _geometry(self, parts: list[dict[str, np.ndarray]]) -> SetGeometry:
         """What signals are made from on demand."""
         return SetGeometry(
-            method=self.weaver.method_name, board=self.weaver.board_of(self._request(self.plan[0]), self.rooms[0])[0],
+            method=self.weaver.method_name, board=self.weaver.board_of(self.request_of(self.plan[0]), self.rooms[0])[0],
             rooms=[(room.scene.photo, room.views) for room in self.rooms],
             time_s=next(self._of_parts("motion_time")), motions_m=self._of_parts("motion"),
             sequences={
-                "seed": np.array([self._request(one).seed for one in self.plan], np.int64),
+                "seed": np.array([self.request_of(one).seed for one in self.plan], np.int64),
                 "height_m": np.array([float(part["height"]) for part in parts]),
                 "girth": np.array([float(each) for each in self._of_parts("girth")]),
                 "moving_power_db": np.array([float(each) for each in self._of_parts("moving_power_db")]),
@@ -243,20 +263,26 @@ class SetBuilder:
     def _part_file(self, number: int) -> Path:
         return self.out / PARTS / f"{number:06d}.npz"
 
-    def _columns(self, parts: list[dict[str, np.ndarray]]) -> dict[str, Any]:
+    @cached_property
+    def splits(self) -> dict[str, list[str]]:
+        """The split of each sequence by each of SPLIT_KEYS."""
         plan = self.plan
         groups = {
             "subject": [one.draw.subject for one in plan], "place": [(one.draw.room, one.draw.place) for one in plan],
             "room": [one.draw.room for one in plan], "sentence": [one.sentence for one in plan],
         }  # fmt: skip
-        splits = {f"split_{key}": split_of(groups[key], key, self.options.seed) for key in SPLIT_KEYS}
+        return {key: split_of(groups[key], key, self.options.seed) for key in SPLIT_KEYS}
+
+    def _columns(self, parts: list[dict[str, np.ndarray]]) -> dict[str, Any]:
+        plan = self.plan
         return {
             "label": [one.label for one in plan], "label_name": [self.activities.labels[one.label] for one in plan],
-            "text": [one.text for one in plan], "subject": groups["subject"],
-            "place": [one.draw.place for one in plan], "room": groups["room"],
+            "text": [one.text for one in plan], "subject": [one.draw.subject for one in plan],
+            "place": [one.draw.place for one in plan], "room": [one.draw.room for one in plan],
             "draw": [one.draw.index for one in plan], "heading": [one.draw.heading_rad for one in plan],
             "height": [float(part["height"]) for part in parts],
-            "split": splits[f"split_{self.options.split_by}"], **splits,
+            "split": self.splits[self.options.split_by],
+            **{f"split_{key}": split for key, split in self.splits.items()},
         }  # fmt: skip
 
     def _leaks(self, columns: dict[str, Any], parts: list[dict[str, np.ndarray]], stage: Path) -> dict[str, Any]:
@@ -270,7 +296,9 @@ class SetBuilder:
             more["file_size"] = sizes
         found = circumstances([part["joints"] for part in parts], label, **more)
         found["start_place"] = np.concatenate([found["start_place"], found["room"]], axis=1)
-        return leak_report(found, label, np.asarray(columns["draw"]), list(self.activities.sentences))
+        names, draws = self.activities.labels, [one.draw for one in plan]
+        reasons = why_placed_apart(draws, columns["label"], names)
+        return leak_report(found, label, np.asarray(columns["draw"]), names, reasons)
 
 
 def _without_command(text: str) -> Any:

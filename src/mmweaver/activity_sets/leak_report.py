@@ -47,30 +47,34 @@ def leak_report(
     label: Int[Array, " sequence"],
     group: Int[Array, " sequence"],
     label_names: Sequence[str],
+    reasons: dict[str, str] | None = None,
 ) -> dict[str, Any]:
     """The report as JSON types: each circumstance with its accuracy, interval and chance, and a verdict.
 
     `group`: the person (or draw) of each sequence; a classifier is never tested on a group that it has seen. "labels"
     are those that a circumstance predicts on their own: more often right, beyond the intervals, than by chance and than
-    others are mistaken for them.
+    others are mistaken for them. `reasons`: why a circumstance cannot be equal for all labels, besides `INHERENT`.
     """
     found = {name: _score(values, label, group) for name, values in circumstances.items()}
     avoidable = [name for name, leak in found.items() if leak.leaks and name not in INHERENT]
+    reasons = INHERENT | (reasons or {})
     rows = {
         name: {
             "accuracy": round(leak.accuracy, 4), "interval_99": [round(leak.low, 4), round(leak.high, 4)],
             "chance": round(leak.chance, 4), "sequences": leak.number, "leaks": leak.leaks,
             "labels": {label_names[one]: round(accuracy, 4) for one, accuracy in leak.of_labels.items()},
-            **({"cannot_be_avoided": INHERENT[name]} if name in INHERENT else {}),
+            **({"cannot_be_avoided": reasons[name]} if name in reasons else {}),
         }
         for name, leak in found.items()
     }  # fmt: skip
     verdict = f"leaks: {', '.join(avoidable)}" if avoidable else "leaks: none found"
+    if why := list(dict.fromkeys(reasons[name] for name in avoidable if name in reasons)):
+        verdict += f" ({'; '.join(why)})"
     shown = [f"{name} {leak.accuracy:.2f}" for name, leak in found.items() if leak.leaks and name in INHERENT]
     chance = next(iter(found.values())).chance
     part = f"part of the activities themselves: {', '.join(shown)} (chance {chance:.2f})" if shown else ""
     return {
-        "schema_version": 3, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
+        "schema_version": 4, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
         "of": rows,
     }  # fmt: skip
 

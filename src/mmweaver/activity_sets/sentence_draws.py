@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.activity_sets.described_people import differing_descriptions
 from mmweaver.activity_sets.leak_report import circumstances, leak_report
-from mmweaver.activity_sets.matched_draws import Draw, matched_draws, places_of
+from mmweaver.activity_sets.matched_draws import Draw, matched_draws, obstacle_of, places_of, why_placed_apart
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
@@ -67,28 +68,29 @@ def placed(request: Request, draw: Draw, height_m: float | None = None) -> Reque
 
 def sentence_draws(
     requests: dict[str, Request], scene: Scene, number: int, seed: int, given: GivenPlacing
-) -> tuple[list[Draw], dict[str, str]]:
-    """`number` draws that serve all sentences, and why each sentence that the room has no place for at all is left out.
+) -> tuple[list[dict[str, Draw]], dict[str, str]]:
+    """`number` times the draw of each sentence, and why each sentence that the room has no place for is left out.
 
-    Raises InputError where no place serves the rest.
+    Raises InputError where nothing serves one of the rest.
     """
     refused = without_place(requests, scene, seed)
-    possible = [request for text, request in requests.items() if text not in refused]
-    if not possible:
+    texts = [text for text in requests if text not in refused]
+    if not texts:
         return [], refused
+    possible = [requests[text] for text in texts]
 
-    def can_do(draw: Draw) -> str:
-        chosen = given.applied(draw, seed)
-        for request in possible:
-            try:
-                compose_request(placed(request, chosen, given.height_m), scene)
-            except InputError as error:
-                return f"{request.text!r}: {error}"
+    def obstacle(draw: Draw, label: int) -> str:
+        try:
+            compose_request(placed(possible[label], given.applied(draw, seed), given.height_m), scene)
+        except InputError as error:
+            return obstacle_of(texts[label], error)
         return ""
 
     places = [places_of(scene, possible[0].range_window_m, PLACES, seed)]
-    draws = matched_draws(places, number, SUBJECTS, seed, can_do)
-    return [given.applied(draw, seed) for draw in draws], refused
+    draws = matched_draws(places, number, SUBJECTS, seed, len(possible), obstacle)
+    return [
+        {text: given.applied(draw, seed) for text, draw in zip(texts, each, strict=True)} for each in draws
+    ], refused
 
 
 def without_place(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
@@ -113,7 +115,9 @@ def order_of(texts: Sequence[str], draw: int, seed: int) -> list[str]:
     return [texts[int(place)] for place in stream(seed, "sentence draws", "order", draw).permutation(len(texts))]
 
 
-def folder_leaks(folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw]) -> dict[str, Any]:
+def folder_leaks(
+    folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[Request]
+) -> dict[str, Any]:
     """The leak report of result folders: what predicts their sentences without a look at the radar signal."""
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
     names = list(dict.fromkeys(texts))
@@ -123,4 +127,9 @@ def folder_leaks(folders: Sequence[Path], texts: Sequence[str], draws: Sequence[
         "file_size": [(folder / "radar.npz").stat().st_size for folder in folders],
     }  # fmt: skip
     found = circumstances([pose.joints_m for pose in poses], label, **more)
-    return leak_report(found, label, np.asarray([draw.index for draw in draws]), names)
+    index = np.asarray([draw.index for draw in draws])
+    reasons = why_placed_apart(draws, label.tolist(), names)
+    if words := differing_descriptions(requests):
+        described = ", ".join(repr(one) for one in words)
+        reasons["height"] = f"the sentences describe different people ({described}); word all 'a person' to have none"
+    return leak_report(found, label, index, names, reasons)

@@ -4,6 +4,7 @@ import argparse
 import json
 import shlex
 import sys
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,6 @@ OF_ROOM_SETS = {
     "workers": 1,
     "ray_address": None,
     "repair": False,
-    "dry_run": False,
 }  # options of other data sets, with their defaults
 
 
@@ -84,6 +84,7 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
     from mmweaver.activity_sets.activity_list import read_activities
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
     from mmweaver.activity_sets.leak_report import said
+    from mmweaver.activity_sets.set_cost import estimate_set_cost
     from mmweaver.core.range_window import chosen_range
     from mmweaver.core.safe_files.safe_text import read_text
     from mmweaver.formats.radar_file import load_radar
@@ -101,6 +102,10 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
         arguments.out, activities, _rooms(arguments, weaver), weaver, options, command=_command(),
         activities_text=read_text(arguments.activities),
     )  # fmt: skip
+    if arguments.dry_run:
+        cost = estimate_set_cost(builder)
+        print(json.dumps(asdict(cost)) if arguments.json else cost.summary(1))
+        return 0
     report = make_with_bar(builder, quiet=arguments.quiet)
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
@@ -136,6 +141,16 @@ def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
     """The leak report of the set, once what was missing of it is made; a bar shows how far it is."""
     from tqdm import tqdm
 
+    from mmweaver.activity_sets.set_cost import estimate_set_cost
+    from mmweaver.datasets.dataset_cost import check_for_space
+
+    if (words := builder.ignored_descriptions) and not quiet:
+        described = ", ".join(repr(one) for one in words)
+        note = f"note: sentences describe different people ({described}); whoever is drawn does all activities"
+        print(note, file=sys.stderr)
+    cost = estimate_set_cost(builder)
+    # while the store is put together, its parts are there, too
+    check_for_space(replace(cost, disk_bytes=2 * cost.disk_bytes), builder.out)
     with tqdm(unit="sequence", disable=quiet or None) as bar:
 
         def show(done: int, total: int) -> None:

@@ -113,7 +113,8 @@ class Batch:
             return None
         from mmweaver.activity_sets.sentence_draws import folder_leaks
 
-        return folder_leaks([one.folder for one in sequences], [one.text for one in sequences], draws)
+        folders, requests = [one.folder for one in sequences], [self.requests[text] for text in texts]
+        return folder_leaks(folders, [one.text for one in sequences], draws, requests)
 
     def request(self, one: BatchSequence) -> "Request":
         """The request of one sequence."""
@@ -263,7 +264,7 @@ def matched_sequences(
 ) -> tuple[list[BatchSequence], list[dict[str, Any]]]:
     """All sentences at --repeat draws, and those that the room has no place for; a larger --repeat continues a smaller.
 
-    Raises InputError where no place serves all sentences.
+    Raises InputError where no place serves one of them.
     """
     from mmweaver.activity_sets.sentence_draws import order_of, sentence_draws
 
@@ -282,7 +283,7 @@ def matched_sequences(
             folder = out / _name(number, count)
             refused.append({"folder": folder.name, "text": text, "seed": arguments.seed + round_of, "why": why[text]})
         else:
-            draw = draws[round_of]
+            draw = draws[round_of][text]
             folder = out / _name(number, count)
             made.append(
                 BatchSequence(folder=folder, text=text, seed=draw.seed, draw=draw, height_m=given.height_m)

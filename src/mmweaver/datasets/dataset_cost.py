@@ -64,7 +64,7 @@ def check_for_space(cost: DatasetCost, folder: Path) -> None:
     if cost.disk_bytes > free:
         raise InputError(
             f"the data set needs about {_size(cost.disk_bytes)} and {there} has {_size(free)} free; use another disk,"
-            " fewer --sequences or --layouts, or --geometry-only"
+            " fewer sequences, or none of their signals (--geometry-only; of a labelled set --iq none)"
         )
 
 
