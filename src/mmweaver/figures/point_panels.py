@@ -88,13 +88,14 @@ def _range_m(points: PointCloud) -> np.ndarray:
 
 
 def _velocities(view: FigureData) -> "ScalarMappable":
-    """Colours span all but the fastest 5 %, which are mostly noise."""
+    """Colours span what moves, but for its fastest 5 %, which are mostly noise."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     speed_mps = np.abs(view.shown_points.radial_velocity_mps)
-    top_mps = max(float(np.percentile(speed_mps, 95)), SLOWEST_SCALE_MPS) if len(speed_mps) else SLOWEST_SCALE_MPS
+    moving_mps = speed_mps[speed_mps > SLOWEST_SCALE_MPS]
+    top_mps = float(np.percentile(moving_mps, 95)) if len(moving_mps) else SLOWEST_SCALE_MPS
     return ScalarMappable(norm=Normalize(-top_mps, top_mps), cmap=matplotlib.colormaps[VELOCITY_MAP])
 
 
