@@ -6,8 +6,8 @@ import pytest
 from mmweaver.activity_sets.matched_draws import (
     MOST_ATTEMPTS,
     MOST_OWN_ATTEMPTS,
-    StartPlace,
     PlannedSequence,
+    StartPlace,
     matched_draws,
     places_of,
     shuffled,

@@ -26,7 +26,7 @@ WRITTEN = {"--out", "-o", "--html", "--picture", "out"}
 NEEDED: dict[str, dict[str, str | None]] = {
     "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
     "export": {"--to": "mat", "--out": "OUT"}, "process": {"file": "BIN", "--radar": "awr1843", "--out": "OUT"},
-    "compare": {"a": "CAPTURE", "b": "CAPTURE"},
+    "compare": {"a": "CAPTURE", "b": "CAPTURE"}, "plot": {"signal": "CAPTURE", "-o": "OUT"},
     "points": {"-o": "OUT"}, "radar": {"radar": "awr1843"}, "decompress": {"-o": "OUT"}, "rooms": {"out": "OUT"},
     "compress": {"file": "BIN", "--radar": "awr1843", "-o": "OUT", "--bytes": "9999"},
     "calibrate": {"recordings": "BIN", "--radar": "awr1843", "--out": "OUT"},
@@ -52,6 +52,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
     ("evaluate", "--model"): {"--recordings": "."},
     ("compare", "--antennas"): {"a": "BIN", "--radar": "awr1843"},
+    ("plot", "--antennas"): {"signal": "BIN", "--radar": "awr1843"}, ("plot", "--radar"): {"signal": "BIN"},
     ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
     ("train", "task"): {"recipe": "pose", "--data": None},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},

@@ -19,6 +19,7 @@ from mmweaver.cli import (
     info,
     motion,
     motions,
+    plot,
     points,
     pose,
     process,
@@ -93,8 +94,8 @@ def _parser_and_commands() -> tuple[Parser, dict[str, Parser]]:
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
     modules_in_order = (
-        generate, studio, view, export, process, compare, calibrate, points, pose, radar, compress, decompress, info,
-        rooms, motions, motion, recognise, evaluate, dataset, train, verify, completion,
+        generate, studio, view, plot, export, process, compare, calibrate, points, pose, radar, compress, decompress,
+        info, rooms, motions, motion, recognise, evaluate, dataset, train, verify, completion,
     )  # fmt: skip
     for module in modules_in_order:
         command = module.add_command(commands)

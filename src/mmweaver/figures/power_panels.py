@@ -7,6 +7,7 @@ import numpy as np
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
 from mmweaver.figures.figure_data import Fan, FigureData
+from mmweaver.figures.power_scale import PowerScale
 from mmweaver.figures.theme import (
     GROUND_TRUTH,
     INK,
@@ -31,13 +32,18 @@ DISPLACEMENT_SPAN = 1.15
 
 def power_bar(axes: "Axes", view: FigureData) -> None:
     """The colour bar of all power panels, with the noise marked."""
+    scale_bar(axes, view.scale)
+
+
+def scale_bar(axes: "Axes", scale: PowerScale, *, share: float = 1.0) -> None:
+    """The colour bar of a scale of decibels; `share` as in `colour_bar`."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    scale = view.scale
     mappable = ScalarMappable(norm=Normalize(scale.low_db, scale.high_db), cmap=matplotlib.colormaps[POWER_MAP])
-    colour_bar(axes, mappable, scale.unit, mark=None if scale.noise_db is None else (scale.noise_db, "noise"))
+    mark = None if scale.noise_db is None else (scale.noise_db, "noise")
+    colour_bar(axes, mappable, scale.unit, mark=mark, share=share)
 
 
 def moving_words(view: FigureData) -> str:

@@ -32,9 +32,9 @@ def draw_slow_time(
     cells: Sequence[SlowTimeCell], rates: dict[str, Rate | None],
 ) -> None:  # fmt: skip
     """Range over slow-time velocity, displacement of the cells that move most over time, and its spectrum."""
-    with _styled():
+    with styled():
         figure = _slow_time_figure(title, cube, doppler, velocity_mps, cells, rates)
-        _write(figure, path)
+        write_figure(figure, path)
 
 
 def _slow_time_figure(
@@ -69,8 +69,8 @@ def _slow_time_figure(
 
 def draw_micro_doppler(path: Path, title: str, spectrogram: MicroDoppler, amplitude_scale: float) -> None:
     """Radial velocity over time, static clutter removed; `amplitude_scale` as `RadarCube.scale`."""
-    with _styled():
-        _write(_micro_doppler_figure(title, spectrogram, amplitude_scale), path)
+    with styled():
+        write_figure(_micro_doppler_figure(title, spectrogram, amplitude_scale), path)
 
 
 def _micro_doppler_figure(title: str, spectrogram: MicroDoppler, amplitude_scale: float) -> "Figure":
@@ -94,8 +94,8 @@ def _micro_doppler_figure(title: str, spectrogram: MicroDoppler, amplitude_scale
 
 def draw_people(path: Path, title: str, people: Sequence[PersonTrack], far_m: float) -> None:
     """The paths of tracked people from above, and their distance over time."""
-    with _styled():
-        _write(_people_figure(title, people, far_m), path)
+    with styled():
+        write_figure(_people_figure(title, people, far_m), path)
 
 
 def _people_figure(title: str, people: Sequence[PersonTrack], far_m: float) -> "Figure":
@@ -158,14 +158,16 @@ def _page(title: str, panels: int, width: float) -> "tuple[Figure, list[Axes]]":
     return figure, [figure.add_subplot(places[0, at]) for at in range(panels)]
 
 
-def _write(figure: "Figure", path: Path) -> None:
+def write_figure(figure: "Figure", path: Path) -> None:
+    """Writes a figure as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     FigureCanvasAgg(figure).print_png(path, metadata={"Software": "mmWeaver"}, pil_kwargs={"compress_level": 2})
 
 
 @contextmanager
-def _styled() -> Iterator[None]:
+def styled() -> Iterator[None]:
+    """Within it, figures have the common style."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
