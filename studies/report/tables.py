@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -355,9 +356,10 @@ SAMPLED = RowTable(
     ),
 )  # fmt: skip
 GAIN_BY_NETWORK = PivotTable(
-    sources=("recogniser_gain/*",), rows=(("training", "{method}"),), across="{network} {test}",
+    sources=("recogniser_gain/few_recordings",), rows=(("training", "{method}"),), across="{network} {test}",
     cell_template="{metrics.accuracy:interval.2}",
 )  # fmt: skip
+GAIN_BY_CLUTTER = replace(GAIN_BY_NETWORK, sources=("recogniser_gain/clutter",))
 POSE_GAIN = RowTable(
     sources=("pose_gain/*",),
     columns=(
@@ -444,7 +446,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,
     "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
-    "recogniser_gain": GAIN_BY_NETWORK.render, "sampled_recordings": SAMPLED.render,
+    "recogniser_gain": GAIN_BY_NETWORK.render, "recogniser_clutter": GAIN_BY_CLUTTER.render,
+    "sampled_recordings": SAMPLED.render,
     "labelled_recognition": LABELLED.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
