@@ -1,5 +1,6 @@
 """Tables that need more than a declaration: best of each in bold, paired differences, the registry of activities."""
 
+import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from studies.report.cell_formats import cell, line, markdown, number
 from studies.report.table_layouts import contexts_of, records_of
 
 OURS = ("mmw", "mmw_keep_noise")  # what the baseline codecs are compared with
+USED_SHARE, SPARED = 0.97, " †"  # of the bytes allowed that a file has; the mark of one that has fewer
 ERRORS = ("nmse_active_db", "nmse_moving_db", "nmse_db")
 Scores = dict[tuple[str, int], dict[str, list[float | None]]]  # {(signal, bytes): {codec: value of each of ERRORS}}
 
@@ -65,8 +67,22 @@ def _margins_table(results: Path, sources: str) -> str:
     found, _ = _codec_scores(results, sources)
     sizes = sorted({size for _, size in found})
     signals = dict.fromkeys(signal for signal, _ in found)
-    lines = [[signal, *(_margins(found.get((signal, size), {})) for size in sizes)] for signal in signals]
+    spared = _places_with_bytes_to_spare(results, sources)
+    lines = [
+        [signal, *(_margins(found.get((signal, size), {})) + SPARED * ((signal, size) in spared) for size in sizes)]
+        for signal in signals
+    ]
     return markdown(["signal", *(f"{size:,} B" for size in sizes)], lines)
+
+
+def _places_with_bytes_to_spare(results: Path, sources: str) -> set[tuple[str, int]]:
+    """Signals and sizes at which .mmw reaches the bound of its quality in fewer bytes than it promises to use."""
+    rows = [row for record in records_of(results, sources) if record["method"] == OURS[0] for row in record["rows"]]
+    return {
+        (row["dataset"]["name"], row["size"]["bytes_allowed"])
+        for row in rows
+        if (row["size"]["bytes"] or math.inf) < USED_SHARE * row["size"]["bytes_allowed"]
+    }
 
 
 def _margins(scores: dict[str, list[float | None]]) -> str:

@@ -37,10 +37,11 @@ def test_the_best_codec_is_bold_and_margins_are_to_the_best_baseline(tmp_path: P
         metrics = {name: {"value": error} for name in ("nmse_active_db", "nmse_db")} | {
             "nmse_moving_db": {"value": None}
         }
-        put(tmp_path, f"codecs/{codec}", [{"dataset": {"name": "walk"}, "size": {"bytes_allowed": 2500},
-                                           "metrics": metrics}])  # fmt: skip
-    assert "| walk | mmw | **-10.0** / - |" in codecs_table(tmp_path)
-    assert codec_margins_table(tmp_path).endswith("| walk | 1.00 / - / 1.00 |")
+        put(tmp_path, f"codecs/{codec}", [{"dataset": {"name": "walk"}, "metrics": metrics,
+             "size": {"bytes_allowed": allowed, "bytes": 2490}} for allowed in (2500, 5000)])  # fmt: skip
+    assert "| walk | mmw | **-10.0** / - | **-10.0** / - |" in codecs_table(tmp_path)
+    # the larger file is exact in half of its bytes
+    assert codec_margins_table(tmp_path).endswith("| walk | 1.00 / - / 1.00 | 1.00 / - / 1.00 † |")
 
 
 def test_zero_shot_has_groups_nested_selection_and_confusion(tmp_path: Path):
