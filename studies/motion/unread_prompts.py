@@ -11,7 +11,7 @@ labels in BABEL's form, from characters 40,000 and 800,000).
 FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 1,400,000); those from 150,000, 250,000,
 400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. Each prompt counts once, without those read to
 widen the grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before
-the first, 0a28cc6 before the next two, FROZEN before the last two); what was understood was evaluated by hand, once,
+the first, 0a28cc6 before the next two, 3755052 before the last two); what was understood was evaluated by hand, once,
 as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the
 prompts' sha256.
 """

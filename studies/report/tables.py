@@ -270,7 +270,7 @@ KITML = MetricTable(
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
-UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS = (
+UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS, UNREAD_THIRD, UNREAD_CAPTIONS_SECOND = (
     MetricTable(
         sources=(source,),
         columns=KITML.columns,
@@ -279,9 +279,16 @@ UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS = (
             ("wrong", "wrong by hand without a word, of the understood (mended since)"),
             ("said", "shown otherwise or in part, which is said, of the same"),
             ("understood_today", "understood by the grammar that the faults found have changed"),
+            *((("in_part_today", "of these, a clause is not done, which is said"),) if in_part else ()),
         ),
     )
-    for source in ("unread_prompts/reading", "unread_prompts/reading_second", "unread_prompts/reading_captions")
+    for source, in_part in (
+        ("unread_prompts/reading", False),
+        ("unread_prompts/reading_second", False),
+        ("unread_prompts/reading_captions", False),
+        ("unread_prompts/reading_third", True),
+        ("unread_prompts/reading_captions_second", True),
+    )
 )
 STRANGERS = MetricTable(
     sources=("strangers/default",),
@@ -440,7 +447,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "unread_prompts": UNREAD_PROMPTS.render, "unread_prompts_second": UNREAD_SECOND.render,
-    "unread_captions": UNREAD_CAPTIONS.render,
+    "unread_captions": UNREAD_CAPTIONS.render, "unread_prompts_third": UNREAD_THIRD.render,
+    "unread_captions_second": UNREAD_CAPTIONS_SECOND.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
