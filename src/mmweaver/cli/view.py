@@ -1,10 +1,13 @@
 """mmweaver view: a result folder as one HTML file that plays in any browser."""
 
 import argparse
+import subprocess
+import sys
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
 EXAMPLES = """examples:
   mmweaver view walk/                       # writes walk/view.html and opens it
   mmweaver view walk/ -o walk.html --no-browser
+  mmweaver view rerun/result.rrd            # of mmweaver export --to rerun: opens Rerun's viewer
 """
 
 
@@ -24,7 +28,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         description="Writes one HTML file with the result inside: people, points and maps over time. It needs no"
         " server and no network connection, so it can be sent to others.",
     )  # fmt: skip
-    parser.add_argument("folder", type=Path, metavar="DIR", help="a folder of mmweaver generate or mmweaver process")
+    parser.add_argument(
+        "folder", type=Path, metavar="DIR|RRD",
+        help="a folder of mmweaver generate or mmweaver process, or a Rerun recording of mmweaver export",
+    )  # fmt: skip
     parser.add_argument("-o", "--out", type=Path, metavar="HTML", help="the file (default: view.html in the folder)")
     parser.add_argument("--overwrite", action="store_true", help="replace the file where it exists")
     parser.add_argument("--no-browser", action="store_true", help="do not open it")
@@ -33,7 +40,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Writes the page. Raises InputError for a folder that holds no result."""
+    """Writes the page, or opens Rerun's viewer. Raises InputError for a folder that holds no result."""
+    if arguments.folder.suffix == ".rrd" and not arguments.folder.is_dir():
+        return _open_rerun(arguments)
     out = arguments.out or arguments.folder / "view.html"
     check_output_file(out, overwrite=arguments.overwrite)
     from mmweaver.playback.html_page import write_page
@@ -47,6 +56,19 @@ def run(arguments: argparse.Namespace) -> int:
     if not arguments.no_browser:
         webbrowser.open(out.resolve().as_uri())
     return 0
+
+
+def _open_rerun(arguments: argparse.Namespace) -> int:
+    """Rerun's own viewer, of the installed package; nothing is fetched."""
+    from importlib.util import find_spec
+
+    if arguments.out is not None or arguments.no_browser:
+        raise InputError(f"{arguments.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
+    if not arguments.folder.is_file():
+        raise InputError(f"{arguments.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
+    if find_spec("rerun") is None:
+        raise InputError("Rerun's viewer needs the package rerun-sdk; pip install 'mmweaver[rerun]'")
+    return subprocess.run([sys.executable, "-m", "rerun", str(arguments.folder)], check=False).returncode
 
 
 def _room(stored: "StoredResult") -> "Playback | None":
