@@ -27,7 +27,7 @@ SHOWN_POSES = 7  # poses whose joints are drawn from the side
 WITHOUT, WITH, CHANGE = "clutter removed", "static clutter included", "change over frames"
 STATIC_COLOUR, MOVING_COLOUR = "#8a5a00", "#0b7da3"
 NARROWEST_MPS = 0.02  # half width of a velocity axis over frames
-DISPLACEMENT_SPAN = 1.15
+DISPLACEMENT_SPAN, DISPLACEMENT_NAME = 1.15, 0.22
 
 
 def power_bar(axes: "Axes", view: FigureData) -> None:
@@ -93,7 +93,8 @@ def draw_displacement(axes: "Axes", view: FigureData) -> None:
     time_s = view.cube.grid.frame_time_s
     cells = view.slow_cells
     reach_mm = max([1e-3, *(1e3 * float(np.abs(cell.displacement_m).max()) for cell in cells)]) * DISPLACEMENT_SPAN
-    axes.set(xlim=view.time_edges_s, ylim=(-reach_mm, reach_mm))
+    for_names = 1 + DISPLACEMENT_NAME * len(cells)  # no curve runs through the names
+    axes.set(xlim=view.time_edges_s, ylim=(-reach_mm, reach_mm * for_names))
     entries = []
     for index, cell in enumerate(cells):
         colour = PEOPLE_ON_WHITE[index % len(PEOPLE_ON_WHITE)]
