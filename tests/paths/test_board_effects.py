@@ -48,7 +48,8 @@ def every_error(config: RadarConfig) -> Board:
 @pytest.mark.parametrize("config", [AWR1843, FEW_LOOPS, HUPR, BPM], ids=lambda config: config.name)
 def test_both_renderers_have_the_same_board(config: RadarConfig):
     board = BoardEffects(every_error(config), config)
-    synthesis, renderer = AdcSynthesis(board.radar, board=board), CubeRenderer(board.radar, board)
+    renderer = CubeRenderer(board.radar, board)
+    synthesis = AdcSynthesis(board.radar, board=board, is_faded=True)
     frames = np.array([0, 40])
     moving = board.on_moving(sampled(config, 0.7, 0.0), frames, 1)
     rng = np.random.default_rng(1)

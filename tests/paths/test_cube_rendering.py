@@ -13,6 +13,7 @@ from mmweaver.dsp.cube import cube_values
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.paths.static_paths import scattered_paths
 from tests.physics.test_synthesis_against_exact import direct_paths, moving_points
@@ -50,8 +51,27 @@ def error_db(got: torch.Tensor, wanted: torch.Tensor) -> float:
 @pytest.mark.parametrize(("speed_mps", "bound_db"), [(0.0, -37.0), (0.7, -36.0), (2.0, -30.0)])
 def test_both_renderers_make_the_same_cube_of_moving_paths(config: RadarConfig, speed_mps: float, bound_db: float):
     paths = sampled(config, speed_mps, 0.0)
-    wanted = cube_values(AdcSynthesis(config).moving(paths), config)
+    wanted = cube_values(AdcSynthesis(config, is_faded=True).moving(paths), config)
     assert error_db(CubeRenderer(config).moving(paths), wanted) < bound_db
+
+
+@pytest.mark.parametrize("renderer", ["cube", "samples"])
+def test_an_amplitude_that_differs_between_segments_leaves_no_spurs(renderer: str):
+    """Steps of a quarter of the amplitude within a frame would show at all velocities."""
+    clock = FrameClock(HUPR)
+    still = sampled(HUPR, 0.0, 0.0)[: len(clock.segments), :1]
+    still = still.map(lambda tensor: tensor[:1].repeat(len(clock.segments), *[1] * (tensor.ndim - 1)))
+    level = torch.tensor([1.0, 0.75, 1.0, 0.75, 1.0, 0.75, 1.0])
+    paths = replace(still, amplitude=still.amplitude * level[:, None])
+
+    def spurs_db(samples: AdcSynthesis | None) -> float:
+        values = CubeRenderer(HUPR).moving(paths) if samples is None else cube_values(samples.moving(paths), HUPR)
+        power = values.abs().square().sum(dim=(0, 1, 3))  # by velocity, 0 in the middle
+        fast = torch.cat([power[: len(power) // 4], power[-len(power) // 4 :]])
+        return 10 * float(torch.log10(fast.max() / power.max()))
+
+    assert spurs_db(None if renderer == "cube" else AdcSynthesis(HUPR, is_faded=True)) < -70
+    assert spurs_db(AdcSynthesis(HUPR)) > -60
 
 
 def test_both_orders_of_paths_over_a_wall():

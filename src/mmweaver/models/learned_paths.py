@@ -288,7 +288,7 @@ class LearnedRoom:
         """Samples of the paths with noise whose own cube is `noise`, and white in what no cell holds."""
         config = self.config
         if self._synthesis is None:
-            synthesis = AdcSynthesis(config, board=self.board)
+            synthesis = AdcSynthesis(config, board=self.board, is_faded=True)
             self._synthesis = synthesis, self._static_adc(synthesis)
         synthesis, static = self._synthesis
         frames, count = len(paths.occluded), len(synthesis.clock.segments)

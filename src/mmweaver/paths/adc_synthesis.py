@@ -35,7 +35,8 @@ class AdcSynthesis:
     """
 
     def __init__(
-        self, config: RadarConfig, device: str | torch.device = "cpu", board: "BoardEffects | None" = None
+        self, config: RadarConfig, device: str | torch.device = "cpu", board: "BoardEffects | None" = None, *,
+        is_faded: bool = False,
     ):  # fmt: skip
         self._elements = TransmitElements(config)
         self.config, self.device = self._elements.config, torch.device(device)
@@ -48,7 +49,9 @@ class AdcSynthesis:
         self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
         self._extra_m = 0.0 if board is None else board.extra_length_m
         self._fast = FastTime(self.config)
+        faded = self.clock.faded_segments if is_faded and len(self.clock.segments) > 1 else ()
         self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
+        self._faded = [(_SegmentFactors(one.segment, self.device), self._share(one.share)) for one in faded]
 
     def moving(self, paths: Paths) -> Tensor:
         """Samples of moving paths (frame * segment, path): complex64 (frame, loop, tx, rx, sample), in sqrt(mW)."""
@@ -63,8 +66,20 @@ class AdcSynthesis:
         for index, segment in enumerate(self._segments):
             for batch in batches:
                 some = unpadded(paths[index::count][batch]).to(self.device)
-                self._add_segment(some, segment, adc[batch, segment.loops])
+                if not self._faded:
+                    self._add_segment(some, segment, adc[batch, segment.loops])
+                    continue
+                faded, share = self._faded[index]
+                part = torch.empty_like(adc[batch, faded.loops])
+                self._add_segment(some, faded, part)
+                if index == 0:
+                    adc[batch] = 0
+                adc[batch, faded.loops] += part * share
         return self._elements.slots(adc, 2)
+
+    def _share(self, share: np.ndarray) -> Tensor:
+        """Shares (loop, tx) as factors of samples (frame, loop, tx, rx, sample)."""
+        return torch.from_numpy(share[..., None, None].astype(np.float32)).to(self.device)
 
     def static(self, paths: StaticPaths, weight: Tensor | None = None) -> Tensor:
         """Samples of static paths, complex64 (tx, rx, sample); the same in every loop.

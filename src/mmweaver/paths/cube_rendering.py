@@ -21,7 +21,7 @@ from mmweaver.dsp.window_kernels import WindowKernel
 from mmweaver.dsp.windows import hann
 from mmweaver.paths.adc_synthesis import ArrayPhases, unpadded
 from mmweaver.paths.fast_time import phasor
-from mmweaver.paths.frame_clock import FrameClock, Segment
+from mmweaver.paths.frame_clock import FadedSegment, FrameClock
 from mmweaver.paths.paths import Paths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements
 
@@ -92,7 +92,7 @@ class CubeRenderer:
         fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
         by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
         by_tx = by_tx if chirps is None else by_tx * chirps.T[..., None]
-        self._segments = [_SegmentDoppler.of(segment, by_tx) for segment in self.clock.segments]
+        self._segments = [_SegmentDoppler.of(one, by_tx) for one in self.clock.faded_segments]
 
     def moving(self, paths: Paths) -> Tensor:
         """Cube values of moving paths (frame * segment, path): complex64 (frame, range, doppler, antenna)."""
@@ -210,10 +210,10 @@ class _SegmentDoppler(TensorRecord):
     transform: Tensor  # (tx, loop, 2 doppler): of values at the chirps, and of the same times their time
 
     @classmethod
-    def of(cls, segment: Segment, by_tx: Tensor) -> "_SegmentDoppler":
-        """Of a segment of the clock and the whole frame's transform (tx, loop, doppler)."""
-        time_s = torch.from_numpy(np.ascontiguousarray(segment.chirp_s.T))  # (tx, loop)
-        own = by_tx[:, segment.loops]
+    def of(cls, faded: FadedSegment, by_tx: Tensor) -> "_SegmentDoppler":
+        """Of a segment of the clock, with its share of each chirp, and the whole frame's transform."""
+        time_s = torch.from_numpy(np.ascontiguousarray(faded.segment.chirp_s.T))  # (tx, loop)
+        own = by_tx[:, faded.segment.loops] * torch.from_numpy(faded.share.T).float()[..., None]
         return cls(time_s=time_s.flatten(), transform=torch.cat([own, own * time_s.float()[..., None]], dim=-1))
 
     def spectra(self, cycles: Tensor) -> tuple[Tensor, Tensor]:

@@ -13,6 +13,14 @@ BLOCK_S = 2.5e-3  # within which range changes to first order in time, and angle
 
 
 @dataclass(frozen=True, kw_only=True)
+class FadedSegment:
+    """A segment that reaches to the middles of its neighbours, with its share of each chirp; the shares add up to 1."""
+
+    segment: "Segment"
+    share: np.ndarray  # (loop, tx) from 0 to 1
+
+
+@dataclass(frozen=True, kw_only=True)
 class Segment:
     """A run of loops of a frame. Times are relative to its middle, which lies `middle_s` after the frame's start."""
 
@@ -63,16 +71,36 @@ class FrameClock:
         self.segments = tuple(self._segment(part) for part in loops)
         self.node_s = np.concatenate([one.middle_s + one.node_s for one in self.segments])  # (segment * node,)
 
-    def _segment(self, loops: np.ndarray) -> Segment:
+    @cached_property
+    def faded_segments(self) -> tuple[FadedSegment, ...]:
+        """Each segment with a share of every chirp that rises and falls as a squared sine from middle to middle.
+
+        Paths whose motion and amplitude are known for each segment on its own step from one to the next; a step leaves
+        spurs over all velocities, a smooth transition none.
+        """
+        middle_s = self.middle_s
+        before, after = (np.append(-np.inf, middle_s[:-1]), np.append(middle_s[1:], np.inf))
+        faded = []
+        for own_s, from_s, to_s in zip(middle_s, before, after, strict=True):
+            reached = np.flatnonzero(((self.chirp_s > from_s) & (self.chirp_s < to_s)).any(axis=1))
+            time_s = self.chirp_s[reached]
+            away = np.where(time_s < own_s, (own_s - time_s) / (own_s - from_s), (time_s - own_s) / (to_s - own_s))
+            share = np.cos(np.pi / 2 * np.clip(away, 0.0, 1.0)) ** 2
+            faded.append(FadedSegment(segment=self._segment(reached, float(own_s)), share=share))
+        return tuple(faded)
+
+    def _segment(self, loops: np.ndarray, middle_s: float | None = None) -> Segment:
+        """A run of loops; times count from the middle of its chirps, or from `middle_s`."""
         chirp_s = self.chirp_s[loops]
-        middle_s = (chirp_s.min() + chirp_s.max()) / 2
+        if middle_s is None:
+            middle_s = float((chirp_s.min() + chirp_s.max()) / 2)
         unit = -np.cos(np.pi * (np.arange(NUM_NODES) + 0.5) / NUM_NODES)
         unit[NUM_NODES // 2] = 0.0
         reach_s = np.ptp(chirp_s) / 2 or self.config.chirp_period_s  # a single chirp has no extent
         num_blocks = int(np.clip(np.ceil(len(loops) * self.config.loop_period_s / BLOCK_S), 1, len(loops)))
         cuts = np.array_split(np.arange(len(loops)), num_blocks)
         return Segment(
-            first_loop=int(loops[0]), middle_s=float(middle_s), chirp_s=chirp_s - middle_s, node_s=reach_s * unit,
+            first_loop=int(loops[0]), middle_s=middle_s, chirp_s=chirp_s - middle_s, node_s=reach_s * unit,
             blocks=tuple(slice(int(cut[0]), int(cut[-1]) + 1) for cut in cuts),
         )  # fmt: skip
 
