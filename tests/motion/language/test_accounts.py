@@ -96,3 +96,18 @@ def test_no_step_is_added(sentence: str, names: list[str]) -> None:
 
 def test_three_quarters_of_a_turn_are_270_degrees() -> None:
     assert [step.turn_deg for step in parse("a person makes a three-quarter turn").steps] == [270.0]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "clauses"),
+    [
+        ("she juggles three balls", ["she juggles three balls"]),
+        ("A person scratches their head, then walks left", ["A person scratches their head", "walks left"]),
+        ("a person waves and frobnicates", ["a person waves", "frobnicates"]),
+    ],
+)  # fmt: skip
+def test_clauses_are_recorded_in_the_sentence_s_own_words(sentence: str, clauses: list[str]):
+    plan = parse(sentence, in_part=True)
+    assert [record.clause for record in plan.clauses] == clauses
+    for record in plan.clauses:
+        assert record.status == DONE or any(repr(record.clause) in note for note in plan.notes)

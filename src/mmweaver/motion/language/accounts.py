@@ -26,6 +26,7 @@ _SMALL = words_in(
     """
 )
 _CONNECTIVES = words_in(", . ; : and then while before after until")
+_LINKS = _CONNECTIVES | words_in("afterwards next finally")
 _UNDERFOOT = "walk jog sidestep limp stagger crawl leap stumble"
 _LIFTED = "raise raise_hold hands_up arm_extension"
 
@@ -159,6 +160,46 @@ def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tupl
         last = last if number is None else number
         numbers.append(last)
     return numbers, [number is not None for number in found]
+
+
+def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
+    """The sentence's own words of each clause, whose record may hold what they were taken as.
+
+    A clause whose words do not stand together keeps those of its record.
+    """
+    found = list(_TOKEN.finditer(text.lower()))
+    tokens = [one[0] for one in found]
+    numbers, sure = _clause_of_each(tokens, records)
+    for number, part in _wholly_rewritten(tokens, numbers, sure, records):
+        for place in part:
+            numbers[place] = number
+    words = {number: record.clause for number, record in records.items()}
+    for number in records:
+        places = [i for i, own in enumerate(numbers) if own == number]
+        if not places or places[-1] - places[0] != len(places) - 1:
+            continue
+        while places and found[places[0]][0] in _LINKS:
+            del places[0]
+        while places and found[places[-1]][0] in _LINKS:
+            del places[-1]
+        if places:
+            words[number] = text[found[places[0]].start() : found[places[-1]].end()]
+    return words
+
+
+def _wholly_rewritten(
+    tokens: list[str], numbers: list[int], sure: list[bool], records: dict[int, ClauseRecord]
+) -> list[tuple[int, list[int]]]:
+    """Clauses of which no word is left, with the places of the words between two links that are nobody else's."""
+    parts: list[list[int]] = [[]]
+    for place, token in enumerate(tokens):
+        if token in _LINKS:
+            parts.append([])
+        else:
+            parts[-1].append(place)
+    free = [part for part in parts if part and not any(sure[place] for place in part)]
+    gone = sorted({*records} - {number for number, is_sure in zip(numbers, sure, strict=True) if is_sure})
+    return list(zip(gone, free, strict=True)) if len(gone) == len(free) else []
 
 
 def _side(tokens: list[str], i: int, own: list[Step]) -> str:

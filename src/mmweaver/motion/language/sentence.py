@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.accounts import unaccounted
+from mmweaver.motion.language.accounts import as_given, unaccounted
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
@@ -114,7 +114,11 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False, miss: bool =
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leave_out and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(text.strip()))
-    clauses = tuple(records[number] for number in sorted(records))
+    own_words = as_given(given_text, records)
+    clauses = tuple(replace(records[number], clause=own_words[number]) for number in sorted(records))
+    for number, record in records.items():
+        before, now = f"of {record.clause!r}, ", f"{own_words[number]!r}: "
+        notes = [now + note.removeprefix(before) if note.startswith(before) else note for note in notes]
     return MotionPlan(
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)), clauses=clauses,
         person=described_person(given_text),
