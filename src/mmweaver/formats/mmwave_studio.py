@@ -64,7 +64,7 @@ def _query(path: Path, query: Callable[[Any], Answer]) -> Answer:
         raise InputError(f"{path}: {error}") from None
     except KeyError as error:
         raise InputError(f"{path} lacks {error.args[0]}; is it an mmWave Studio .mmwave.json?") from None
-    except (TypeError, ValueError, IndexError, OverflowError) as error:
+    except (AttributeError, TypeError, ValueError, IndexError, OverflowError) as error:
         raise InputError(f"{path} is not an mmWave Studio .mmwave.json ({error})") from None
 
 

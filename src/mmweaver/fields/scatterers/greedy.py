@@ -136,4 +136,5 @@ class _Received:
             for side, inside in ((-1, index > 0), (1, index < size - 1))
         )
         offset = ((after - before) / (2 * (2 - after - before)).clamp(min=LEAST_BEND)).clamp(-0.5, 0.5)
+        offset = offset.nan_to_num(0.0)  # a peak of nothing has no neighbours to lie between
         return offset, kernel(offset)[0]
