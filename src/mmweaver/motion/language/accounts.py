@@ -159,7 +159,11 @@ def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tupl
             number = next((other for other in found[i:] if other is not None), last)
         last = last if number is None else number
         numbers.append(last)
-    return numbers, [number is not None for number in found]
+    sure = [number is not None for number in found]
+    for number, part in _wholly_rewritten(tokens, numbers, sure, records):
+        for place in part:
+            numbers[place] = number
+    return numbers, sure
 
 
 def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
@@ -169,10 +173,7 @@ def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
     """
     found = list(_TOKEN.finditer(text.lower()))
     tokens = [one[0] for one in found]
-    numbers, sure = _clause_of_each(tokens, records)
-    for number, part in _wholly_rewritten(tokens, numbers, sure, records):
-        for place in part:
-            numbers[place] = number
+    numbers, _ = _clause_of_each(tokens, records)
     words = {number: record.clause for number, record in records.items()}
     for number in records:
         places = [i for i, own in enumerate(numbers) if own == number]
