@@ -156,7 +156,7 @@ def test_what_is_too_fast_for_the_radar_is_no_reverse_order():
 
 @pytest.mark.parametrize("factor", [0.5, 2])
 def test_frames_with_another_number_of_loops(factor: float, recording: Path):
-    """Half or twice the loops: static echoes fit as well, but what moves jumps only from frame to frame."""
+    """Half or twice the loops: static echoes fit as well, but moving ones jump only from frame to frame."""
     other = replace(RADAR, num_loops=int(RADAR.num_loops * factor), frame_period_s=RADAR.frame_period_s * factor)
     found = read(recording / "adc_data.bin", other)
     if factor > 1:  # of eight frames too few are left to be sure

@@ -152,16 +152,21 @@ class SetBuilder:
 
     # making ----------------------------------------------------------------------------------------------------------
     @property
+    def is_made(self) -> bool:
+        """Whether the store is there, so that nothing is missing."""
+        return (self.out / STORE).is_dir()
+
+    @property
     def finished(self) -> int:
         """How many sequences are there already."""
-        if (self.out / STORE).is_dir():
+        if self.is_made:
             return len(self.plan)
         return len(list((self.out / PARTS).glob("[0-9]*.npz")))
 
     def make(self, listener: Callable[[int, int], object] | None = None) -> dict[str, Any]:
         """Makes what is missing and returns the leak report with the number of sequences. Raises InputError."""
         self._begin()
-        if not (self.out / STORE).is_dir():
+        if not self.is_made:
             for number, one in enumerate(self.plan):
                 self._part(number, one)
                 if listener is not None:
@@ -170,12 +175,16 @@ class SetBuilder:
         remove(self.out / PARTS)
         return read_json(self.out / LEAKS_FILE)
 
-    def _begin(self) -> None:
-        """Writes what the set is made of. Raises InputError, before anything is written, where no place serves."""
+    def check_folder(self) -> None:
+        """Raises InputError for a folder that holds something else; takes no time, unlike the plan."""
         check_output_folder(self.out, overwrite=True, files=[SET_FILE, LEAKS_FILE])
         if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
             raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")
-        if not (self.out / STORE).is_dir():
+
+    def _begin(self) -> None:
+        """Writes what the set is made of. Raises InputError, before anything is written, where no place serves."""
+        self.check_folder()
+        if not (self.out / SET_FILE).is_file():
             _ = self.plan
         text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
         held = create_once(self.out / SET_FILE, text)

@@ -10,6 +10,7 @@ that was seen before.
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -126,11 +127,14 @@ def matched_draws(
 
 
 def _drawn(places: list[StartPlace], rng: np.random.Generator, *, index: int, room: int, subject: int) -> Draw:
-    place = int(rng.integers(len(places)))
-    return Draw(
-        index=index, room=room, place=place, start_m=places[place].sampled_m(rng),
-        heading_rad=round(float(rng.uniform(-np.pi, np.pi)), 4), subject=subject, seed=int(rng.integers(2**31)),
-    )  # fmt: skip
+    placing = _placing(places, int(rng.integers(len(places))), rng)
+    return Draw(index=index, room=room, subject=subject, **placing, seed=int(rng.integers(2**31)))
+
+
+def _placing(places: list[StartPlace], place: int, rng: np.random.Generator) -> dict[str, Any]:
+    """A start and a heading at a place."""
+    start_m = places[place].sampled_m(rng)
+    return {"place": place, "start_m": start_m, "heading_rad": round(float(rng.uniform(-np.pi, np.pi)), 4)}
 
 
 def _own(
@@ -140,10 +144,7 @@ def _own(
     why = ""
     for attempt in range(MOST_OWN_ATTEMPTS):
         place = shared.place if attempt < SAME_PLACE_ATTEMPTS else int(rng.integers(len(places)))
-        draw = replace(
-            shared, place=place, start_m=places[place].sampled_m(rng),
-            heading_rad=round(float(rng.uniform(-np.pi, np.pi)), 4), is_shared=False,
-        )  # fmt: skip
+        draw = replace(shared, is_shared=False, **_placing(places, place, rng))
         why = obstacle(draw, label)
         if not why:
             return draw

@@ -148,9 +148,11 @@ def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
         described = ", ".join(repr(one) for one in words)
         note = f"note: sentences describe different people ({described}); whoever is drawn does all activities"
         print(note, file=sys.stderr)
-    cost = estimate_set_cost(builder)
-    # while the store is put together, its parts are there, too
-    check_for_space(replace(cost, disk_bytes=2 * cost.disk_bytes), builder.out)
+    builder.check_folder()
+    if not builder.is_made:
+        cost = estimate_set_cost(builder)
+        # while the store is put together, its parts are there, too
+        check_for_space(replace(cost, disk_bytes=2 * cost.disk_bytes), builder.out)
     with tqdm(unit="sequence", disable=quiet or None) as bar:
 
         def show(done: int, total: int) -> None:

@@ -106,7 +106,7 @@ def _panels(
     times_s = [float(view.cube.grid.frame_time_s[frame]) for frame in frames]
     when = [f"frame {frame} ({time_s:.2f} s)" for frame, time_s in zip(frames, times_s, strict=True)]
     cube = _chosen(view.cube, frames)
-    range_m = (*view.range_edges_m,)
+    range_m = view.range_edges_m
     if name == "micro_doppler":
         power_db = micro_doppler_db(view.cube)
 

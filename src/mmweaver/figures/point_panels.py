@@ -88,7 +88,7 @@ def _range_m(points: PointCloud) -> np.ndarray:
 
 
 def _velocities(view: FigureData) -> "ScalarMappable":
-    """Colours span what moves, but for its fastest 5 %, which are mostly noise."""
+    """Colours span the speeds of moving points but for the fastest 5 %, which are mostly noise."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize

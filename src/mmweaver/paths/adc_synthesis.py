@@ -31,7 +31,8 @@ ROWS_AT_ONCE = 2048  # static paths, which bounds memory
 class AdcSynthesis:
     """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded.
 
-    `board`: whose antennas and range bias they are recorded with; paths are given with its IF already.
+    `board`: whose antennas and range bias they are recorded with; paths are given with its IF already. `is_faded`: for
+    paths that step between the segments of a frame, as the network's do (`FrameClock.faded_segments`).
     """
 
     def __init__(
@@ -49,9 +50,14 @@ class AdcSynthesis:
         self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
         self._extra_m = 0.0 if board is None else board.extra_length_m
         self._fast = FastTime(self.config)
-        faded = self.clock.faded_segments if is_faded and len(self.clock.segments) > 1 else ()
-        self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
-        self._faded = [(_SegmentFactors(one.segment, self.device), self._share(one.share)) for one in faded]
+        # with their share of each chirp, where segments fade into each other
+        self._segments: list[tuple[_SegmentFactors, Tensor | None]] = [
+            (_SegmentFactors(one, self.device), None) for one in self.clock.segments
+        ]
+        if is_faded and len(self._segments) > 1:
+            self._segments = [
+                (_SegmentFactors(one.segment, self.device), self._share(one.share)) for one in self.clock.faded_segments
+            ]
 
     def moving(self, paths: Paths) -> Tensor:
         """Samples of moving paths (frame * segment, path): complex64 (frame, loop, tx, rx, sample), in sqrt(mW)."""
@@ -63,18 +69,18 @@ class AdcSynthesis:
         )  # fmt: skip
         # On the CPU frame by frame: nothing is padded, and the caches hold it.
         batches = [slice(0, frames)] if self.device.type != "cpu" else [slice(at, at + 1) for at in range(frames)]
-        for index, segment in enumerate(self._segments):
+        if any(share is not None for _, share in self._segments):
+            adc.zero_()
+        for index, (segment, share) in enumerate(self._segments):
             for batch in batches:
                 some = unpadded(paths[index::count][batch]).to(self.device)
-                if not self._faded:
-                    self._add_segment(some, segment, adc[batch, segment.loops])
+                own = adc[batch, segment.loops]
+                if share is None:
+                    self._add_segment(some, segment, own)
                     continue
-                faded, share = self._faded[index]
-                part = torch.empty_like(adc[batch, faded.loops])
-                self._add_segment(some, faded, part)
-                if index == 0:
-                    adc[batch] = 0
-                adc[batch, faded.loops] += part * share
+                part = torch.empty_like(own)
+                self._add_segment(some, segment, part)
+                own += part * share
         return self._elements.slots(adc, 2)
 
     def _share(self, share: np.ndarray) -> Tensor:

@@ -1,4 +1,4 @@
-"""Whether the loops of a recording's frames belong together, from what moves.
+"""Whether the loops of a recording's frames belong together, from moving echoes.
 
 Loops follow each other after a millisecond or so, frames after tens of them. Within a frame an echo that moves turns by
 the same angle from loop to loop, from frame to frame by any. Where every second step between frames is as those within,

@@ -174,7 +174,7 @@ def _layout(adc: AdcCube) -> Iterator[str]:
     stream = adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)]
     flat = upright(stream, config).reshape(len(stream), -1)  # as the converter gave them
     loop = config.num_slots * config.num_rx * config.num_samples
-    kinds = (flat, flat.mean(axis=0)[None])  # in the mean over frames what moves counts less
+    kinds = (flat, flat.mean(axis=0)[None])  # in the mean over frames moving echoes count less
 
     def alike(lag: int) -> float:
         return max(_likeness(kind, lag) for kind in kinds)
