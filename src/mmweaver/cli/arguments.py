@@ -210,6 +210,20 @@ def add_layout_options(parser: Options, *, rare: bool = False) -> None:
     )  # fmt: skip
 
 
+def add_sample_options(parser: Options, *, brought: str = "") -> None:
+    """The options that say how raw samples are to be read; `brought`: when they need no --radar."""
+    known = f" ({brought})" if brought else ""
+    parser.add_argument(
+        "--radar", type=source, metavar="NAME|FILE", help=f"preset, TI .cfg or radar.json{known}"
+    )  # fmt: skip
+    parser.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
+    parser.add_argument(
+        "--layout", metavar="NAME",
+        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
+    )  # fmt: skip
+    add_layout_options(parser)
+
+
 def add_range_options(
     parser: Options, *, rare: bool = False,
     what: str = "to keep (default: a preset's own window; all of a .cfg, up to 4 MiB a frame)",

@@ -6,11 +6,10 @@ from typing import Any
 
 from mmweaver.cli.arguments import (
     add_board_options,
-    add_layout_options,
     add_range_options,
+    add_sample_options,
     number,
     radar_of,
-    source,
 )
 
 EXAMPLES = """examples:
@@ -29,7 +28,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
         "calibrate", help="find the errors of your board in its recordings", epilog=EXAMPLES,
-        description="Finds what recordings tell of the board that made them: IF response, noise figure, leakage,"
+        description="Finds what recordings show of the board that made them: IF response, noise figure, leakage,"
         " antenna gains and phases, first chirps, drift; of point clouds the elevation offset. Nothing need be known of"
         " the room. Says what it could not see and why; generate --board takes the file.",
     )  # fmt: skip
@@ -38,10 +37,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         help="raw samples, a folder of mmweaver process, or a point cloud",
     )  # fmt: skip
     raw = parser.add_argument_group("what recordings do not bring")
-    raw.add_argument("--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
-    raw.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
-    raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
-    add_layout_options(raw)
+    add_sample_options(raw)
     add_board_options(raw, rare=True)
     add_range_options(raw, what="whose echoes show the antennas (default: all)")
     raw.add_argument(

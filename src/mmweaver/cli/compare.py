@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_board_options, add_layout_options, radar_of, source, span_m
+from mmweaver.cli.arguments import add_board_options, add_sample_options, radar_of, source, span_m
 
 EXAMPLES = """examples:
   mmweaver compare recording/ simulated/ --out comparison/
@@ -26,13 +26,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         " antennas, chirps, points; ranked by effect size, with pictures on the same axes and decibels.",
     )  # fmt: skip
     parser.add_argument("a", type=Path, metavar="A", help="the signal to compare with, such as a recording")
-    parser.add_argument("b", type=Path, metavar="B", help="the signal that is judged, such as a simulation")
+    parser.add_argument("b", type=Path, metavar="B", help="the signal that is compared with it, such as a simulation")
     raw = parser.add_argument_group("raw samples, which do not bring their radar")
-    raw.add_argument("--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    add_sample_options(raw)
     raw.add_argument("--radar-b", type=source, metavar="NAME|FILE", help="that of B, where it is another")
-    raw.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
-    raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
-    add_layout_options(raw)
     add_board_options(raw, rare=True)
     parser.add_argument(
         "--range", type=span_m, metavar="NEAR,FAR", dest="range_m",

@@ -8,11 +8,10 @@ from typing import Any
 
 from mmweaver.cli.arguments import (
     add_board_options,
-    add_layout_options,
     add_range_options,
+    add_sample_options,
     number,
     radar_of,
-    source,
     whole,
 )
 from mmweaver.core.errors import InputError
@@ -45,18 +44,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         " array, or a capture folder of mmwave-capture-std",
     )
     source_options = parser.add_argument_group("input")
-    source_options.add_argument(
-        "--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: next to the .npz)"
-    )
-    source_options.add_argument(
-        "--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample"
-    )
-    source_options.add_argument(
-        "--layout",
-        metavar="NAME",
-        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
-    )
-    add_layout_options(source_options)
+    add_sample_options(source_options, brought="default: next to the .npz")
     add_range_options(source_options)
     add_board_options(source_options)
     size = parser.add_argument_group("size and quality")

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.arguments import add_board_options, add_layout_options, radar_of, source, whole
+from mmweaver.cli.arguments import add_board_options, add_sample_options, radar_of, whole
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_file
 
@@ -41,10 +41,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument("-o", "--out", type=Path, default=Path("features.png"), metavar="PNG", help="the picture")
     parser.add_argument("--overwrite", action="store_true", help="replace the picture where it exists")
     raw = parser.add_argument_group("raw samples, which do not bring their radar")
-    raw.add_argument("--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
-    raw.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
-    raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
-    add_layout_options(raw)
+    add_sample_options(raw)
     add_board_options(raw, rare=True)
     parser.set_defaults(run=run)
     return parser

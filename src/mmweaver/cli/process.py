@@ -6,10 +6,10 @@ from typing import Any
 
 from mmweaver.cli.arguments import (
     add_board_options,
-    add_layout_options,
     add_output_options,
     add_points_option,
     add_range_options,
+    add_sample_options,
     radar_of,
     source,
 )
@@ -40,17 +40,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         " mmwave-capture-std (radar.cfg, dca.pcap)",
     )  # fmt: skip
     recording = parser.add_argument_group("input")
-    recording.add_argument(
-        "--radar", type=source, metavar="NAME|FILE",
-        help="preset, TI .cfg or radar.json (a capture folder brings its own)",
-    )  # fmt: skip
-    recording.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
-    recording.add_argument(
-        "--layout",
-        metavar="NAME",
-        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
-    )
-    add_layout_options(recording)
+    add_sample_options(recording, brought="a capture folder brings its own")
     add_range_options(recording)
     recording.add_argument(
         "--strict", action="store_true", help="refuse samples that do not fit the settings (default: a warning)"

@@ -21,10 +21,10 @@ from mmweaver.features import (
 )
 from mmweaver.figures.figure_data import Fan, FigureData
 from mmweaver.figures.point_panels import draw_points_top, velocity_bar
-from mmweaver.figures.power_panels import scale_bar
+from mmweaver.figures.power_map import draw_power_map, scale_bar
 from mmweaver.figures.power_scale import PowerScale
 from mmweaver.figures.recording_pages import styled, write_figure
-from mmweaver.figures.theme import POWER_MAP, label_axes, shortened
+from mmweaver.figures.theme import label_axes, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -111,7 +111,7 @@ def _panels(
         power_db = micro_doppler_db(view.cube)
 
         def over_time(axes: "Axes", _: int) -> None:
-            _map(axes, scale, power_db.T, (*view.time_edges_s, *view.velocity_edges_mps))
+            draw_power_map(axes, scale, power_db.T, (*view.time_edges_s, *view.velocity_edges_mps))
             label_axes(axes, "micro_doppler, clutter removed", "time (s)", "radial velocity (m/s), away +")
 
         return over_time
@@ -128,7 +128,7 @@ def _panels(
         power_db = range_doppler_db(cube, moving=moving)
 
         def range_doppler(axes: "Axes", column: int) -> None:
-            _map(axes, scale, power_db[column], (*view.velocity_edges_mps, *range_m))
+            draw_power_map(axes, scale, power_db[column], (*view.velocity_edges_mps, *range_m))
             label_axes(axes, f"rd, {when[column]}, {said}", "radial velocity (m/s), away +", "range (m)")
 
         return range_doppler
@@ -137,7 +137,7 @@ def _panels(
         edge = float(np.degrees(azimuth_axis_rad(DRAI_SIZE)[-1]))
 
         def image(axes: "Axes", column: int) -> None:
-            _map(axes, scale, power_db[column], (-edge, edge, *range_m))
+            draw_power_map(axes, scale, power_db[column], (-edge, edge, *range_m))
             label_axes(axes, f"drai, {when[column]}", "azimuth (degrees), right +", "range (m)")
 
         return image
@@ -148,7 +148,7 @@ def _panels(
 
     def from_above_or_side(axes: "Axes", column: int) -> None:
         laid, (low, high, _, far) = fan.lay(power_db[column]), fan.extent
-        _map(axes, scale, laid if is_azimuth else laid.T, fan.extent if is_azimuth else (0.0, far, low, high))
+        draw_power_map(axes, scale, laid if is_azimuth else laid.T, fan.extent if is_azimuth else (0.0, far, low, high))
         axes.set_aspect("equal", anchor="NW")
         words = ("right (m)", "ahead (m)") if is_azimuth else ("ahead (m)", "up (m)")
         label_axes(axes, f"{name}, {when[column]}, {said}", *words)
@@ -160,11 +160,3 @@ def _chosen(cube: RadarCube, frames: Sequence[int]) -> RadarCube:
     own = list(frames)
     grid: CubeGrid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[own])
     return replace(cube, values=cube.values[own], grid=grid)
-
-
-def _map(axes: "Axes", scale: PowerScale, power_db: np.ndarray, extent: tuple[float, ...]) -> None:
-    left, right, bottom, top = extent
-    axes.imshow(
-        power_db, origin="lower", aspect="auto", extent=(left, right, bottom, top), cmap=POWER_MAP,
-        vmin=scale.low_db, vmax=scale.high_db, interpolation="nearest",
-    )  # fmt: skip

@@ -7,14 +7,12 @@ import numpy as np
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
 from mmweaver.figures.figure_data import Fan, FigureData
-from mmweaver.figures.power_scale import PowerScale
+from mmweaver.figures.power_map import Extent, draw_power_map, scale_bar
 from mmweaver.figures.theme import (
     GROUND_TRUTH,
     INK,
     PAPER,
     PEOPLE_ON_WHITE,
-    POWER_MAP,
-    colour_bar,
     label_axes,
     legend,
     person_colour,
@@ -33,17 +31,6 @@ DISPLACEMENT_SPAN, DISPLACEMENT_NAME = 1.15, 0.22
 def power_bar(axes: "Axes", view: FigureData) -> None:
     """The colour bar of all power panels, with the noise marked."""
     scale_bar(axes, view.scale)
-
-
-def scale_bar(axes: "Axes", scale: PowerScale, *, share: float = 1.0) -> None:
-    """The colour bar of a scale of decibels; `share` as in `colour_bar`."""
-    import matplotlib
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    mappable = ScalarMappable(norm=Normalize(scale.low_db, scale.high_db), cmap=matplotlib.colormaps[POWER_MAP])
-    mark = None if scale.noise_db is None else (scale.noise_db, "noise")
-    colour_bar(axes, mappable, scale.unit, mark=mark, share=share)
 
 
 def moving_words(view: FigureData) -> str:
@@ -219,12 +206,8 @@ def _profiles(axes: "Axes", view: FigureData, along: np.ndarray, lines: list[Lin
 
 
 # pieces -------------------------------------------------------------------------------------------------------------
-def _power(axes: "Axes", view: FigureData, power: np.ndarray, extent: tuple[float, float, float, float]) -> None:
-    scale = view.scale
-    axes.imshow(
-        scale.decibels(power), origin="lower", aspect="auto", extent=extent, cmap=POWER_MAP, vmin=scale.low_db,
-        vmax=scale.high_db, interpolation="nearest",
-    )  # fmt: skip
+def _power(axes: "Axes", view: FigureData, power: np.ndarray, extent: Extent) -> None:
+    draw_power_map(axes, view.scale, view.scale.decibels(power), extent)
 
 
 def with_colours(people: tuple[PoseSequence, ...], *, on_white: bool = False) -> list[tuple[PoseSequence, str]]:

@@ -12,8 +12,9 @@ from mmweaver.dsp.doppler_spectrogram import MicroDoppler
 from mmweaver.dsp.slow_time import SlowTimeCell
 from mmweaver.dsp.tracking import PersonTrack
 from mmweaver.dsp.vital_signs import Rate
+from mmweaver.figures.power_map import draw_power_map, scale_bar
 from mmweaver.figures.power_scale import PowerScale
-from mmweaver.figures.theme import INK, PEOPLE_ON_WHITE, POWER_MAP, STYLE, colour_bar, label_axes, legend, shortened
+from mmweaver.figures.theme import INK, PEOPLE_ON_WHITE, STYLE, label_axes, legend, shortened
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +85,8 @@ def _micro_doppler_figure(title: str, spectrogram: MicroDoppler, amplitude_scale
     velocity = spectrogram.radial_velocity_mps
     extent = float(edges_s[0]), float(edges_s[-1]), float(velocity[0]), float(velocity[-1])
     scale = PowerScale.of(float(power.max()), float(np.median(power)), amplitude_scale)
-    _power(axes, power[nearest].T, scale, extent)
+    draw_power_map(axes, scale, scale.decibels(power[nearest].T), extent)
+    scale_bar(axes, scale)
     label_axes(
         axes, f"Micro-Doppler by STFT over chirps, {near_m:.2f} to {far_m:.2f} m, clutter removed", "time (s)",
         "radial velocity (m/s), away +",
@@ -127,17 +129,9 @@ def _slow_doppler(
     shown = np.abs(velocity_mps) <= reach
     edges = velocity_mps[shown]
     extent = 1e3 * float(edges[0]), 1e3 * float(edges[-1]), float(range_m[0]), float(range_m[-1])
-    _power(axes, power[:, shown], scale, extent)
+    draw_power_map(axes, scale, scale.decibels(power[:, shown]), extent)
+    scale_bar(axes, scale)
     label_axes(axes, "Doppler over frames, mean removed", "radial velocity (mm/s), away +", "range (m)")
-
-
-def _power(axes: "Axes", power: np.ndarray, scale: PowerScale, extent: tuple[float, float, float, float]) -> None:
-    """A map with its colour bar."""
-    image = axes.imshow(
-        scale.decibels(power), origin="lower", aspect="auto", cmap=POWER_MAP, vmin=scale.low_db, vmax=scale.high_db,
-        interpolation="nearest", extent=extent,
-    )  # fmt: skip
-    colour_bar(axes, image, scale.unit, mark=None if scale.noise_db is None else (scale.noise_db, "noise"))
 
 
 def _spectrum(displacement_m: np.ndarray, period_s: float) -> tuple[np.ndarray, np.ndarray]:
