@@ -34,8 +34,9 @@ small{{color:#5b6168}} img{{max-width:100%}}</style></head>
 along range, their points from above, and effect sizes of the features">
 <h2>What gives B away</h2>
 <p>Effect size: difference of the medians over the spread of the frames and the tolerance of the feature, with the
-95 % interval of a bootstrap. Coloured: the whole interval lies beyond 1.</p>
-<table><tr><th>feature</th><th>effect size</th><th>A</th><th>B</th><th>told apart</th><th>distance</th></tr>
+95 % interval of a bootstrap. Coloured: the whole interval lies beyond 1. AUC: area under the ROC
+curve of this feature alone, over frames; 50 % where A and B are alike.</p>
+<table><tr><th>feature</th><th>effect size</th><th>A</th><th>B</th><th>AUC</th><th>distance</th></tr>
 {rows}</table>
 <h2>What one side or both do not show</h2>
 <table><tr><th>feature</th><th>A</th><th>B</th></tr>{hidden}</table>
