@@ -17,7 +17,7 @@ import numpy as np
 
 from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.core.records import AdcCube, PoseSequence, RadarCube
 from mmweaver.core.skeleton import joint
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.dsp.cube import radar_cube, remove_static
@@ -158,9 +158,8 @@ def walker(config: RadarConfig, seed: int) -> AdcCube:
     return Simulator(room, config, propagation=AS_PUBLISHED).run(from_middle, num_frames=1, seed=seed).adc
 
 
-def breather(config: RadarConfig, seed: int) -> AdcCube:
-    """A person who stands and only breathes, placed as the recorded one of `recorded_breath`."""
-    frames = config.num_loops
+def breathing_pose(seed: int, frames: int) -> tuple[PoseSequence, float]:
+    """Somebody who stands with the chest 0.33 m ahead of the radar, facing it, and where the floor is (z, m)."""
     standing = pose_of("waving", seconds=1.0, seed=seed)  # it begins in a stance
     joints_m = standing.joints_m[:1] - standing.joints_m[:1, :1] * np.array([1.0, 1.0, 0.0])
     floor_m = float(joints_m[..., 2].min()) - 0.04
@@ -171,9 +170,15 @@ def breather(config: RadarConfig, seed: int) -> AdcCube:
     turned = joints_m @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     place = turned + np.array([0.0, CHEST_M + PELVIS_BEHIND_CHEST_M, -chest_m])
     time_s = np.array([0.0, 0.5, 1.0]) * frames * BGT60.frame_period_s
-    pose = replace(standing, time_s=time_s, joints_m=np.repeat(place, 3, axis=0))
-    room = empty_room(floor_z_m=floor_m - chest_m, wall_y_m=None)
-    return slow_frame(Simulator(room, BGT60, propagation=AS_PUBLISHED).run(pose, num_frames=frames, seed=seed).adc)
+    return replace(standing, time_s=time_s, joints_m=np.repeat(place, 3, axis=0)), floor_m - chest_m
+
+
+def breather(config: RadarConfig, seed: int) -> AdcCube:
+    """A person who stands and only breathes, placed as the recorded one of `recorded_breath`."""
+    pose, floor_z_m = breathing_pose(seed, config.num_loops)
+    room = empty_room(floor_z_m=floor_z_m, wall_y_m=None)
+    made = Simulator(room, BGT60, propagation=AS_PUBLISHED).run(pose, num_frames=config.num_loops, seed=seed)
+    return slow_frame(made.adc)
 
 
 def rows(

@@ -424,8 +424,8 @@ HALO_ROWS = (
 ROOMS_WITHIN = MetricTable(
     sources=("board_left_out/physics_rooms",),
     columns=(
-        ("row", "{label}"), ("physics", "{method}"), ("median of six rooms", "{metric:number}"),
-        ("rooms within what was recorded", "{metric.within}"),
+        ("row", "{label}"), ("physics", "{method}"), ("median of rooms", "{metric:number}"),
+        ("rooms within what was recorded", "{metric.within} of {metric.of}"),
     ),
     lines=HALO_ROWS,
 )  # fmt: skip

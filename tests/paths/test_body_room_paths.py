@@ -22,6 +22,7 @@ from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, plane, scene_of, standing_person
 
 PERSON = standing_person((0.2, 2.0, -1.1))
+SIONNAS = Propagation(fine_roughness=False)
 EDGES_M = np.arange(2.4, 4.81, 0.4)
 # Body and rough walls alone, diffuse reflection of depth 2 in Sionna RT 2.2.0 (1e6 samples, antennas of TR 38.901,
 # concrete with S = 0.35 and a body with S = 0.9, mean of two seeds): power in these ranges over that of the body, dB.
@@ -59,7 +60,7 @@ def halo_db(realizations: int = 8) -> np.ndarray:
     wide = replace(AWR1843, azimuth_beamwidth_deg=65.0, elevation_beamwidth_deg=65.0)
     shares = []
     for seed in range(realizations):
-        simulator = Simulator(concrete_box(), wide, IDEAL, micro_seed=seed)
+        simulator = Simulator(concrete_box(), wide, IDEAL, micro_seed=seed, propagation=SIONNAS)
         (paths,) = body_paths(simulator, replace(PERSON, subject=seed)).paths(0)
         over_room = of_kind(paths, Interaction.BODY_ROOM)
         in_ranges, _ = np.histogram(over_room.length_m.numpy() / 2, EDGES_M, weights=power(over_room))

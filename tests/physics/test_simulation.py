@@ -20,9 +20,11 @@ from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.paths.skin_scattering import LAMBERT
+from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
 
 SYNTHESIS = AdcSynthesis(AWR1843)
+SMOOTH = Propagation(fine_roughness=False)
 
 
 def at_rest(*places: tuple[float, float, float]) -> ApparentPoint:
@@ -145,7 +147,7 @@ def test_one_wall_is_the_closed_form_image():
     material = MATERIALS["plasterboard"]
     gamma = reflection(material, np.ones(1), AWR1843.centre_frequency_hz)[0] * np.sqrt(1 - material.scattering**2)
     assert path.echoes.at(AWR1843.centre_frequency_hz) == pytest.approx(gamma.conj(), rel=1e-3)
-    room = Simulator(scene_of((wall,)), AWR1843, IDEAL).room
+    room = Simulator(scene_of((wall,)), AWR1843, IDEAL, propagation=SMOOTH).room
     echoes = room.paths.of_kind(Interaction.SPECULAR)
     turned = np.exp(2j * np.pi * (echoes.length_m - echoes.length_m[0]).numpy()[:, 0, 0] / AWR1843.wavelength_m)
     total = (echoes.amplitude.numpy() * turned).sum()
@@ -160,7 +162,8 @@ def test_a_wall_reflects_as_the_exact_slab_at_every_frequency(name: str):
     """Samples and cube of a wall straight ahead against the slab's own coefficient at each sample's frequency."""
     wall = back_wall(y_m=2.0, material=name)
     synthesis, material = AdcSynthesis(AWR1843), MATERIALS[name]
-    paths = Simulator(scene_of((wall,)), AWR1843, IDEAL).room.paths.of_kind(Interaction.SPECULAR)
+    room = Simulator(scene_of((wall,)), AWR1843, IDEAL, propagation=SMOOTH).room
+    paths = room.paths.of_kind(Interaction.SPECULAR)
     got = synthesis.static(paths)
     since_s = (np.arange(AWR1843.num_samples) - AWR1843.num_samples / 2) / AWR1843.sample_rate_hz
     frequency_hz = AWR1843.centre_frequency_hz + AWR1843.chirp_slope_hz_per_s * since_s

@@ -27,6 +27,8 @@ CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations of 
 LEAKAGE_OVER_NOISE_DB = (33.0, 41.0)  # of a chirp's range bin; with the skirt 2 dB more
 LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
 SKIRT_END_M = (0.5, 1.5)  # where it has fallen to the noise of a frame's cell
+# of real samples (one board), with the converter's offset
+REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M = (50.0, 58.0), (0.15, 0.3)
 ELEVATION_PHASE_DEG = (4.0, 12.0)
 RANGE_BIAS_M = (0.0, 0.10)
 FIRST_CHIRP_PERCENT, FIRST_CHIRP_MRAD = (0.3, 0.7), (1.0, 3.0)
@@ -83,15 +85,19 @@ def typical_board(config: RadarConfig, number: int) -> Board:
     gain_db = rng.normal(0, CHANNEL_GAIN_DB, (tx, 1)) + rng.normal(0, CHANNEL_GAIN_DB, (1, rx))
     phase_deg = between(CHANNEL_PHASE_DEG) * (rng.normal(size=(tx, 1)) + rng.normal(size=(1, rx)))
     sign = 1 if rng.random() < 0.5 else -1
-    leakage = _leakage(config, rng, between(LEAKAGE_OVER_NOISE_DB), between(SKIRT_END_M))
+    starts = float(config.complex_samples)  # a recording of real samples (one board) shows no first chirp apart
+    level_db, end_m = LEAKAGE_OVER_NOISE_DB, SKIRT_END_M
+    if not config.complex_samples:
+        level_db, end_m = REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M
+    leakage = _leakage(config, rng, between(level_db), between(end_m))
     return Board(
         name=f"typical:{number}", made_from="the spread of recorded boards, docs/board.md",
         if_share=if_share, if_gain_db=if_gain_db, if_phase_deg=np.zeros(len(if_share)),
         channel_gain_db=gain_db, channel_phase_deg=phase_deg,
         leakage_range_m=leakage[0], leakage_level_db=leakage[1], leakage_phase_deg=leakage[2],
         elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG), range_bias_m=between(RANGE_BIAS_M),
-        first_chirp_amplitude_percent=between(FIRST_CHIRP_PERCENT),
-        first_chirp_phase_mrad=between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
+        first_chirp_amplitude_percent=starts * between(FIRST_CHIRP_PERCENT),
+        first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
         element_spacing_m=_spacing_m(config),
     )  # fmt: skip
 

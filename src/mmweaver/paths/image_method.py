@@ -36,6 +36,7 @@ class SpecularReflector:
 
     plane: Plane
     offset_m: float  # normal . x on the face
+    is_rough: bool = False  # whether its fine roughness scatters
 
     def side(self, points_m: np.ndarray) -> Values:
         """Signed distance (...,), positive on the free side."""
@@ -69,14 +70,19 @@ class SpecularReflector:
 
     def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
         """Specular reflection coefficient: the slab's, less what roughness scatters."""
-        smooth = np.sqrt(1 - self.material.scattering**2)
+        smooth = self._smooth(cos_incidence, frequency_hz)
         return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation)
 
     def echoes(self, cos_incidence: Values, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
         """The same over a radar's band, in the phases of its beat: the echoes of the slab's two surfaces."""
-        smooth = np.sqrt(1 - self.material.scattering**2)
+        smooth = self._smooth(cos_incidence, frequency_hz)
         slab = slab_echoes(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation, most=most)
         return SlabEchoes(smooth * slab.coefficient, slab.longer_m)
+
+    def _smooth(self, cos_incidence: Values, frequency_hz: float) -> Values:
+        """Share of the reflected amplitude that is not scattered."""
+        smooth = np.sqrt(1 - self.material.scattering**2)
+        return smooth * np.sqrt(1 - self.material.fine_loss(cos_incidence, frequency_hz)) if self.is_rough else smooth
 
     @property
     def material(self) -> Material:
@@ -88,11 +94,11 @@ class SpecularReflector:
         return "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
 
 
-def specular_reflectors(planes: tuple[Plane, ...]) -> list[SpecularReflector]:
-    """The largest planes that face the radar."""
+def specular_reflectors(planes: tuple[Plane, ...], *, rough: bool = False) -> list[SpecularReflector]:
+    """The largest planes that face the radar; `rough`: whether their fine roughness scatters."""
     facing = []
     for plane in planes:
-        face = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
+        face = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m), is_rough=rough)
         if face.side(np.zeros(3)) > 0.02:
             facing.append(face)
     facing.sort(key=lambda face: -face.plane.half_size_m[0] * face.plane.half_size_m[1])

@@ -4,7 +4,7 @@ Reference: ITU-R P.2040-3, table 3 (permittivity, equation 28) and equations 31,
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,15 +26,28 @@ class Material:
     d: float
     thickness_m: float
     scattering: float  # share of the reflected amplitude that is diffuse (S of the effective-roughness model)
+    roughness_m: float = 0.0  # rms height of what is finer than a wavelength
+
+    def fine_loss(self, cos_incidence: Values, frequency_hz: float) -> Values:
+        """Share of the specular power that fine roughness scatters.
+
+        Reference: Ament, "Toward a theory of reflection by a rough surface", 1953.
+        """
+        turn = 4 * np.pi * self.roughness_m * frequency_hz / SPEED_OF_LIGHT_MPS * np.asarray(cos_incidence)
+        return 1 - np.exp(-(turn**2))
 
 
+PLASTERED = ("concrete", "brick", "plasterboard", "ceiling_board")
+PLASTER_M = (
+    0.15e-3  # ingrain wallpaper 0.13, concrete plaster 0.15 mm (from memory of Piesiewicz et al., IEEE TAP, 2007)
+)
 # Thickness and scattering are choices of this project, not of the standard. P.2040 gives brick up to 40 GHz, marble
 # up to 60, plywood up to 40: their laws are carried on to 77. Fabric (upholstery) is not in the standard: foam and
 # cloth, after wood with a lower density.
 MATERIALS: Registry[Material] = Registry(
     "material",
     [
-        (m.name, m)
+        (m.name, replace(m, roughness_m=PLASTER_M) if m.name in PLASTERED else m)
         for m in (
             Material(name="concrete", a=5.24, b=0.0, c=0.0462, d=0.7822, thickness_m=0.20, scattering=0.35),
             Material(name="brick", a=3.91, b=0.0, c=0.0238, d=0.16, thickness_m=0.12, scattering=0.45),

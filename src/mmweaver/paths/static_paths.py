@@ -37,12 +37,15 @@ class Propagation:
     slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
     straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
     through_walls: bool = True  # whether what lies behind a thin wall returns through it
+    fine_roughness: bool = True  # whether plaster, concrete and brick scatter by their fine roughness, too
 
 
 # What the network is given of a room: of the orders that it has learned.
-FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False)
+FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False, fine_roughness=False)
 # What the network has learned from, and what studies published before there was a second order were computed with.
-AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1, straight_edges=False, through_walls=False)
+AS_PUBLISHED = Propagation(
+    bounces=1, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,7 +131,8 @@ class RayTracedRoom(PreparedRoom):
     ):  # fmt: skip
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
-        self.config, self.reflectors = config, specular_reflectors(scene.planes)
+        self.config = config
+        self.reflectors = specular_reflectors(scene.planes, rough=self.propagation.fine_roughness)
         paths = StaticPaths.cat([*self._diffuse(scene), self._specular(), self._edges(scene)])
         super().__init__(config, self.reflectors, paths, self.propagation)
         if self.propagation.bounces > 1:
@@ -209,13 +213,14 @@ class RayTracedRoom(PreparedRoom):
         )
 
     def _diffuse_share(self, scene: Scene, struck: "_Struck") -> np.ndarray:
-        """|S Gamma|^2 of each patch (effective roughness)."""
+        """Power of each patch that is not reflected as by a mirror: |S Gamma|^2 (effective roughness), or more."""
         share = np.zeros(len(struck.cos))
         for index, of, polarisation in struck.kinds(len(scene.material_names)):
             material = MATERIALS[scene.material_names[index]]
-            share[of] = material.scattering**2 * mean_reflectivity(
-                material, struck.cos[of], self._frequencies_hz, polarisation
-            )
+            part = material.scattering**2
+            if self.propagation.fine_roughness:
+                part = part + (1 - part) * material.fine_loss(struck.cos[of], self.config.centre_frequency_hz)
+            share[of] = part * mean_reflectivity(material, struck.cos[of], self._frequencies_hz, polarisation)
         return share
 
     def _specular(self) -> StaticPaths:

@@ -13,11 +13,12 @@ from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import scattered_paths
 
-# Received power a metre of range is the same from 1 to 6 m in the recording: as of so many square metres at 2 m.
+# Received power a metre of range is the same from 1 to 6 m in the recording, and 18 dB less nearer: radars have some
+# free space before them. As of so many square metres at 2 m.
 SQUARE_METRES_A_METRE = 1.5e-4
 AT_M = 2.0
 FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
-NEAREST_M = 0.5
+NEAREST_M = 1.0
 PATCHES_A_METRE = 300
 SHAPE = 0.5  # of the gamma distribution; smaller is spikier
 AZIMUTH_RAD, ELEVATION_RAD = np.radians(62.0), np.radians(40.0)
