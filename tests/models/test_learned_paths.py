@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843, HUPR
+from mmweaver.core.presets import AWR1843, HUPR, IWR6843_ISK
 from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
@@ -55,6 +55,19 @@ def test_twenty_frames_are_at_most_10018_numbers(room: LearnedRoom):
     pose = standing_person((0.0, 2.2, -1.2), seconds=2.1)
     field = room.field([FrameMotion.of(pose, AWR1843, 20)])
     assert field.num_values <= 10_018
+
+
+def test_a_field_of_long_frames_is_their_signal(scene: Scene):
+    """Three segments a frame fade into each other; the field is the cube but for noise."""
+    room = LearnedRoom(WeaverNetwork().eval(), scene, IWR6843_ISK)
+    assert len(room.renderer.clock.segments) > 1
+    motion = FrameMotion.of(standing_person((0.3, 2.2, -1.2), (0.0, -0.5, 0.0)), IWR6843_ISK, 2)
+    field = room.field([motion])
+    wanted = room.renderer.moving(room.paths([motion]).moving)
+    room.renderer.add_static(wanted, room.layer)
+    error = np.abs(field.native() - wanted.numpy()) ** 2
+    assert 10 * np.log10(error.sum() / (np.abs(wanted.numpy()) ** 2).sum()) < -30
+    assert field._cell_noise() * field.peak**2 == pytest.approx(room.noise_power, rel=1e-6)
 
 
 def test_a_gliding_body_turns_the_phase_as_its_doppler_says(room: LearnedRoom):

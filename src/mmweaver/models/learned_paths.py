@@ -235,8 +235,13 @@ class LearnedRoom:
         return replace(paths, departure=moved(paths.departure), arrival=moved(paths.arrival))
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
-        """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion."""
+        """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion.
+
+        Frames of several segments are fitted: their paths fade into each other, which a point of a whole frame does not.
+        """
         paths = self.paths(motions)
+        if len(self.renderer.clock.segments) > 1:
+            return self._fitted_field(paths)
         with torch.inference_mode():
             window = FitWindow.of(self.config, len(paths.occluded), 0)
             points = signal_points(paths.moving, self.renderer.clock, window.response)
@@ -245,6 +250,15 @@ class LearnedRoom:
                 calibration=torch.ones(self.config.num_antennas, dtype=torch.complex64), noise_power=self.noise_power,
             )  # fmt: skip
         return ScattererField(layers, window, CubeGrid.of(self.config, len(paths.occluded)), 1.0, 1.0)
+
+    def _fitted_field(self, paths: ScenePaths) -> ScattererField:
+        with torch.inference_mode():
+            values = self.renderer.moving(paths.moving)
+            self.renderer.add_static(values, self.layer)
+        grid = CubeGrid.of(self.config, len(paths.occluded))
+        field = ScattererField.fit(RadarCube(values=values.numpy(), grid=grid, config=self.config, scale=1.0))
+        field.layers = replace(field.layers, noise_power=self.noise_power / field.peak**2)
+        return field
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
         """The signal of everybody, what they occlude of the room taken away, and the receiver's noise.
