@@ -237,7 +237,7 @@ class LearnedRoom:
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
         """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion.
 
-        Frames of several segments are fitted: their paths fade into each other, which a point of a whole frame does not.
+        Frames of several segments are fitted: their paths fade into each other, which points of whole frames do not.
         """
         paths = self.paths(motions)
         if len(self.renderer.clock.segments) > 1:
