@@ -1,11 +1,20 @@
 """How a seat of the scene is sat on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.seating import Sitting, centred_to_lie, random_subset, usable_seats, usual_variation
+from mmweaver.motion.planning.seating import (
+    Sitting,
+    centred_to_lie,
+    random_subset,
+    turned,
+    usable_seats,
+    usual_variation,
+)
 from tests.motion.rooms import WINDOW_M, room, seat
 
 
@@ -53,3 +62,31 @@ def test_who_lies_down_is_in_the_middle_of_the_couch():
         head, toes = place.seat_m[0] + 0.6, place.seat_m[0] - 0.87
         assert head + toes == pytest.approx(0.0, abs=0.02)
         assert place.feet_m[0] == pytest.approx(place.seat_m[0])
+
+
+def test_knees_clear_the_edge_of_a_deep_seat_and_a_chair_is_sat_on_in_the_middle():
+    body = SkeletonProportions(1.6)
+
+    def on(depth_m: float) -> Sitting:
+        scene = room(seats=(replace(seat(), size_m=(0.6, depth_m)),))
+        (sitting,) = usable_seats(FloorMap(scene, WINDOW_M, 1.6), body)
+        return sitting
+
+    middle_m = seat().position_m[:2]
+    chair, bed = on(0.45), on(0.9)
+    assert chair.seat_m == pytest.approx(middle_m)
+    ahead_m = float(np.hypot(*(bed.seat_m - middle_m)))
+    assert 0.1 < ahead_m < 0.45 - 0.12 + 1e-9
+    assert bed.knees_m >= bed.edge_m + 0.05 - 1e-9
+    assert bed.feet_m - bed.seat_m == pytest.approx(chair.feet_m - chair.seat_m)
+
+
+def test_who_turns_on_a_seat_moves_ahead_past_its_corner():
+    square = Sitting(
+        feet_m=np.array([0.0, 1.6]), facing_rad=-np.pi / 2, height_m=0.45, seat_m=np.array([0.0, 2.0]),
+        width_m=0.6, depth_m=0.6, edge_m=0.3, knees_m=0.36,
+    )  # fmt: skip
+    aslant = turned(square, 0.6)
+    assert square.with_clear_knees() is square
+    assert aslant.knees_m >= aslant.edge_m + 0.05 - 1e-9
+    assert np.hypot(*(aslant.seat_m - square.seat_m)) > 0.05

@@ -28,6 +28,7 @@ _SMALL = words_in(
 _CONNECTIVES = words_in(", . ; : and then while before after until")
 _LINKS = _CONNECTIVES | words_in("afterwards next finally")
 _UNDERFOOT = "walk jog sidestep limp stagger crawl leap stumble"
+_ON_FEET = words_in(_UNDERFOOT)
 _LIFTED = "raise raise_hold hands_up arm_extension"
 
 # (words, activities that show what the words say): what is done with a part of the body, or which way.
@@ -76,9 +77,8 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
     ),
     (
         "forward forwards front ahead",
-        f"""
+        """
         kick punch push throw reach lunge bend bow fall point push_hand golf carry open_door knock wipe sweep vacuum
-        {_UNDERFOOT}
         """,
     ),
     ("high higher", f"kick stretch crouch jumping_jacks {_LIFTED}"),
@@ -90,7 +90,12 @@ _SHOWN_BY: dict[str, frozenset[str]] = {word: words_in(keys) for words, keys in 
 _ALSO: dict[str, Callable[[Step], bool]] = {
     **dict.fromkeys(
         ("forward", "forwards", "front", "ahead"),
-        lambda step: step.direction in ("forwards", "towards") or step.facing == "towards" or step.lower == "turn",
+        lambda step: (
+            step.direction in ("forwards", "towards")
+            or step.facing == "towards"
+            or step.lower == "turn"
+            or (step.lower in _ON_FEET and step.direction not in ("left", "right", "backwards", "back"))
+        ),
     ),
     **dict.fromkeys(("diagonal", "diagonally", "sideways", "laterally"), goes_aside),
     "face": lambda step: bool(step.facing) or step.lower == "turn",

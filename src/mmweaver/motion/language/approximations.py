@@ -23,6 +23,7 @@ class Approximation:
     instead: str
     how: str
     always: bool = False  # also where the sentence would be understood, but as something else
+    in_part: bool = False  # only where a sentence may be read in part
 
 
 def _verb(stem: str, end: str = "") -> str:
@@ -32,6 +33,11 @@ def _verb(stem: str, end: str = "") -> str:
 
 _THING = r"(?: +(?!and\b|then\b|while\b|with\b|before\b|after\b|,)[a-z'-]+){0,4}"
 _AS = "is shown as"
+
+_NOT_DONE = (  # beside something that is done
+    r"(?<=[a-z]),? without [a-z]+ing\b[^,.;]*?(?=$|[,.;]| and\b| then\b)|,? so (?:that )?(?:no ?one|nobody) [^,.;]*"
+    r"|(?<=[a-z]),? but (?:does|do|did|is|was)(?: not|n't) [^,.;]*?(?=$|[,.;]| and\b| then\b)"
+)
 
 APPROXIMATIONS: tuple[Approximation, ...] = (
     *(Approximation(*row, always=True) for row in INSTEAD_OF_ANOTHER),
@@ -81,6 +87,8 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
     *(Approximation(pattern, instead, how) for pattern, instead, how in (
         (rf"\b(?:performs?|performing|makes?|making|doing|does|draws?) (?:an? |some )?(?:circling|circular|rotating|turning|round|circle) (?:motion|movement|gesture)s? (?:with|using) {_OWN}({_SIDE} )?(?:hands?|arms?)\b",
          r"stirs the soup with the \1 hand", "circling hands are shown as stirring"),
+        (r"\b(?:jump|leap|hop)(?:s|ing|ping|ed|ped)? (?:up )?over (?!(?:the |an? )?(?:chair|table|sofa|bed)\b)(?:an? |the |some |it\b|something\b)?(?:[a-z]+(?= *(?:$|[,.;]| and| then)))?(?:[a-z]+ [a-z]+(?= *(?:$|[,.;]| and| then)))?",
+         "jumps forwards", "is shown as a jump forwards; what is jumped over is not shown"),
         (r"\b(?:interact|work|play|fiddl|operat|manipulat|handl)(?:s|es|ing) (?:with |on |at )?(?:an? |some |the )?(?:[a-z]+ )?(?:something|objects?|things?|device|machine)\b", "reaches for something twice", f"{_AS} reaching out with the hands"),
         (r"\b(?:makes?|does|doing|performs?|performing|turns?|dances?) (?:an? |some |two )?(?:[a-z]+ )?(?:pirouettes?|twirls?)\b|\b(?:pirouettes|pirouetting|twirls|twirling)\b", "turns 360 degrees", "is shown as a turn"),
         (r"\b(?:sits?|sitting)(?: down)? on (?:the |an? )?(?:floor|ground)\b|\bsits? down cross-?legged\b", "kneels down", "sitting on the floor is shown as kneeling"),
@@ -173,10 +181,10 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:beg|pray)(?:s|ging|ing)?\b|\b(?:puts?|putting) (?:the |his |her )?palms together\b|\bfolds? (?:the |his |her )?hands\b",
          "claps once", "hands put together are shown as a clap"),
         (r"\bhug(?:s|ging)?\b" + _THING + r"|\bembrac(?:es|ing)\b" + _THING, "stretches both arms forwards", f"{_AS} arms held out"),
-        (r"\bcurts(?:ies|ys|eys)\b", "squats once", f"{_AS} a squat"),
+        (r"\b(?:(?:do|mak|perform)(?:es|s|ing)? an? (?:[a-z]+ )?)?curt(?:s|se)(?:ies|ys?|eys?)\b", "squats once", f"{_AS} a squat"),
         (rf"\b(?:cover(?:s|ing)?|hid(?:es|ing)) {_OWN}(?:face|eyes|ears)(?: with (?:both|his|her) hands)?\b", "phones",
          "hands at the head are shown as phoning"),
-        (rf"\b(?:hold(?:s|ing)?|clutch(?:es|ing)?|touch(?:es|ing)?) {_OWN}(?:chest|heart|stomach|belly|shoulder)\b(?: in pain| because of [a-z]+)?",
+        (rf"\b(?:hold(?:s|ing)?|clutch(?:es|ing)?|touch(?:es|ing)?|scratch(?:es|ed|ing)?|rub(?:s|bed|bing)?|massag(?:es|ing)) {_OWN}(?:{_SIDE} )?(?:chest|heart|stomach|belly|shoulder)\b(?: in pain| because of [a-z]+)?(?: with {_OWN}(?:{_SIDE} )?(?:hand|arm))?",
          "crosses the arms", "hands at the chest are shown as crossed arms"),
         (rf"\bput(?:s|ting)? {_OWN}hands? (?:in|into) {_OWN}pockets?\b|\bwith {_OWN}hands in {_OWN}pockets?\b", "",
          "hands in the pockets are not shown"),
@@ -202,7 +210,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r",? (?:bent at the elbows?|elbows (?:are )?bent|fingers? (?:spread|stretched)|palms? (?:up|down|forward))(?=$|[,.]| and| then)", "", "how the arm is bent is not shown"),
         (r"\bpass(?:es|ing) it (?:over )?(?:to )*the (?:left|right)(?: hand)?\b|\bpass(?:es|ing) it from (?:one hand|the (?:left|right)(?: hand)?) to [a-z ]+?(?=$|[,.]| and)", "", "that it changes hands is not shown"),
         (r"\b(?:in an? )?(?:weird|strange|funny|odd|silly) (?:form|way|manner)\b|\bas if (?:he |she |it )?(?:carr(?:ies|ying)|is carrying|lift(?:s|ing)) [a-z ]+?(?=$|[,.])", "", "how odd it looks is not shown"),
-        (r"\bwhile (?:bowing|bonding|bending)(?: forwards?| (?:his|her|their|its) backs?)?\b|\b(?:slightly |a bit )?slouched\b|\bwith (?:his|her) head (?:lowered|down)\b", "", "the bent back is not shown"),
+        (r"\bwhile (?:bowing|bonding|bending)(?: forwards?| over| (?:his|her|their|its) backs?)?(?= *(?:$|[,.;<]|and\b|then\b|as\b))|\b(?:slightly |a bit )?slouched\b|\bwith (?:his|her) head (?:lowered|down)\b", "", "the bent back is not shown"),
         (r"\b(?:a |the )?(?:little |small )?(?:inclination|higher ground)\b", "", "the slope is not shown"),
         (r"\bwalk(?:s|ing)? on the tips of (?:his|her|its|the) toes\b", "walks slowly", "tiptoes are not shown"),
         (r"\b(?:is )?(?:doing|does|performs?|performing|makes?|dances|dancing) (?:\d+ times )?(?:the |an? )?(?:basic )?(?:steps? of (?:the |an? )?)?(?:slow[- ]?|wiener |viennese )?(?:waltz|wal[sz]er|cha[- ]cha(?:[- ]cha)?|tango|salsa)(?: ballroom)?(?: dance| move| steps?)?\b", "dances", "the kind of dance is not shown"),
@@ -262,7 +270,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\bmov(?:es|ing) (?:his|her|the|its|both) hands together(?: in front of (?:the|his|her) (?:chest|body))?\b", "claps once", "hands put together are shown as a clap"),
         (r"\b(?:rais(?:es|ing)|lift(?:s|ing)|hold(?:s|ing)|keep(?:s|ing)|has) (?:up )?(?:his|her|their|its|both|the) (?:fists?|hands|arms) (?:up )?(?:in front of (?:his|her|its) (?:upper body|body|face|head|chest)|for defen[sc]e|in (?:a )?defen[sc]e position|like a boxer)",
          "hands_up", "the guard is shown as hands held up"),
-        (r"\b(?:is )?in (?:an? )?(?:fighting|boxing|defen[sc]e|defensive|combat) (?:position|stance|pose|posture)\b", "hands_up", "the guard is shown as hands held up"),
+        (r"\b(?:is )?in (?:an? )?(?:fighting|fighter'?s?|boxing|boxer'?s?|defen[sc]e|defensive|combat|guard(?:ed)?) (?:position|stance|pose|posture)\b", "hands_up", "the guard is shown as hands held up"),
         (r"\bhold(?:s|ing)? (?:his|her|their|its|both) (?:hands?|arms?) (?:in front of|before) (?:them|him|her|it|himself|herself|the body|his body)\b", "stretches both arms forwards", f"{_AS} arms held out"),
         (rf"\b(?:mov|wav|flapp?)(?:es|ing|s) {_OWN}(?:arms?|wings?|hands?)(?: up and down)? like (?:an? )?(?:wings?|chicken|bird|eagle|butterfly)\b|\b(?:act(?:s|ing)|mov(?:es|ing)|impersonat(?:es|ing)|imitat(?:es|ing)) (?:like )?(?:an? )?(?:chicken|bird|duck)\b(?: flapping (?:its|his) wings)?|\bflap(?:s|ping) (?:its|his|her|their) (?:arms|wings)\b",
          "circles the arms", f"{_AS} circling the arms"),
@@ -312,7 +320,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
          r"|\b(?:performs?|does) (?:an? )?(?:tennis|baseball|badminton) (?:serve|swing|stroke|smash|hit|pitch)\b|\btennis (?:serve|smash|swing)\b",
          "plays golf", "a swing with racket or bat is shown as a golf swing"),
         (r"\bplay(?:s|ing)? (?:some )?(?:soccer|football)\b", "kicks a ball", f"{_AS} kicking a ball"),
-        (r"\bplay(?:s|ing)? (?:some )?(?:basketball|handball|volleyball|dodgeball|bowling)\b|\bshoots? (?:at|into) the basket\b|\bbowls\b|"
+        (r"\bplay(?:s|ing)? (?:some )?(?:basketball|handball|volleyball|dodgeball|bowling)\b|\bshoots? (?:at|into) the basket\b|\bbowl(?:s|ing)\b|"
          r"\bjuggl(?:es|ing)\b" + _THING + r"|\bplay(?:s|ing)? with (?:a|the) ball\b|\btoss(?:es|ing)? a coin\b", "throws a ball", f"{_AS} throwing a ball"),
         (r"\bcatch(?:es|ing)? (?:an? |the )?(?:ball|something|object)\b", "reaches for something", f"{_AS} reaching out with a hand"),
         (r"\bbounc(?:es|ing) (?:a|the) ball\b|\bdribbl(?:es|ing)\b" + _THING, "knocks", "is shown as a hand beating"),
@@ -446,20 +454,31 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:lift|hold|heav)(?:s|es|ing)? (?:up )?(?:an? |the |some )?(?:[a-z-]+ ){0,2}(?:item|thing|object|weight|box|bag)\b(?: \([^)]*\))?", "picks something up", f"{_AS} picking something up"),
     )),
     *(Approximation(*row) for row in WHERE_UNKNOWN),
+    Approximation(_NOT_DONE, "", "what is not done is left out", in_part=True),
 )  # fmt: skip
 _pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
 _HELD = re.compile(r"<(\d+)>")
+_STEMS = re.compile(r"\\b\(\?:[a-z'|-]+\)\(\?:")  # patterns that begin with stems of verbs and their endings
+_OF_A_NOUN = re.compile(r"(?<!performs )(?<!does )(?<!doing )(?<!makes )\b(?:an?|the|his|her|their|its|some|of)$")
 
 
-def with_approximations(text: str, *, only_always: bool = False) -> str:
+def _is_noun(found: re.Match[str]) -> bool:
+    """Whether what looks like a verb's plain form follows an article: "in a sort of", "a cook"."""
+    plain = not re.match(r"[a-z]+(?:s|ed|ing)\b", found[0])
+    return plain and _OF_A_NOUN.search(found.string[: found.start()].rstrip()) is not None
+
+
+def with_approximations(text: str, *, only_always: bool = False, in_part: bool = False) -> str:
     """The sentence with what is known instead of what is not; a token after each replacement says which it was."""
     folded = text.lower()
     held: list[str] = []  # replacements, kept out of the text until all patterns have been tried
     for number, one in enumerate(APPROXIMATIONS):
-        if only_always and not one.always:
+        if (only_always and not one.always) or (one.in_part and not in_part):
             continue
 
         def hold(found: re.Match[str], number: int = number, one: Approximation = one) -> str:
+            if _STEMS.match(one.pattern) and _is_noun(found):
+                return found[0]
             held.append(f"{_filled(found, one.instead)} {MARK}{number}")
             return f" <{len(held) - 1}> "
 

@@ -1,5 +1,6 @@
 """From a clause to its steps: its verbs, and their direction, hand, speed, count and seat."""
 
+import re
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -39,7 +40,7 @@ from mmweaver.motion.language.places import Place, place_of
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import GAITS, LEGS, facing_of, step_of, target_of
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import Word
 
 
@@ -226,13 +227,16 @@ def _start_of(words: list[Word], before: int, at: int) -> int:
     return at
 
 
+_OF_THEM = re.compile(r"(?<!side)(?<!sides)(?<!front)(?<!ahead) of them\b")
+
+
 def _refuse(clause: Clause) -> None:
     """Raises InputError for negations, several people, animals, and movements that are not known."""
     texts = {word.text for word in clause.words}
     still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
     if texts & NEGATIONS and not still:
         raise InputError(f"{clause.text!r} says what is not done; say what the person does instead")
-    if texts & MANY or {"of", "them"} <= texts or "guys" in texts:
+    if texts & MANY or _OF_THEM.search(clause.text) or "guys" in texts:
         raise InputError(f"{clause.text!r} speaks of several people; say it of one and give --text once for each")
     if texts & NOT_HUMAN:
         raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
@@ -263,6 +267,7 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
     return word.text == "against" and "pushed" in lemmas
 
 
+_FACED = words_in("the a an to me us another other each opposite what where away")
 _IT = ("them", "it", "him", "her")
 _OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head", "legs", "leg", "knees", "body"})
 
@@ -281,6 +286,8 @@ def _verbs(words: list[Word]) -> list[int]:
         ):
             continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "move" and _moves_a_thing(words[i + 1 : i + 4]):
+            continue  # "moving the right hamd"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
         goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
@@ -291,12 +298,32 @@ def _verbs(words: list[Word]) -> list[int]:
     return found
 
 
+def _moves_a_thing(after: list[Word]) -> bool:
+    """Whether "moves" has an object, which is neither a way nor how far somebody goes."""
+    texts = [word.text for word in after]
+    if not texts or texts[0] not in (*OWN, "the", "a", "an"):
+        return False
+    return not {
+        "way",
+        "step",
+        "steps",
+        "few",
+        "little",
+        "bit",
+        "couple",
+        "room",
+        "body",
+        "position",
+        "feet",
+        "foot",
+    } & {*texts}
+
+
 def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     """'drinks a drink', 'box' as a thing, 'the hand wave': a noun after another verb of the clause."""
     word, before = words[i], words[i - 1].text if i else ""
     if word.lemma == "face":
-        put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
-        return bool(found) or put or before in OWN or before in ("the", "a")
+        return _is_the_face(words, i) or bool(found)
     if word.text == "pace":
         return before not in ("to", "they", "i", "we", "you", "")  # "at a moderate pace", "increases pace"
     if _is_adjective(words, i):
@@ -307,7 +334,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return before in ("a", "the", "this", "that")
     if word.lemma == "seat" and word.form != "past":
         return True
-    if word.lemma in ("phone", "text", "comb", "box") and before in ("a", "the", "his", "her", "their", "my"):
+    owned = before in ("a", "the", "his", "her", "their", "my")
+    if word.lemma in ("phone", "text", "comb", "box", "cook") and word.form == "base" and owned:
         return True
     if (
         word.lemma == "point"
@@ -326,11 +354,22 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
 
 
+def _is_the_face(words: list[Word], i: int) -> bool:
+    """Whether "face" is the part of the body: nothing that can be faced follows, or a hand is put to it."""
+    before, after = words[i - 1].text if i else "", words[i + 1].text if i + 1 < len(words) else ""
+    put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
+    aimed = after in _FACED or after in DIRECTIONS or after in OWN
+    return put or before in (*OWN, "the", "a", "near") or (words[i].form == "base" and not aimed)
+
+
 def _is_adjective(words: list[Word], i: int) -> bool:
     """'a clean kick', 'lowers the raised arms'."""
     word, before = words[i], words[i - 1].text if i else ""
     if word.lemma == "clean" and word.form == "base" and (before in SIZES or before in ("a", "an", "the", "very")):
         return True
+    of_a_turn = word.form == "ing" and before in ("a", "an") and len(words) > i + 2 and words[i + 2].is_activity
+    if of_a_turn and words[i + 1].text in ("left", "right", *SIZES, *SPEEDS):
+        return True  # "a sweeping right turn"
     raised = word.form == "past" and before in (*OWN, "the", "both", "with")  # "lowers their raised arms"
     arms = words[i + 1 : i + 2] and words[i + 1].text in ARMS
     if word.text == "types" and before in ("different", "of"):
@@ -347,7 +386,7 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     """Reports unknown words of a clause with a verb; one that looks like another activity is an error."""
     unknown = [word.text for word in words if not is_known(word)]
     if not has_verb:
-        parsed.unknown = unknown + [word.text for word in words if word.is_verb]
+        parsed.unknown = unknown + [word.text for word in words if word.is_verb and word.text != "face"]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):

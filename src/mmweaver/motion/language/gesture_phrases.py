@@ -81,6 +81,6 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
      " jacket_off "),
     (r"\b(?:sweep(?:s|ing)?|mop(?:s|ping)?|rak(?:es|ing)) (?:up )?(?:the )?(?:floor|room|kitchen|leaves)\b", " sweeps "),
     (r"\b(?:vacuum(?:s|ing)?|hoover(?:s|ing)?)(?: cleans?)?(?: the)?(?: floor| carpet| room| rug)?\b", " vacuums "),
-    (r"\bbreath(?:es|ing) (?:deeply|heavily|slowly|calmly|in and out)\b|\btakes? (?:a )?deep breaths?\b|\bbreath(?:es|ing)\b",
+    (r"\bbreath(?:es|ing) (?:deeply|heavily|slowly|calmly|in and out)\b|\b(?:takes?|taking|took) (?:a |some )?deep breaths?\b|\bbreath(?:es|ing)\b",
      " breathe_deeply "),
 )  # fmt: skip

@@ -75,7 +75,7 @@ def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
         if any(step.upper or step.lower != "stand" for step in shorter.steps):
             shorter.text = clause.text
             for phrase in cut:
-                shorter.approximate(f"{_shown(phrase)!r} is not shown")
+                shorter.approximate(f"{shown(phrase)!r} is not shown")
             return shorter
     if not is_first and _only_says_how(clause):
         parsed = ParsedClause(clause.link, clause.text, number=clause.number)
@@ -113,12 +113,14 @@ def _only_says_how(clause: Clause) -> bool:
     return participle or first.text in _HOW or (clause.link == "while" and not any(w.is_activity for w in clause.words))
 
 
-def _shown(words: list[Word]) -> str:
+def shown(words: list[Word]) -> str:
+    """Words as a message names them, without tokens of their own."""
     texts = [re.sub(r"^(?:arc|deg)(\d+)$", r"\1 degrees", word.text) for word in words]
     return " ".join(text for text in texts if not text.startswith((MARK, PLACE))).replace("_", " ")
 
 
-def _is_odd(word: Word) -> bool:
+def is_odd(word: Word) -> bool:
+    """Whether a word is not known, or may mean another movement."""
     return word.text in OTHER_MOVEMENT or word.text in NEGATIONS or (not is_known(word) and word.text[:1].isalpha())
 
 
@@ -128,8 +130,8 @@ def _cuts(words: list[Word]) -> Iterator[tuple[list[Word], list[list[Word]]]]:
     if verb is None:
         return
     phrases = [span for span in _phrases(words, verb) if _may_go(words[span[0] : span[1]])]
-    early = [(i, i + 1) for i in range(verb) if _is_odd(words[i]) and words[i].text not in _OPENING]
-    late = [(i, i + 1) for i in range(verb + 1, len(words)) if _is_odd(words[i]) and words[i].text.endswith("ly")]
+    early = [(i, i + 1) for i in range(verb) if is_odd(words[i]) and words[i].text not in _OPENING]
+    late = [(i, i + 1) for i in range(verb + 1, len(words)) if is_odd(words[i]) and words[i].text.endswith("ly")]
     for count in range(1, _MOST_PHRASES + 1):
         for chosen in combinations((*phrases, *late, *early), count):
             gone = {i for start, end in chosen for i in range(start, end)}
@@ -146,7 +148,7 @@ def _may_go(words: list[Word]) -> bool:
     )
     acted = words[0].text not in ("like", "as") and any(word.is_activity for word in words)
     placed = any(word.text in TARGETS or word.text in SEATS for word in words)
-    return len(words) > 1 and not (directed or acted or placed) and any(_is_odd(word) for word in words)
+    return len(words) > 1 and not (directed or acted or placed) and any(is_odd(word) for word in words)
 
 
 def _phrases(words: list[Word], verb: int) -> list[tuple[int, int]]:

@@ -37,6 +37,8 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     *SIDED_PHRASES,
     *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,
+    (r"\b(left|right)[- ]hand side\b", r"\1 side"),
+    (r"\bjump(?:s|ing)?[- ](?:n|an|and)[- ]?jacks?\b", " jumping_jack "),
     (r"\bjumping[- ]?jacks?\b|\bstar[- ]?jumps?\b|\bjump(?:s|ed)?[- ]jacks?\b", " jumping_jack "),
     (r"\bshadow[- ]box", "shadowbox"),
     (r"\bsits? (?:back )?down\b|\bsat (?:back )?down\b|\bsitting (?:back )?down\b", " sit_down "),

@@ -22,6 +22,7 @@ from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
+from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verbs import RECOVERING
@@ -32,6 +33,8 @@ MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
+# How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
+_EXACT, _LEAVING_OUT, _MISSING, _ROUGH = range(4)
 JUMPING = ("jump", "leap", "hop")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
@@ -41,7 +44,8 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
 
     What is not understood as it is, is tried in other words (`normal_forms`), then with similar movements instead of
     unknown ones (`approximations`), which the clause's record says. `in_part`: last, clauses that are not understood
-    are recorded as not done, where at least as many are understood; labelled data is parsed without.
+    are recorded as not done, where at least as many are understood, or read roughly (`rough_readings`); labelled data
+    is parsed without.
 
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
     InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
@@ -61,13 +65,14 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
         normal, similar = (with_approximations(in_normal_form(text), only_always=only) for only in (True, False))
+        partly = with_approximations(in_normal_form(text), in_part=in_part)
         attempts = (
-            (normal, False, False), (similar, False, False), (normal, True, False), (similar, True, False),
-            (similar, True, True),
+            (normal, _EXACT), (similar, _EXACT), (normal, _LEAVING_OUT), (similar, _LEAVING_OUT), (similar, _MISSING),
+            (partly, _EXACT), (partly, _ROUGH), (normal, _ROUGH),
         )  # fmt: skip
-        for other, leave_out, miss in attempts if in_part else attempts[:-1]:
+        for other, leaving in attempts if in_part else attempts[:4]:
             try:
-                return _parsed(other, given_text, leave_out=leave_out, miss=miss)
+                return _parsed(other, given_text, leaving)
             except InputError:
                 continue
         raise error from None
@@ -90,16 +95,15 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
     return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
 
 
-def _parsed(text: str, given_text: str, *, leave_out: bool = False, miss: bool = False) -> MotionPlan:
-    """The plan of one wording of a sentence; `leave_out`: without phrases that only say how, which is said; `miss`:
-    without clauses that are not understood, which are recorded as not done."""
+def _parsed(text: str, given_text: str, leaving: int = _EXACT) -> MotionPlan:
+    """The plan of one wording of a sentence; `leaving`: what of it may be left out or read roughly, which is said."""
     text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leave_out=leave_out, miss=miss)
+    parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
-    sequence = _in_sequence(parsed_clauses, one_by_one=leave_out)
+    sequence = _in_sequence(parsed_clauses, leaving)
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
@@ -112,21 +116,29 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False, miss: bool =
     room = room_of(given_text)
     if room:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
-    if leave_out and all(step.lower == "stand" and not step.upper for step in steps):
+    if leaving and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(text.strip()))
     own_words = as_given(given_text, records)
     clauses = tuple(replace(records[number], clause=own_words[number]) for number in sorted(records))
     for number, record in records.items():
-        before, now = f"of {record.clause!r}, ", f"{own_words[number]!r}: "
-        notes = [now + note.removeprefix(before) if note.startswith(before) else note for note in notes]
+        of_it = f"of {record.clause!r}, "
+        notes = [
+            _in_a_sentence(own_words[number], note.removeprefix(of_it)) if note.startswith(of_it) else note
+            for note in notes
+        ]
     return MotionPlan(
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)), clauses=clauses,
         person=described_person(given_text),
     )  # fmt: skip
 
 
+def _in_a_sentence(words: str, how: str) -> str:
+    """What became of a clause, as it is said to the user."""
+    return f"{words!r} {how}" if how.startswith(("is ", "has ")) else f"in {words!r}, {how}"
+
+
 def _parsed_clauses(
-    words: list[Word], notes: list[str], *, leave_out: bool, miss: bool
+    words: list[Word], notes: list[str], leaving: int
 ) -> tuple[list[ParsedClause], list[ParsedClause], dict[int, ClauseRecord]]:
     """The clauses that name an activity, all clauses, and a record of every clause by its number."""
     found: list[ParsedClause] = []
@@ -136,12 +148,14 @@ def _parsed_clauses(
     missed: Clause | None = None
     for clause in split_clauses(words):
         goes_on = missed is not None and says_more_of(missed, clause)
-        missed = clause if miss and (goes_on or not _is_understood(clause, found)) else None
-        if missed is not None:
+        missed = clause if leaving >= _MISSING and (goes_on or not _is_understood(clause, found)) else None
+        rough = read_roughly(deepcopy(clause)) if missed is not None and leaving == _ROUGH else None
+        if missed is not None and rough is None:
             records[clause.number] = ClauseRecord(clause.text, NOT_DONE, "no activity in it is known")
             notes.append(f"{clause.text!r} is not done: no activity in it is known")
             continue
-        parsed = parse_with_less(clause, is_first=not found) if leave_out else parse_clause(clause)
+        parsed = rough or (parse_with_less(clause, is_first=not found) if leaving else parse_clause(clause))
+        missed = None
         if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
             parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
         every_clause.append(parsed)
@@ -339,10 +353,10 @@ def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
 EXAMPLE = "a person walks towards the radar, then waves"
 
 
-def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False) -> list[Step]:
+def _in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
     """Joins clauses that happen at the same time, and puts all others one after the other.
 
-    `one_by_one`: two movements that cannot be shown at once follow each other, which is said.
+    Where phrases may be left out, two movements that cannot be shown at once follow each other, which is said.
     """
     steps: list[Step] = []
     for i, parsed in enumerate(parsed_clauses):
@@ -356,7 +370,7 @@ def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False
             except InputError:
                 steps.append(before)
                 arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
-                if not one_by_one or (steps[-1].posture != first.posture and not arms_alone):
+                if not leaving or (leaving < _ROUGH and steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
                 parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
@@ -367,10 +381,11 @@ def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
-            if form == "ing" or _can_overlay(steps[-1], step):  # "sits drinking water"
+            together = form == "ing" or _can_overlay(steps[-1], step)  # "sits drinking water"
+            if together and not (leaving == _ROUGH and not _can_be_joined(steps[-1], step)):
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"
-                if form == "past":  # "walks with the legs raised"
+                if together or form == "past":  # "walks with the legs raised"
                     parsed.lost.append(f"{steps[-1].name} and {step.name} are shown one after the other")
                 steps.append(step)
     return steps
@@ -414,6 +429,14 @@ def _joined(one: Step, other: Step) -> list[Step]:
     if more.lower == "fall" and walk.moves:  # "falls while walking"
         return [walk, more]
     return [overlay(one, other)]
+
+
+def _can_be_joined(one: Step, other: Step) -> bool:
+    try:
+        _joined(one, other)
+    except InputError:
+        return False
+    return True
 
 
 def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:

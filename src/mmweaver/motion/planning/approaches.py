@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import Scene
 from mmweaver.motion.animation.assemble import assembled_controls, solved
-from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
+from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behind_feet_m
 from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep
@@ -35,6 +35,7 @@ CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who sits down
 _NARROW_M = 0.05  # clearance between couch and table for legs that pass there
 _TURNS_RAD = (0.0, 0.3, 0.6, 0.9, 1.2, 1.4)  # how far from ahead somebody may sit
 _TURN_COST, _SHIFT_COST, _NARROW_COST = 0.4, 0.3, 0.5
+_LITTLE_M = 0.05  # how far people shift on a seat, to a side, ahead or back
 _SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # of one sitter, and between places on a couch that are tried
 _LONGEST_NARROW_M, _GATE_STEP_M = 1.2, 0.1
 _OFF_FRONT_RAD = (0.0, 0.5)  # how far from along the seat's front the narrow way may lead
@@ -43,7 +44,7 @@ _SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
 _WALK_MPS = (0.45, 1.6)
 _USUAL_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
 _DEEPEST_M, _DEEP_COST_PER_M = 0.03, 20.0  # how deep it may get into what is near a seat
-_MOST_TESTED = 12  # ways to sit on one seat that are tested closely
+_MOST_TESTED = 24  # ways to sit on one seat that are tested closely
 _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
 
 
@@ -65,7 +66,8 @@ class Approach:
         seat, facing = self.sitting.seat_m, self.sitting.facing_rad
         ahead = np.array([np.cos(facing), np.sin(facing)])
         feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
-        return replace(self, sitting=replace(self.sitting, feet_m=feet_m))
+        knees_m = knees_ahead_m(body, self.sitting.height_m)
+        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).with_clear_knees())
 
 
 def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
@@ -183,17 +185,32 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
         depth_m = obstacles.penetration_m(bodies[k], seats[k])
         if depth_m <= _DEEPEST_M:
             found.append(replace(sittings[k], cost=sittings[k].cost + _DEEP_COST_PER_M * depth_m))
-    return sorted(found, key=lambda one: one.cost)
+    kept: list[Sitting] = []
+    for one in sorted(found, key=lambda one: one.cost):
+        if not any(_is_alike(one, other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _is_alike(one: Sitting, other: Sitting) -> bool:
+    """Whether two ways to sit differ by a little shift only."""
+    apart_m = float(np.hypot(*(one.seat_m - other.seat_m)))
+    return apart_m < _SHIFT_M / 2 and abs(one.facing_rad - other.facing_rad) < 0.01
 
 
 def _sittings(seat: Sitting) -> Iterator[Sitting]:
     """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it."""
     aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
     spare_m = max(0.0, (seat.width_m - _SEAT_WIDTH_M) / 2)
-    for shift_m in np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M))):
+    along_m = np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M)))
+    places = [(float(shift_m), 0.0) for shift_m in along_m]
+    places += [(-_LITTLE_M, 0.0), (_LITTLE_M, 0.0), (0.0, -_LITTLE_M), (0.0, _LITTLE_M)]
+    for shift_m, ahead_m in places:
         moved = replace(seat, feet_m=seat.feet_m + shift_m * aside, seat_m=seat.seat_m + shift_m * aside)
+        moved = moved.moved_ahead(ahead_m).with_clear_knees()
         for turn_rad in {sign * turn for turn in _TURNS_RAD for sign in (-1.0, 1.0)}:
-            cost = _SHIFT_COST * abs(float(shift_m)) + (0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0)
+            cost = _SHIFT_COST * float(np.hypot(shift_m, ahead_m))
+            cost += 0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0
             yield replace(turned(moved, turn_rad), cost=cost)
 
 

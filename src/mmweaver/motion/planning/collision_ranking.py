@@ -28,6 +28,7 @@ _INVENTED_SEAT_M = 0.06
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
+_ENOUGH_SEATED_M = 0.02  # of attempt 2 for who sits: depths are of the seen surface, a shin in a bed's side has few
 _WORTH_M = 0.003  # estimates are no better than that: what promises less is not animated
 _SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
@@ -92,7 +93,8 @@ def least_collision(
     for attempt in (1, 2):
         # Occluded legs alone are no reason to leave the room's seats.
         cost_m = best.cost_m if attempt == 1 else best.penetration_m + best.trunk_cost_m
-        if best.is_clear or cost_m <= _ENOUGH_M[attempt]:
+        sits = attempt == 2 and bool(best.placement.seats_m)
+        if best.is_clear or cost_m <= (_ENOUGH_SEATED_M if sits else _ENOUGH_M[attempt]):
             break
         try:
             others = candidates(attempt)

@@ -26,6 +26,7 @@ from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
 MOST_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
+ENOUGH_SEATED = 14  # of more ways to sit, where the usual ones touch something
 _SMALL_M2, MOST_TRIES_WHERE_SMALL = 0.5, 40  # so little floor is soon searched
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
@@ -107,9 +108,10 @@ def place(
         **_open_choices(floor, seed, heading_rad, is_varied),
     )
     trajectories: list[Trajectory] = []
+    enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
     is_small = len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
     for tried in range(MOST_TRIES_WHERE_SMALL if is_small else MOST_TRIES):
-        if len(trajectories) >= ENOUGH or (trajectories and tried >= TRIES):
+        if len(trajectories) >= enough or (trajectories and tried >= TRIES):
             break
         try:
             trajectory = sampler.sample()

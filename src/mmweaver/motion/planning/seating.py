@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.records import Scene, Seat
-from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
+from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behind_feet_m
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
 from mmweaver.motion.planning.floor_map import FloorMap
@@ -24,6 +24,7 @@ _WIDEST_TURN_RAD = 1.4
 _BODY_WIDTH_M = 0.4  # what of a seat's width and depth the body itself takes
 _LEFT_OUT = 0.4  # share of the seats that `random_subset` leaves out
 _BACK_M, _DEEP_SEAT_M = 0.05, 0.4  # how far back one can sit, and on which depth of a seat
+_KNEE_M, _ON_SEAT_M = 0.05, 0.12  # from a seat's edge to the middle of the knees, and to the pelvis at least
 _STRAIGHT_TO_SEAT_M = 0.6  # the last part of the walk to a seat, where the seat's own edge is near
 
 
@@ -37,7 +38,21 @@ class Sitting:
     seat_m: Float[Array, "2"]
     width_m: float = 0.4
     depth_m: float = 0.4
+    edge_m: float = 0.2  # from `seat_m` ahead to the seat's edge
+    knees_m: float = 1.0  # from `seat_m` ahead to the sitter's knees
     cost: float = 0.0  # of unusual ways to sit
+
+    def moved_ahead(self, by_m: float) -> "Sitting":
+        """The same farther ahead on the seat."""
+        shift_m = by_m * np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        edge_m = self.edge_m - by_m
+        return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
+
+    def with_clear_knees(self) -> "Sitting":
+        """So far ahead that the backs of the knees are past the seat's edge, as people sit on beds and deep couches."""
+        needed_m = self.edge_m + _KNEE_M - self.knees_m
+        by_m = min(needed_m, self.edge_m - _ON_SEAT_M)
+        return self.moved_ahead(by_m) if by_m > 0 else self
 
 
 def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
@@ -109,7 +124,9 @@ def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
         seat_m=place,
         width_m=float(seat.size_m[0]),
         depth_m=float(seat.size_m[1]),
-    )
+        edge_m=float(seat.size_m[1]) / 2,
+        knees_m=knees_ahead_m(body, height),
+    ).with_clear_knees()
 
 
 def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
@@ -120,7 +137,8 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     reach = sitting.feet_m - sitting.seat_m
     if kind == 3:
         back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
-        return replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
+        further = replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
+        return replace(further, edge_m=sitting.edge_m + float(np.hypot(*back))).with_clear_knees()
     return turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
 
 
@@ -132,6 +150,7 @@ def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     shift = rng.uniform(-1, 1, 2) * spare
     moved = shift[0] * ahead + shift[1] * aside
     sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
+    sitting = replace(sitting, edge_m=sitting.edge_m - float(shift[0])).with_clear_knees()
     return turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
@@ -145,12 +164,14 @@ def turned(sitting: Sitting, turn: float) -> Sitting:
     """The same seat, rotated about the seat by an angle in radians, the feet with it."""
     reach = sitting.feet_m - sitting.seat_m
     across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    corner_m = min(sitting.width_m, sitting.depth_m) / 2
     return replace(
         sitting,
         feet_m=sitting.seat_m + across @ reach,
         facing_rad=sitting.facing_rad + turn,
+        edge_m=sitting.edge_m * float(np.cos(turn)) + corner_m * abs(float(np.sin(turn))),
         cost=0.3 + _TURN_COST * abs(turn),
-    )
+    ).with_clear_knees()
 
 
 def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:

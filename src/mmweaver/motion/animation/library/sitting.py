@@ -21,6 +21,11 @@ def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> flo
     return float(np.sqrt(body.thigh_m**2 - min(drop, 0.7 * body.thigh_m) ** 2) + ANKLE_BEHIND * body.height_m - 0.03)
 
 
+def knees_ahead_m(body: SkeletonProportions, seat_height_m: float) -> float:
+    """How far in metres the seated knees are ahead of the pelvis, which lie over the ankles."""
+    return pelvis_behind_feet_m(body, seat_height_m) - ANKLE_BEHIND * body.height_m + 0.03
+
+
 def sitting(context: StepContext) -> Controls:
     return _seated(context, np.ones_like(context.time_s))
 
