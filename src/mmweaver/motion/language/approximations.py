@@ -135,12 +135,14 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:does|doing) the (?:dishes|washing[- ]up|cleaning|housework)\b", "wipes", f"{_AS} wiping"),
         (r"\b(?:wash(?:es|ing)?|rub(?:s|bing)?|dr(?:ies|ying)|soap(?:s|ing)?|applies cream on|creams?) (?:his |her |the |their |its |two |both )*hands(?: together)?\b",
          "claps", "hands rubbed against each other are shown as clapping"),
-        (r"\b(?:wip(?:es?|ing)|wash(?:es|ing)?|shav(?:es?|ing)|powder(?:s|ing)?|(?:applies|applying|puts on|putting on) (?:cream|makeup|lotion)(?: on)?)"
-         rf"(?: {_OWN}(?:face|nose|cheeks?|mouth|beard))?(?! (?:the|a|his|her) (?:table|floor|window|wall))(?=$|[ ,.])(?: in front of the mirror)?",
+        (rf"\b(?:wip(?:es?|ing)|wash(?:es|ing)?) {_OWN}(?:face|nose|cheeks?|mouth|beard)\b"
+         r"|\b(?:shav(?:es?|ing)|powder(?:s|ing)?|(?:applies|applying|puts on|putting on) (?:cream|makeup|lotion)(?: on)?)"
+         rf"(?: {_OWN}(?:face|nose|cheeks?|mouth|beard))?(?=$|[ ,.])(?: in front of the mirror)?",
          "brushes the teeth", "a hand at the face is shown as brushing teeth"),
         (rf"\b(?:blow(?:s|ing)?|clean(?:s|ing)?) {_OWN}nose\b", "brushes the teeth", "a hand at the face is shown as brushing teeth"),
         (rf"\b(?:wash(?:es|ing)?|scratch(?:es|ing)?|touch(?:es|ing)?|flicks?|strok(?:es|ing)) {_OWN}(?:hair|head|neck)\b(?: because of [a-z ]+)?",
          "combs the hair", "a hand at the head is shown as combing"),
+        (r"\b(?:(?:performs?|performing|does|makes) (?:an? |some )?)?wash(?:es|ing)?\b(?: (?:movement|motion)s?)?(?! (?:up|the dishes))" + _THING, "wipes", f"{_AS} wiping"),
         (rf"\b(?:puts?|putting|tak(?:es|ing)|adjusts?|lifts?) (?:on|off) {_OWN}(?:glasses|sunglasses|hat|cap|headphones|helmet|earphones|mask)\b",
          "combs the hair", "hands at the head are shown as combing"),
         (r"\b(?:cook|bak|mix|knead|fry)(?:s|es|ing)?\b" + _THING + r"|\bprepar(?:es|ing) (?:the |a |some )?(?:food|dinner|lunch|breakfast|meal|tea|coffee)\b", "stirs the soup", f"{_AS} stirring"),
@@ -451,7 +453,8 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:step|climb|walk|run|jump)(?:s|ping|ing|ning)? (?:over|on|onto|on top of|ontop of) (?:an? |one |the |some )?(?:small |high |low )?(?:steps?|objects?|something|box|boxes|stones?|puddles?|branch(?:es)?|logs?|thresholds?)\b", "step_up_and_down", "a step over it is shown as stepping up and down"),
         (r"\bplac(?:es|ing) (?:an? |the |some )?(?:pictures?|paintings?|things?|objects?|books?) (?:on|at|in) (?:an? |the )?(?:wall|shelf|table|desk)\b|\bput(?:s|ting)? it (?:in|into|on|onto) (?:the |a )?(?:shelf|table|desk|cupboard|box)\b", "reaches for something", f"{_AS} reaching out with a hand"),
         (r"\bholding (?:an? )?(?:squat(?:ted|ting)?|crouch(?:ed|ing)?) position\b|\bstays? in (?:an? )?squat\b", "crouches", f"{_AS} crouching"),
-        (r"\b(?:lift|hold|heav)(?:s|es|ing)? (?:up )?(?:an? |the |some )?(?:[a-z-]+ ){0,2}(?:item|thing|object|weight|box|bag)\b(?: \([^)]*\))?", "picks something up", f"{_AS} picking something up"),
+        (r"(?:(?:,|,? and|while) )?\b(?:is )?(?:hold|carry)(?:s|ing) (?:an? |the |some )?(?:[a-z-]+ ){0,2}(?:item|thing|object|weight|box|bag)s?\b", "", "what is held is not shown"),
+        (r"\b(?:lift|heav)(?:s|es|ing)? (?:up )?(?:an? |the |some )?(?:[a-z-]+ ){0,2}(?:item|thing|object|weight|box|bag)\b(?: \([^)]*\))?", "picks something up", f"{_AS} picking something up"),
     )),
     *(Approximation(*row) for row in WHERE_UNKNOWN),
     Approximation(_NOT_DONE, "", "what is not done is left out", in_part=True),

@@ -286,6 +286,8 @@ def _verbs(words: list[Word]) -> list[int]:
         ):
             continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "throw" and any(other.lemma in ("kick", "punch", "jab") for other in words[i + 1 : i + 5]):
+            continue  # "throws two front kicks"
         if word.lemma == "move" and _moves_a_thing(words[i + 1 : i + 4]):
             continue  # "moving the right hamd"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
@@ -330,21 +332,10 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return True
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
-    if word.lemma == "box" and word.form == "base":
-        return before in ("a", "the", "this", "that")
-    if word.lemma == "seat" and word.form != "past":
-        return True
-    owned = before in ("a", "the", "his", "her", "their", "my")
-    if word.lemma in ("phone", "text", "comb", "box", "cook") and word.form == "base" and owned:
-        return True
-    if (
-        word.lemma == "point"
-        and word.form == "base"
-        and (found or before in ("a", "the", "starting", "same", "specific"))
-    ):
-        return True
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
+    if _is_plain_noun(word, before, after_a_verb=bool(found)):
+        return True
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
     if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
@@ -352,6 +343,20 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
     # "walks a walk", not "walks to the left, turns around walk back"
     return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
+
+
+def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
+    """'karate type moves', 'a box', 'his phone', 'a starting point': nouns that look like a verb."""
+    owned = before in ("a", "the", "his", "her", "their", "my")
+    if word.form == "base" and word.lemma == "point":
+        return after_a_verb or before in ("a", "the", "starting", "same", "specific")
+    if word.text == "type":
+        return before not in ("to", "and", "then", *PRONOUNS, "", "people")
+    return (
+        (word.lemma == "seat" and word.form != "past")
+        or (owned and word.lemma in ("phone", "text", "comb"))
+        or (word.form == "base" and word.lemma in ("box", "cook") and (owned or before in ("this", "that")))
+    )
 
 
 def _is_the_face(words: list[Word], i: int) -> bool:

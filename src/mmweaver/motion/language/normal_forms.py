@@ -52,6 +52,7 @@ NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bforward steps\b", "steps forwards"), (r"\ba large and a small step\b", "two steps"),
     (r"\bshak(es|ing) (?:(?:his|her|its|their|the) )?head no\b", r"shak\1 the head"), (r"\b(nods|nodding) yes\b", r"\1"),
     (r"\b((?:both |the |his |her |their )*arms?\b[^.;]*?\b(?:rais|lift)(?:es|s|ing)) them\b", r"\1 both arms"),
+    (r"\bveer(?:s|ing|ed) (?:off |slightly )?(?:to |towards )?(?:the |his |her |their )?(left|right)\b(?: side)?", r"walks in a curve to the \1"),
     (r"\b(?:back )?the way (?:he|she|it|they) (?:came|went|walked)(?: from)?\b", "back"),
     (r"\b(?:back )?to where (?:he|she|it|they|the person) (?:(?:was|were|had been) )?(?:standing|stood|started|began|was|were|came from)(?: from| before)?\b", "back to the starting point"),
     (r"\b(?:takes?|makes?|taking|making) an? (?:sharp |slight |hard |quick |slow |abrupt )?(left|right)(?! (?:step|turn|foot|leg|hand|arm|seat|side|hook|punch|jab))", r"turns to the \1"),

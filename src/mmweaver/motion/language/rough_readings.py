@@ -70,7 +70,7 @@ def _of_a_limb(clause: Clause) -> tuple[Step | None, str]:
             return Step(upper="arms_out", hand=hand or "both"), "only what the arms do is shown, as holding them out"
         if texts & _BEFORE_THE_BODY:
             return Step(upper="hands_up"), "only what the hands do is shown, as holding them up in front of the body"
-        if texts & _HELD:
+        if texts & _HELD or "on" in texts:
             return Step(), "only that somebody stands is shown"
         return Step(upper="wave", hand=hand), "only what the arms do is shown, as waving"
     if _MOVES_A_LEG.search(clause.text):
