@@ -414,7 +414,9 @@ BOARD_LEFT_OUT = RowTable(
         for condition, text in (("before", "first order, ideal board"), ("after", "as generated"))
         for board in ("openradar_two_people", "iwr6843_hall", "bgt60_breathing")
     },
-    columns=(("physics: board left out", "{label}"), ("units", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}")),
+    columns=(("physics: board left out", "{label}"), ("units", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}"),
+        ("ranked right", "{metrics.ranking:number}"),
+    ),
 )  # fmt: skip
 HALO_ROWS = (
     ("behind_body_near", "0.6 to 1 m behind a body, dB"), ("behind_body_far", "1 to 2 m behind, dB"),

@@ -10,20 +10,30 @@ from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.static_paths import Propagation
-from mmweaver.paths.unresolved_clutter import AT_M, NEAREST_M, SQUARE_METRES_A_METRE, unresolved_clutter
+from mmweaver.paths.unresolved_clutter import (
+    AT_M,
+    LEVELS_DB,
+    NEAREST_M,
+    SQUARE_METRES_A_METRE,
+    room_level,
+    unresolved_clutter,
+)
 from tests.rooms import back_wall, floor, scene_of
 
 
 def test_as_much_comes_back_from_every_metre_as_was_recorded():
-    """The mean power a metre of range is that of the stated cross section at 2 m, from the nearest patch to 8 m."""
+    """The mean power a metre of range is that of the stated cross section at 2 m, up to 12 dB more by the room."""
     stated = SQUARE_METRES_A_METRE * (scatterer_gain(AWR1843) / AT_M**2) ** 2
     profiles = []
     for seed in range(20):
         paths = unresolved_clutter(AWR1843, seed)
         range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
         profiles.append(np.histogram(range_m, np.arange(1.0, 7.1), weights=np.abs(paths.amplitude.numpy()) ** 2)[0])
+        profiles[-1] = profiles[-1] / room_level(seed)
         assert range_m.min() > NEAREST_M - 1e-3
     assert np.mean(profiles, axis=0) == pytest.approx(stated, rel=0.25)
+    levels_db = 10 * np.log10([room_level(seed) for seed in range(100)])
+    assert LEVELS_DB[0] <= levels_db.min() < 1 < 11 < levels_db.max() <= LEVELS_DB[1]
 
 
 def test_amplitudes_are_spikier_than_a_gaussian_sum():

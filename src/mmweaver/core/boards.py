@@ -26,7 +26,7 @@ END_SHAPE = ((0.89, 0.0), (0.905, -1.0), (0.92, -3.0), (0.935, -6.0), (0.955, -9
 CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations of each transmitter's and each receiver's
 LEAKAGE_OVER_NOISE_DB = (33.0, 41.0)  # of a chirp's range bin; with the skirt 2 dB more
 LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
-SKIRT_END_M = (0.5, 1.5)  # where it has fallen to the noise of a frame's cell
+SKIRT_END_M = (0.4, 1.5)  # where it has fallen to the noise of a frame's cell
 # of real samples (one board), with the converter's offset
 REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M = (50.0, 58.0), (0.15, 0.3)
 ELEVATION_PHASE_DEG = (4.0, 12.0)

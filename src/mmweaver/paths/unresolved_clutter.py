@@ -1,8 +1,8 @@
 """Static clutter that no photo and no mesh resolves: cables, textures, rims, what stands outside the picture.
 
 Many weak patches in all directions and at all ranges, several a range-angle cell; their cross sections are gamma
-distributed about a mean, so that amplitudes are K distributed. Level and density are those of one recording of a
-furnished room; see decision 226. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
+distributed about a mean, so that amplitudes are K distributed. Level and density are those of recordings; see
+decisions 226 and 267. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
 """
 
 import numpy as np
@@ -13,9 +13,10 @@ from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import scattered_paths
 
-# Received power a metre of range is the same from 1 to 6 m in the recording, and 18 dB less nearer: radars have some
-# free space before them. As of so many square metres at 2 m.
+# Received power a metre of range is the same from 1 to 6 m in a furnished room's recording, and 18 dB less nearer:
+# radars have some free space before them. As of so many square metres at 2 m.
 SQUARE_METRES_A_METRE = 1.5e-4
+LEVELS_DB = (0.0, 12.0)  # over that, from room to room: a recorded hall has 12 dB more
 AT_M = 2.0
 FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
 NEAREST_M = 1.0
@@ -38,9 +39,16 @@ def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     )
     gain = pattern(towards, config) ** 2
     texture = rng.gamma(SHAPE, 1 / SHAPE, count)
-    mean_m2 = SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
+    mean_m2 = (
+        room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
+    )
     # the level is that of all directions together, as antennas weigh them
     cross_section_m2 = mean_m2 * texture / max(float((gain**2).mean()) if count else 1.0, 1e-9)
     amplitude = scatterer_gain(config) * gain * np.sqrt(cross_section_m2) / range_m**2
     phase = np.exp(2j * np.pi * rng.random(count))
     return scattered_paths(towards * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config)
+
+
+def room_level(micro_seed: int) -> float:
+    """How much stronger a room's clutter is than that of the weakest recorded one, in power."""
+    return float(10 ** (stream(micro_seed, "room", "clutter level").uniform(*LEVELS_DB) / 10))
