@@ -8,9 +8,9 @@ bundled one, four photographed ones, a procedural office): two walkers at the pl
 along the same directions as the room lets them be seen, nobody, a person who breathes at 0.33 m. Units are quarters of
 the single frames, and runs of 32 frames of the third. Of each unit all features of `mmweaver compare` are measured.
 Trees (settings of `real_or_simulated`) learn recorded or simulated from two boards and judge the third; accuracy is
-the mean of the shares of recorded and of simulated units that are right, its interval a bootstrap over units. 0.5 is chance,
-and also what trees reach that call everything simulated; so the ranking (area under the curve) stands next to it. Two
-conditions: `before`, paths of first order, resolved clutter, one reflection coefficient, ideal board; `after`, the
+the mean of the shares of recorded and of simulated units that are right, its interval a bootstrap over units. 0.5 is
+chance, and what trees reach that call everything simulated; so the ranking (area under the curve) stands next to it.
+Two conditions: `before`, paths of first order, resolved clutter, one reflection coefficient, ideal board; `after`, the
 physics as `generate` runs it, with a typical board and the clutter sampled by the room. The second part counts rooms
 within what was recorded, and so in twelve furnished rooms that are known entire, of all kinds, whose layout was fixed
 before they were looked at (layouts 0 to 2 of these kinds served for development).
@@ -244,7 +244,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         for board in BOARDS:
             found = chances(real, whole, board)
             metrics = {"accuracy": accuracy(judged(*found)), "ranking": ranking(*found)}
-            rows.append({"method": f"{condition}, {board} left out", "n": sum(map(len, right)), "metrics": metrics})
+            rows.append({"method": f"{condition}, {board} left out", "n": sum(map(len, found)), "metrics": metrics})
         of_rooms.append(
             {"method": MEANT[condition], "n": len(rooms), "metrics": room_rows(made["openradar_two_people"])}
         )
