@@ -190,7 +190,10 @@ def judged(of_recorded: np.ndarray, of_made: np.ndarray) -> tuple[np.ndarray, np
 def ranking(of_recorded: np.ndarray, of_made: np.ndarray) -> dict[str, Any]:
     """How often a recorded unit has the higher probability of the two: the area under the curve."""
     above = (of_recorded[:, None] > of_made).mean() + 0.5 * (of_recorded[:, None] == of_made).mean()
-    return {"value": float(above), "unit": "1", "baseline": {"chance": 0.5}}
+    return {
+        "value": float(above), "unit": "1", "baseline": {"chance": 0.5},
+        "definition": "how often a recorded unit has a higher probability of being recorded than a simulated one",
+    }  # fmt: skip
 
 
 def accuracy(right: tuple[np.ndarray, np.ndarray]) -> dict[str, Any]:
