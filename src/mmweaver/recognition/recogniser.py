@@ -19,6 +19,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.body_features import body_features
+from mmweaver.recognition.course_features import course_features
 from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
@@ -118,7 +119,7 @@ def recognition_features(
 
 def feature_names(row: dict[str, float]) -> tuple[str, ...]:
     """The features that a simulation can predict: heights count from the body, unevenness depends on the beam."""
-    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns", "side_"))]
+    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns", "side_", "course_"))]
     kept = {name for name in old if not UNPREDICTABLE & set(name.split("_"))} | (set(row) - set(old))
     return tuple(name for name in row if name in kept)
 
@@ -130,6 +131,7 @@ def window_row(window: PointRecording) -> dict[str, float]:
         **body_features(window, STILL_MPS),
         **timeline_features(window),
         **side_features(window),
+        **course_features(window),
     }
 
 

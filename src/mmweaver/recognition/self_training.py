@@ -10,8 +10,8 @@ from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
 if TYPE_CHECKING:
     from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions
 
-CONFIDENT_SHARE = 0.4  # of the windows given to each label, those with the highest votes
-REAL_WEIGHT = 0.5  # of all pseudo-labelled windows relative to all generated ones
+CONFIDENT_SHARE = 0.6  # of the windows given to each label, those with the highest votes
+REAL_WEIGHT = 1.0  # of all pseudo-labelled windows relative to all generated ones
 LEAST_SHARE, MOST_CHANGED = 0.2, 0.35  # the guard: of a label's fair share of windows; of labels that change
 
 

@@ -17,6 +17,7 @@ from mmweaver.core.version import __version__
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
+from mmweaver.recognition.performance_variation import PerformanceVariation, varied
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
@@ -50,7 +51,8 @@ class TrainingOptions:
     sequences: int = SEQUENCES
     seed: int = 0
     prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
-    copies: int = 4  # disturbed ones of each window
+    copies: int = 4  # varied and disturbed ones of each window
+    variation: PerformanceVariation = PerformanceVariation()  # noqa: RUF009 (frozen)
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
@@ -163,8 +165,9 @@ def generated_windows(
         most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
         reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
-    step_s = task.recordings.window_s / OVERLAP
-    windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings, step_s)]
+    step_s, radar = task.recordings.window_s / OVERLAP, task.radar
+    pairs = [(one, window) for one in sequences for window in windows_of(one, task.recordings, step_s)]
+    windows = [window for _, window in pairs]
     found = {window.label for window in windows}
     if missing := [label for label in task.recordings.labels if label not in found]:
         raise InputError(
@@ -172,9 +175,13 @@ def generated_windows(
         )
     copies: list[PointRecording] = []
     for copy in range(options.copies):
-        for number, window in enumerate(windows):
+        for number, (sequence, window) in enumerate(pairs):
             rng = stream(options.seed, "disturbed", window.name, number, copy)
-            copies.append(_before(augmented(window, rng, how), background, rng))
+            another = varied(
+                sequence, window.first_frame, window.num_frames, rng, radar.velocity_resolution_mps,
+                radar.max_velocity_mps, options.variation, once=task.recordings.has_single_performances,
+            )  # fmt: skip
+            copies.append(_before(augmented(another, rng, how), background, rng))
     everything = [
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
