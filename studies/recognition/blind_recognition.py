@@ -7,11 +7,12 @@
 `role`: a data set on which the general method was developed; `blind`, one that was scored once after a commit had fixed
 the method and never before; `frozen`, one that was scored once after such a commit, though earlier methods had seen it.
 Each is scored alone, with no recording at all, and adapted, when the same recordings served as `unlabelled`. MARS's
-recordings are cut into exercises as in `mars_exercises`. Persons or places are held out of nothing: no recorded label
-trains anything.
+recordings are cut into exercises as in `mars_exercises`. `--named REGEX --part WORDS` scores the recordings whose names
+begin so, as a row of its own. Persons or places are held out of nothing: no recorded label trains anything.
 """
 
 import argparse
+import re
 import time
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -112,6 +113,8 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_task_options(parser)
     parser.add_argument("--role", choices=("development", "frozen", "blind"), required=True)
+    parser.add_argument("--named", default="", metavar="REGEX", help="how names of the recordings begin")
+    parser.add_argument("--part", metavar="WORDS", help="what these recordings are called")
 
 
 def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, GeneratedWindows, list[PointRecording]]:
@@ -124,7 +127,9 @@ def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, GeneratedWi
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     task, made, recordings = task_data(options)
-    data = {"name": options.task, "sha256": content_of(options.recordings)["sha256"]}
+    recordings = [one for one in recordings if re.match(options.named, one.name)]
+    name = f"{options.task}, {options.part}" if options.part else options.task
+    data = {"name": name, "sha256": content_of(options.recordings)["sha256"]}
     rows = []
     for how in ("alone", "adapted"):
         began = time.process_time()
@@ -132,4 +137,5 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         rows.append(result_row(scores, data, how, options.role, time.process_time() - began))
         print(how, {key: scores[key]["balanced_accuracy"] for key in WORDS}, scores["warning"])
     settings = asdict(replace(TrainingOptions(), sequences=options.people))
-    run.write("blind_recognition", options.task, config={"options": settings, "role": options.role}, rows=rows)
+    config = {"options": settings, "role": options.role, "named": options.named}
+    run.write("blind_recognition", re.sub(r"\W+", "_", name), config=config, rows=rows)
