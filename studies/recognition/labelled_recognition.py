@@ -3,11 +3,14 @@
     python -m studies run labelled_recognition radhar --recordings RADHAR --sequences FOLDER --people 24
 
 Of every activity 0, 1, 5 and 20 recordings train, sampled anew for each seed, as `mmweaver recognise train --labelled`
-does it; all others are the test set. The baselines are trees on the same recordings alone, and chance. A data set with
+does it. Those of `TRAINING` may train where the data set tells people or takes apart, and all others are the test set;
+else whichever does not train is tested. MARS has one take of an exercise to train on and one to test, so there a
+recording is a stretch of one window. The baselines are trees on the same recordings alone, and chance. A data set with
 too few recordings has fewer rows.
 """
 
 import argparse
+import re
 import time
 from dataclasses import asdict, replace
 from typing import Any
@@ -30,6 +33,7 @@ from studies.schema import metric
 
 EACH, SEEDS = (0, 1, 5, 20), (0, 1, 2)
 TREES = 150
+TRAINING = {"mhomeges": "80[0-5]_", "mars_exercises": ".* validate"}  # how names of recordings that may train begin
 
 
 def alone(features: np.ndarray, labels: np.ndarray, made: GeneratedWindows) -> GeneratedWindows:
@@ -41,35 +45,41 @@ def alone(features: np.ndarray, labels: np.ndarray, made: GeneratedWindows) -> G
 
 
 def accuracy(
-    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, *, generated: bool
-) -> float:
-    """Balanced accuracy on windows (window, feature) that are not among those that train (window,)."""
+    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, tested: np.ndarray, *,
+    generated: bool,
+) -> float:  # fmt: skip
+    """Balanced accuracy on the windows `tested` (window,) of all (window, feature), of which some train (window,)."""
     options = TrainingOptions(trees=TREES)
     few = features[trains], labels[trains]
     training = made
     if trains.any():
         training = with_labelled(made, *few, options) if generated else alone(*few, made)
-    guess = trees_of(training, options).probabilities(features[~trains]).argmax(axis=1)
-    return balanced_accuracy(labels[~trains], guess)
+    guess = trees_of(training, options).probabilities(features[tested]).argmax(axis=1)
+    return balanced_accuracy(labels[tested], guess)
 
 
 def curve(
-    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray
-) -> list[dict[str, Any]]:
-    """Scores by number of recordings; `owner` (window,) is the recording, `kinds` (recording,) its label."""
-    fewest = int(np.bincount(kinds).min())
+    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray,
+    may_train: np.ndarray | None = None,
+) -> list[dict[str, Any]]:  # fmt: skip
+    """Scores by number of recordings; `owner` (window,) is the recording, `kinds` (recording,) its label.
+
+    `may_train` (recording,): the others are the test set. None: whichever does not train is.
+    """
+    allowed = np.arange(len(kinds)) if may_train is None else np.flatnonzero(may_train)
+    most = int(np.bincount(kinds[allowed]).min()) - (1 if may_train is None else 0)
     rows = []
-    for each in (number for number in EACH if number < fewest):
+    for each in (number for number in EACH if number <= most):
         for generated in (True, False) if each else (True,):
             began = time.process_time()
-            seeds = SEEDS if each else SEEDS[:1]
-            scores = [
-                accuracy(made, features, labels, np.isin(owner, chosen_recordings(kinds, each, seed)),
-                         generated=generated)
-                for seed in seeds
-            ]  # fmt: skip
+            scores = []
+            for seed in SEEDS if each else SEEDS[:1]:
+                trains = np.isin(owner, allowed[chosen_recordings(kinds[allowed], each, seed)])
+                tested = ~trains if may_train is None else ~may_train[owner]
+                scores.append(accuracy(made, features, labels, trains, tested, generated=generated))
             rows.append({
-                "real_recordings_each": each, "generated": generated, "seeds": list(seeds), "n": len(scores),
+                "real_recordings_each": each, "generated": generated, "seeds": list(SEEDS[: len(scores)]),
+                "n": len(scores),
                 "seconds": {"all": round(time.process_time() - began, 1)}, "scores": scores,
             })  # fmt: skip
             print(each, generated, scores)
@@ -82,13 +92,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     task, made, recordings = task_data(options)
+    if options.task == "mars_exercises":
+        recordings = [window for one in recordings for window in windows_of(one, task.recordings)]
+    may_train = None
+    if options.task in TRAINING:
+        may_train = np.array([re.match(TRAINING[options.task], one.name) is not None for one in recordings])
     windows = [windows_of(one, task.recordings) for one in recordings]
     number = {label: place for place, label in enumerate(task.recordings.labels)}
     rows = curve(
         made, recognition_features([window for own in windows for window in own], made.names),
         np.array([number[window.label] for own in windows for window in own]),
         np.repeat(np.arange(len(windows)), [len(own) for own in windows]),
-        np.array([number[one.label] for one in recordings]),
+        np.array([number[one.label] for one in recordings]), may_train,
     )  # fmt: skip
     data = {"name": options.task, "sha256": content_of(options.recordings)["sha256"], "recordings": len(recordings)}
     settings = asdict(replace(TrainingOptions(), sequences=options.people, trees=TREES))

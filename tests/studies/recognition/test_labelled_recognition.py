@@ -30,3 +30,20 @@ def test_a_curve_begins_with_what_was_generated_alone(monkeypatch: pytest.Monkey
     assert values[0] < 0.8 < values[3]
     assert values[4] > 0.9
     assert not [line for row in rows for line in _row_violations(row)]
+
+
+def test_only_what_may_train_does_and_the_others_are_tested(monkeypatch: pytest.MonkeyPatch):
+    """Those that may train have their labels exchanged: trees on them alone are wrong on all others."""
+    monkeypatch.setattr(labelled_recognition, "TREES", 5)
+    kinds = np.tile([0, 1], 10)
+    may_train = np.arange(20) < 10
+    owner, labels = np.repeat(np.arange(20), 3), np.repeat(kinds, 3)
+    features = np.where(may_train[owner], 1 - labels, labels)[:, None].astype(float)
+    made = GeneratedWindows(
+        features=np.array([[0.0], [1.0]] * 9), label=np.array([0, 1] * 9), person=np.arange(18),
+        is_copy=np.zeros(18, bool), names=("one",),
+    )  # fmt: skip
+    rows = curve(made, features, labels, owner, kinds, may_train)
+    assert [(row["real_recordings_each"], row["generated"]) for row in rows][-2:] == [(5, True), (5, False)]
+    assert np.mean(rows[0]["scores"]) == 1.0
+    assert [np.mean(row["scores"]) for row in rows if not row["generated"]] == [0.0, 0.0]
