@@ -9,7 +9,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.paths.materials import MATERIALS, transmission
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation, RayTracedRoom
-from tests.rooms import back_wall, scene_of
+from tests.rooms import back_wall, plane, scene_of
 
 ONCE = Propagation(bounces=1, fine_roughness=False)
 
@@ -74,3 +74,22 @@ def test_fine_roughness_takes_from_the_mirror_what_it_scatters(material: str, lo
     share = MATERIALS[material].scattering ** 2
     most = (share + (1 - share) * (1 - 10 ** (-loss_db / 10))) / share
     assert 1 + 0.5 * (most - 1) <= rough_m2 / flat_m2 <= most + 1e-9  # oblique rays meet a smoother wall
+
+
+def test_a_window_and_a_door_take_the_place_of_what_is_right_behind_them():
+    """A pane in the wall's own plane, and a metal door 5 cm before it: straight ahead one face reflects, not two."""
+    wall = back_wall(3.0, "brick")
+    pane = plane("panel", (0, 3.0, 0), (0, -1, 0), (1, 0, 0), (0.5, 0.5), "glass")
+    door = plane("panel", (0, 2.95, 0), (0, -1, 0), (1, 0, 0), (0.5, 0.5), "metal")
+
+    def mirrored(planes: tuple, hidden: bool = True) -> float:
+        faces = RayTracedRoom(scene_of(planes), AWR1843, 0, replace(ONCE, slab_echoes=1, hidden_faces=hidden))
+        return float((np.abs(faces.paths.of_kind(Interaction.SPECULAR).amplitude.numpy()) ** 2).sum())
+
+    for front in (pane, door):
+        assert mirrored((wall, front)) == pytest.approx(mirrored((front,)), rel=0.01)
+    assert mirrored((wall, door), hidden=False) > 1.05 * mirrored((door,))
+    aside = replace(pane, centre_m=pane.centre_m + np.array([2.0, 0, 0]))
+    assert mirrored((wall, aside)) == pytest.approx(mirrored((wall,)), rel=0.01)
+    apart = plane("panel", (0, 2.5, 0), (0, -1, 0), (1, 0, 0), (0.5, 0.5), "metal")  # rays at the mesh decide
+    assert mirrored((wall, apart)) == pytest.approx(mirrored((apart,)), rel=0.01)

@@ -4,7 +4,7 @@ Reference: docs/radar_primer.md, section 5; reflection coefficients from `materi
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -16,6 +16,8 @@ from mmweaver.core.shapes import Values
 from mmweaver.paths.materials import MATERIALS, Material, SlabEchoes, reflection, slab_echoes
 
 MAX_REFLECTORS = 10  # the largest faces; smaller ones count as diffuse surface only
+BEFORE_M = 0.12  # mesh and fitted plane of a wall differ by so much, so rays at the mesh do not tell these faces apart
+SAME_FACE_M, PARALLEL_COS = 0.02, 0.98
 SLAB_ECHOES = 3  # of a face: front, back, and all that goes to and fro within
 
 
@@ -37,6 +39,7 @@ class SpecularReflector:
     plane: Plane
     offset_m: float  # normal . x on the face
     is_rough: bool = False  # whether its fine roughness scatters
+    before: tuple["SpecularReflector", ...] = ()  # faces right before it: where they are, it is hidden
 
     def side(self, points_m: np.ndarray) -> Values:
         """Signed distance (...,), positive on the free side."""
@@ -59,7 +62,13 @@ class SpecularReflector:
         return start_m + np.asarray(share)[..., None] * (image_m - start_m)
 
     def inside(self, points_m: np.ndarray, fresnel_m: Values) -> Values:
-        """How much of the first Fresnel zone about each point of the face lies within it, 0 to 1."""
+        """How much of the first Fresnel zone about each point of the face lies within it and is not hidden, 0 to 1."""
+        weight = self._within(points_m, fresnel_m)
+        for face in self.before:
+            weight = weight * (1 - face._within(points_m, fresnel_m))
+        return weight
+
+    def _within(self, points_m: np.ndarray, fresnel_m: Values) -> Values:
         weight = np.ones(points_m.shape[:-1])
         local = points_m - self.plane.centre_m
         for axis, half_m in zip((self.plane.axis_u, self.plane.axis_v), self.plane.half_size_m, strict=True):
@@ -84,6 +93,17 @@ class SpecularReflector:
         smooth = np.sqrt(1 - self.material.scattering**2)
         return smooth * np.sqrt(1 - self.material.fine_loss(cos_incidence, frequency_hz)) if self.is_rough else smooth
 
+    def is_before(self, other: "SpecularReflector") -> bool:
+        """Whether it lies right before another face, or, as a window, in it."""
+        ahead_m = float(other.side(self.plane.centre_m))
+        if self is other or self.plane.normal @ other.plane.normal < PARALLEL_COS or ahead_m > BEFORE_M:
+            return False
+        return ahead_m > SAME_FACE_M or (ahead_m >= -SAME_FACE_M and self.area_m2 < other.area_m2)
+
+    @property
+    def area_m2(self) -> float:
+        return 4 * self.plane.half_size_m[0] * self.plane.half_size_m[1]
+
     @property
     def material(self) -> Material:
         return MATERIALS[self.plane.material]
@@ -94,15 +114,23 @@ class SpecularReflector:
         return "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
 
 
-def specular_reflectors(planes: tuple[Plane, ...], *, rough: bool = False) -> list[SpecularReflector]:
-    """The largest planes that face the radar; `rough`: whether their fine roughness scatters."""
+def specular_reflectors(
+    planes: tuple[Plane, ...], *, rough: bool = False, hidden: bool = False
+) -> list[SpecularReflector]:
+    """The largest planes that face the radar.
+
+    `rough`: whether their fine roughness scatters; `hidden`: whether those right behind others are hidden by them.
+    """
     facing = []
     for plane in planes:
         face = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m), is_rough=rough)
         if face.side(np.zeros(3)) > 0.02:
             facing.append(face)
-    facing.sort(key=lambda face: -face.plane.half_size_m[0] * face.plane.half_size_m[1])
-    return facing[:MAX_REFLECTORS]
+    facing.sort(key=lambda face: -face.area_m2)
+    faces = facing[:MAX_REFLECTORS]
+    if not hidden:
+        return faces
+    return [replace(face, before=tuple(one for one in faces if one.is_before(face))) for face in faces]
 
 
 def fresnel_radius_m(first_m: Values, second_m: Values, wavelength_m: float) -> Values:

@@ -38,13 +38,14 @@ class Propagation:
     straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
     through_walls: bool = True  # whether what lies behind a thin wall returns through it
     fine_roughness: bool = True  # whether plaster, concrete and brick scatter by their fine roughness, too
+    hidden_faces: bool = True  # whether a face right before another, as a locker's door or a window, takes its place
 
 
 # What the network is given of a room: of the orders that it has learned.
-FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False, fine_roughness=False)
+FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False, fine_roughness=False, hidden_faces=False)
 # What the network has learned from, and what studies published before there was a second order were computed with.
 AS_PUBLISHED = Propagation(
-    bounces=1, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False
+    bounces=1, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False, hidden_faces=False
 )  # fmt: skip
 
 
@@ -132,7 +133,9 @@ class RayTracedRoom(PreparedRoom):
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.config = config
-        self.reflectors = specular_reflectors(scene.planes, rough=self.propagation.fine_roughness)
+        self.reflectors = specular_reflectors(
+            scene.planes, rough=self.propagation.fine_roughness, hidden=self.propagation.hidden_faces
+        )
         paths = StaticPaths.cat([*self._diffuse(scene), self._specular(), self._edges(scene)])
         super().__init__(config, self.reflectors, paths, self.propagation)
         if self.propagation.bounces > 1:
