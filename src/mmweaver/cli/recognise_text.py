@@ -19,10 +19,9 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
     if "labelled_windows" in meta:
         text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
     if "unlabelled_windows" in meta:
-        used = meta.get("self_training", {}).get("used")
-        text.append(
-            f"adapted to {meta['unlabelled_windows']} unlabelled windows{'' if used else ', without self-training'}"
-        )
+        done = meta.get("self_training", {})
+        why = "" if done.get("used") else f", without self-training: {done.get('why', 'it is off')}"
+        text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
     return text
 
 

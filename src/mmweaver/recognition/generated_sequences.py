@@ -4,6 +4,7 @@ Sequences are kept in a folder as they are made, so an interrupted run resumes w
 """
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -28,7 +29,7 @@ from mmweaver.recognition.performance import (
     task_variation,
 )
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.task_file import RecognitionTask
+from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
 from mmweaver.recognition.variation import Variation
 
 WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
@@ -36,6 +37,7 @@ TRIES, UNSEEN_TRIES = 12, 2
 REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
 SKIN_POINTS = 1000
 VERSION = 6  # of how sequences are made; part of what a folder of them must agree in
+NAME = re.compile(r"(\d{3})_(\d{5,})")  # of the file of a sequence: number of the label, and of the person
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 
 
@@ -158,7 +160,7 @@ def generate_sequences(
     for label, index in asked:
         place = None if folder is None else folder / f"{recipe.task.recordings.labels.index(label):03d}_{index:05d}.npz"
         if place is not None and place.is_file():
-            sequences.append(_read(place, recipe.task, label, index))
+            sequences.append(_read(place, recipe.task.recordings, label, index))
         else:
             sequences.append(generate_sequence(recipe, label, index))
             if place is not None:
@@ -166,6 +168,15 @@ def generate_sequences(
         if listener is not None:
             listener(len(sequences), len(asked))
     return sequences
+
+
+def stored_sequences(folder: Path, settings: RecordingSettings) -> list[PointRecording]:
+    """All sequences that a folder holds. Raises InputError where there are none, or of other activities."""
+    found = [(place, NAME.fullmatch(place.stem)) for place in sorted(folder.glob("*.npz"))]
+    numbers = [(place, int(name[1]), int(name[2])) for place, name in found if name]
+    if not numbers or max(label for _, label, _ in numbers) >= len(settings.labels):
+        raise InputError(f"{folder} does not hold the sequences that the recogniser learned from; train it again")
+    return [_read(place, settings, settings.labels[label], index) for place, label, index in numbers]
 
 
 def _asked(task: RecognitionTask, each: int) -> Iterator[tuple[str, int]]:
@@ -186,7 +197,7 @@ def _write(place: Path, sequence: PointRecording) -> None:
         )
 
 
-def _read(place: Path, task: RecognitionTask, label: str, index: int) -> PointRecording:
+def _read(place: Path, settings: RecordingSettings, label: str, index: int) -> PointRecording:
     held = read_npz(place)
     frames = int(held.numbers("num_frames", (), low=1, high=1e6))
     frame = held.numbers("frame", ("point",), kinds="iu", low=0, high=frames - 1).astype(int)
@@ -194,5 +205,5 @@ def _read(place: Path, task: RecognitionTask, label: str, index: int) -> PointRe
     joints_m = held.numbers("joints_m", (frames, 22, 3)).astype(float) if "joints_m" in held else None
     return PointRecording(
         name=f"{label}_{index}", cloud=PointCloud(frame=frame, **dict(zip(COLUMNS, columns.T, strict=True))),
-        num_frames=frames, frame_rate_hz=task.recordings.frame_rate_hz, label=label, joints_m=joints_m,
+        num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label, joints_m=joints_m,
     )  # fmt: skip
