@@ -78,5 +78,5 @@ def test_only_how_something_is_done_is_left_out():
 
 def test_what_no_step_shows_is_said_of_its_clause():
     records = parse("a person walks to the door, then dances to the left").clauses
-    assert [record.how for record in records] == ["", "the side is not shown"]
+    assert [record.how for record in records] == ["", "is shown as dancing; the side is not shown"]
     assert not parse("a person walks to the left with the right hand raised").clauses[0].how

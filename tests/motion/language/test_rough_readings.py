@@ -58,3 +58,14 @@ def test_what_is_not_done_is_left_out_beside_what_is(text):
     plan = parse(text, in_part=True)
     assert [step.lower for step in plan.steps] == ["walk"]
     assert any("what is not done is left out" in record.how for record in plan.clauses)
+
+
+def test_every_clause_of_a_rough_reading_says_what_it_is_shown_as():
+    plan = parse("a person bends the left arm up at the elbow, turns left then steps up", in_part=True)
+    shown = [record.how for record in plan.clauses if record.status == APPROXIMATED]
+    assert shown
+    assert all("shown as" in how for how in shown)
+    assert not any(record.status == "done" for record in plan.clauses)
+    assert {record.status for record in parse("a person walks forward, then turns left", in_part=True).clauses} == {
+        "done"
+    }

@@ -288,6 +288,8 @@ def _verbs(words: list[Word]) -> list[int]:
         after = words[i + 1].text if i + 1 < len(words) else ""
         if word.lemma == "throw" and any(other.lemma in ("kick", "punch", "jab") for other in words[i + 1 : i + 5]):
             continue  # "throws two front kicks"
+        if _is_gait(word) and _has_a_limb(words[i + 1 : i + 5]):
+            continue  # "runs it up the chest", "runs his hand along it"
         if word.lemma == "move" and _moves_a_thing(words[i + 1 : i + 4]):
             continue  # "moving the right hamd"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
@@ -298,6 +300,18 @@ def _verbs(words: list[Word]) -> list[int]:
     if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
         return found[:1]  # "stops walking" is standing still
     return found
+
+
+def _is_gait(word: Word) -> bool:
+    return ACTIVITY_OF_LEMMA.get(word.lemma, ("", ""))[0] in ("walk", "jog", "march", "hop", "jump")
+
+
+def _has_a_limb(after: list[Word]) -> bool:
+    """Whether "runs" has an object, which nobody is who runs: it, or a hand."""
+    texts = [word.text for word in after]
+    if texts[:1] in (["it"], ["them"]):
+        return True
+    return texts[:1] != [] and texts[0] in (*OWN, "the") and bool({*texts} & (ARMS | {"finger", "fingers"}))
 
 
 def _moves_a_thing(after: list[Word]) -> bool:
@@ -338,7 +352,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return True
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
-    if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
+    going = any(words[k].lemma in STEPPING or _is_gait(words[k]) for k in found)
+    if word.lemma == "step" and word.form in ("base", "s") and going:
         return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
     same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
     # "walks a walk", not "walks to the left, turns around walk back"

@@ -52,7 +52,8 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
         lost.append("the circle is not shown")
     if "sideways" in texts and not any(goes_aside(step) for step in steps):
         lost.append("the side is not shown")
-    if {"backwards", "backward"} & set(texts) and not any(_goes_back(step) for step in steps):
+    aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
+    if {"backwards", "backward"} & set(texts) and (aimed_back or not any(_goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")

@@ -9,6 +9,8 @@ _ON_BODY = (
 
 # Also where the sentence would be understood, but as something else.
 INSTEAD_OF_ANOTHER: tuple[tuple[str, str, str], ...] = (
+    (r"\b(?:something|someone|somebody|an?other person|a force) (?:then )?(?:push|shov|bump|hit|knock)(?:es|s|ed|ing)?(?: into)? (?:them|him|her|it|the person)\b(?: over)?", "is pushed", "who or what pushes is not shown"),
+    (rf",? with {_OWN}(?:shoulders?|hips?|head|chest|arms?|hands?|legs?|knees?|body) (?:[a-z]+ )?and (?:bounc|sway|swing|shak|wiggl|mov|danc|rotat|twist)ing\b", "", "how the body is held is not shown"),
     (r"\b(?:is )?(?:prepar(?:es|ing)|gets? ready|getting ready|about|readies (?:him|her|it)self) to [^,.;]*?(?=(?:,|;|\.|,? and|,? then|,? before)+ [a-z])", "stays", "what is only prepared is not shown"),
     (r"\bturn(?:s|ing) (?:an?|the|his|her) (?:[a-z]+ )?(?:knob|dial|handle|key|valve|screw|crank|faucet|tap)\b", "reaches for something", "is shown as reaching out with a hand"),
     (r"\b(?:spin|rotat|twirl)(?:s|es|ing) (?:an?|the|some) (?!full|half|whole|complete|quarter|few|couple|circle|left|right|lot|little|bit|upper|torso|trunk|head|body|hips|arms?|hands?|wrists?|legs?)[a-z]+\b", "stays", "what is spun is not shown"),

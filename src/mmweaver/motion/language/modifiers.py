@@ -11,6 +11,8 @@ OPPOSITE = {"left": "right", "right": "left"}
 MOST_TIMES = 60
 _WHOM = frozenset({"it", "them", "someone", "somebody", "you", "him", "her", "then", "and", "person", "front"})
 _LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", "move", "sidestep", "squat", "skip"})
+_OF_A_LEG = frozenset({"ankle", "thigh", "calf", "shin", "heel", "toe", "toes"})
+_OF_THE_BODY = frozenset({"shoulder", "elbow", "ear", "eye", "cheek", "hip", "buttock", "breast", "collar"})
 _THAT_ONE = ("first", "second", "this", "that", "the", "other", "each", "every", "no", "which")
 _TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
@@ -46,6 +48,9 @@ def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> 
     text, before, after = words[i].text, words[i - 1].text if i else "", words[i + 1].text if i + 1 < len(words) else ""
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
+    part = next((word.text for word in words[i + 1 : i + 2] if word.text in _OF_A_LEG | _OF_THE_BODY), "")
+    if part:  # "his right ankle", "the left shoulder"
+        return replace(about, foot=about.foot or text) if part in _OF_A_LEG else about
     if about.direction == "circle":
         around_deg = max(abs(about.arc_deg), 360.0)
         return replace(about, arc_deg=around_deg if text == "left" else -around_deg, style="")

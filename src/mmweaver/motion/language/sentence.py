@@ -6,16 +6,14 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.accounts import as_given, unaccounted
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
+from mmweaver.motion.language.clause_records import in_the_given_words, note_what_is_not_shown
 from mmweaver.motion.language.clauses import Clause, split_clauses
-from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.left_out import may_be_missed, parse_with_less, says_more_of
 from mmweaver.motion.language.lexicon import OWN
-from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -110,7 +108,7 @@ def _parsed(text: str, given_text: str, leaving: int = _EXACT) -> MotionPlan:
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(sequence))
-    _note_what_is_not_shown(given_text, every_clause, steps, records, notes)
+    note_what_is_not_shown(given_text, every_clause, steps, records, notes)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     room = room_of(given_text)
@@ -118,23 +116,11 @@ def _parsed(text: str, given_text: str, leaving: int = _EXACT) -> MotionPlan:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leaving and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(text.strip()))
-    own_words = as_given(given_text, records)
-    clauses = tuple(replace(records[number], clause=own_words[number]) for number in sorted(records))
-    for number, record in records.items():
-        of_it = f"of {record.clause!r}, "
-        notes = [
-            _in_a_sentence(own_words[number], note.removeprefix(of_it)) if note.startswith(of_it) else note
-            for note in notes
-        ]
+    clauses, notes = in_the_given_words(given_text, steps, records, notes, roughly=bool(leaving))
     return MotionPlan(
-        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)), clauses=clauses,
+        text=given_text, steps=tuple(steps), notes=tuple(notes), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
-
-
-def _in_a_sentence(words: str, how: str) -> str:
-    """What became of a clause, as it is said to the user."""
-    return f"{words!r} {how}" if how.startswith(("is ", "has ")) else f"in {words!r}, {how}"
 
 
 def _parsed_clauses(
@@ -184,38 +170,6 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
             raise
         return False
     return True
-
-
-def _note_what_is_not_shown(
-    given_text: str,
-    every_clause: list[ParsedClause],
-    steps: list[Step],
-    records: dict[int, ClauseRecord],
-    notes: list[str],
-) -> None:
-    """Says of each clause what its steps do not show; sizes are looked for in the sentence: phrases take them away."""
-
-    def say(number: int, how: str) -> None:
-        if how not in records[number].how and records[number].status != NOT_DONE:
-            records[number] = records[number].lowered_to(APPROXIMATED, how)
-            notes.append(f"of {records[number].clause!r}, {how}")
-
-    for parsed in every_clause:
-        own = [step for step in steps if parsed.number in step.clauses] or steps
-        for how in [*parsed.lost, *not_shown(parsed.words, own)]:
-            say(parsed.number, how)
-    for after, how in risings_that_no_clause_names(steps):
-        say(after.clauses[0] if after.clauses else max(records), how)
-    for how in sizes_not_shown(given_text, steps):
-        size = how.split("'")[1]
-        say(next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how)
-    for words, how in not_in_any_step(given_text, steps, records):
-        if not any(words in record.how for record in records.values()):
-            say(next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how)
-    otherwise = {parsed.number for parsed in every_clause if parsed.approximations}
-    for number, how in unaccounted(without_no_limbs(given_text), steps, records, otherwise):
-        if how.split("'")[1:2] == [] or not any(how.split("'")[1] in record.how for record in records.values()):
-            say(number, how)
 
 
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
@@ -320,14 +274,22 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
     before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
     if [word.text for word in parsed.words[:-1]] in (["the"], ["this"], ["that"]) and _same(before, now):
         return True  # "turns, and stumbles after the turn"
+    if now.lower == "put_down" and len(parsed.steps) == 1 and _is_raised([one.steps[-1] for one in parsed_clauses]):
+        return True
     if len(parsed.steps) > 1 or before.upper:
-        return before.upper == "raise" and now.lower == "put_down" and len(parsed.steps) == 1
+        return False
     if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
     again = before.lower in JUMPING and now.lower in JUMPING and parsed.link == "comma" and parsed.form == "ing"
     described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
     lifted = (before.lower, now.lower) == ("march", "raise_leg") and parsed.form == "ing"
     return described or lifted or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+
+
+def _is_raised(steps: list[Step]) -> bool:
+    """Whether a hand that was raised is what is put down, nothing having been picked up since."""
+    last = next((step for step in reversed(steps) if step.lower != "stand" or step.upper), None)
+    return last is not None and last.upper in ("raise", "arms_out")
 
 
 def _same(one: Step, other: Step) -> bool:

@@ -228,7 +228,8 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
-    if step.lower == "march" and step.direction not in ("", "spot", "around"):
+    onward = {"way", "direction"} & {word.text for word in words} and step.direction != "spot"
+    if step.lower == "march" and (onward or step.direction not in ("", "spot", "around")):
         return _going_step(replace(step, lower="walk"), words, at)
     if step.lower == "lunge" and step.direction in SIDES and not step.foot:
         raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
