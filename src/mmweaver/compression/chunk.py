@@ -21,7 +21,7 @@ from mmweaver.compression.level_coder import LevelCoder
 from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
-from mmweaver.compression.residual_stream import PRICE, QuantizedCells, code_cells, quantized
+from mmweaver.compression.residual_stream import PRICE, QuantizedCells, cell_energy, code_cells, quantized
 from mmweaver.compression.transforms import beams_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -33,7 +33,8 @@ from mmweaver.fields.scatterers.refinement import Damping, refined
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")
-HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_VERSION_4 = 1, 2, 4, 8, 16, 32, 64, 128
+HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_NEW = 1, 2, 4, 8, 16, 32, 64, 128
+IS_VERSION_5 = 64  # in the byte of the coarse step; without it IS_NEW says version 4
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
@@ -137,6 +138,7 @@ class ChunkDraft:
     transform: ChunkTransform
     coefficients: np.ndarray
     is_active: np.ndarray
+    energy: np.ndarray  # of the coefficients (time, range, index)
 
     def sample(self) -> CellSample:
         """Some cells, for estimates."""
@@ -184,20 +186,21 @@ class ChunkEncoder:
         draft = self.draft(step, mode, coarser)
         sample = draft.sample()
         step, stream, flags, front = draft.step, draft.stream, draft.flags, draft.front
-        cells = quantized(draft.coefficients, step, coarser, draft.is_active, price)
-        lost = draft.coefficients
-        if cells.classes.any():
+        cells = quantized(draft.coefficients, step, coarser, draft.is_active, price, draft.energy)
+        is_open = cells.classes > 0
+        if is_open.any():
             flags += HAS_CELLS
             front += draft.transform.packed
             code_cells(stream, cells.levels, cells.classes, draft.near, draft.transform.correlated, coarser)
-            lost = lost - cells.values(step, coarser)
-        is_active = draft.is_active
+        is_active, lost = draft.is_active, draft.energy.astype(np.float64)
         if draft.transform.choice.range_dct:  # which spreads signal over all cells: errors are those of the cells
-            lost, is_active = np.moveaxis(draft.transform.inverse(lost), 3, 0), self.is_active
-        lost = np.sum(np.square(np.abs(lost)), axis=0)
+            rest = draft.transform.inverse(draft.coefficients - cells.values(step, coarser))
+            is_active, lost = self.is_active, cell_energy(np.moveaxis(rest, 3, 0))
+        else:
+            lost[is_open] = cell_energy(draft.coefficients[:, is_open] - cells.open_values(step, coarser))
         prefix = PREFIX.pack(
             self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
-            COARSE_STEPS.index(coarser or 1), draft.rank, flags,
+            IS_VERSION_5 + COARSE_STEPS.index(coarser or 1), draft.rank, flags,
         )  # fmt: skip
         return CodedChunk(
             data=prefix + front + stream.to_bytes(), active_error=float(lost[is_active].sum()),
@@ -207,7 +210,7 @@ class ChunkEncoder:
     def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
         """The chunk with its layers coded, and its cells not."""
         step = float(np.float32(step))
-        stream, flags, front, num_values = Encoder(), IS_VERSION_4, b"", 0
+        stream, flags, front, num_values = Encoder(), IS_NEW, b"", 0
         target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
         if mode.with_points and self.layers is not None:
             target, near, more, front, num_values = self._points(stream, step)
@@ -228,7 +231,7 @@ class ChunkEncoder:
         return ChunkDraft(
             step=step, stream=stream, flags=flags, front=front, near=near, rank=0 if factors is None else factors.rank,
             num_values=num_values, transform=transform, coefficients=coefficients,
-            is_active=transform.spread(self.is_active),
+            is_active=transform.spread(self.is_active), energy=cell_energy(coefficients),
         )  # fmt: skip
 
     def exact(self, values: CubeValues) -> bytes:
@@ -344,6 +347,8 @@ def frames_of_chunk(data: bytes) -> int:
 
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
+    version = (5 if coarse & IS_VERSION_5 else 4) if flags & IS_NEW else 3
+    coarse &= ~IS_VERSION_5
     if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse < len(COARSE_STEPS)):
         raise ValueError("impossible prefix")
     if bool(flags & HAS_RANK) != bool(rank):
@@ -357,7 +362,6 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         shape = (num_frames, config.num_range_bins, config.num_loops, config.num_antennas)
         values = unpack_exact(data[PREFIX.size :], shape)
         return DecodedChunk(frames=frames, layers=None, residual=None, peak=peak, noise_power=noise_power, exact=values)
-    is_version_3 = not flags & IS_VERSION_4
     at, beams, shape = PREFIX.size, beams_of(config), frames.working_shape
     gains, transform = torch.ones(config.num_antennas, dtype=torch.complex64), None
     if flags & HAS_GAINS:
@@ -365,12 +369,12 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         at += 2 * config.num_antennas
     noise: NoiseLayer | None = None
     if flags & HAS_NOISE:
-        noise = NoiseLayer.unpack(data[at:], shape, beams, is_version_3=is_version_3)
+        noise = NoiseLayer.unpack(data[at:], shape, beams, version=version)
         at += len(noise.packed)
     if flags & HAS_CELLS:
         transform = ChunkTransform.unpack(data[at:], beams, shape[2])
         at += len(transform.packed)
-    stream = Decoder(data[at:], is_version_3=is_version_3)
+    stream = Decoder(data[at:], version=version)
     layers, near = _decode_layers(stream, frames, step, flags, gains, noise_power)
     residual: np.ndarray | None = None
     if flags & HAS_RANK:
@@ -384,11 +388,10 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
     num_values = 0
     if transform is not None and with_residual:
         classes = np.zeros(shape[:3], np.int64)
-        levels = np.zeros((2, shape[3], *shape[:3]), np.int64)
-        code_cells(stream, levels, classes, near, transform.correlated, COARSE_STEPS[coarse])
+        levels = code_cells(stream, None, classes, near, transform.correlated, COARSE_STEPS[coarse], shape[3])
         num_values = int(np.count_nonzero(levels))
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
-        rest = transform.inverse(cells.values(step, COARSE_STEPS[coarse]).astype(np.complex64))
+        rest = transform.inverse(cells.values(step, COARSE_STEPS[coarse]))
         residual = rest if residual is None else residual + rest
     return DecodedChunk(
         frames=frames, layers=layers, residual=None if residual is None else finite(residual), peak=peak,
@@ -429,7 +432,8 @@ def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
 
 
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
-    LevelCoder(levels.shape[1:]).code(stream, levels, np.ones(levels.shape[2:], np.int64))
+    every = np.ones(levels.shape[2:], np.int64)
+    LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
 
 
 def _static_step(window: FitWindow, step: float) -> float:

@@ -24,10 +24,10 @@ MOST_RUNGS = len(RUNGS) - 2
 class BitStream(ABC):
     """Common interface of encoder and decoder: codes given values, or returns decoded ones.
 
-    `is_version_3`: models of levels and classes are those of .mmw version 3 (`level_coder`, `class_map`).
+    `version`: of the .mmw format whose models of levels and classes are used (`level_coder`, `class_map`).
     """
 
-    is_version_3 = False
+    version = 5
 
     @abstractmethod
     def bits(self, probability: Probability, values: Integers) -> Integers:
@@ -104,9 +104,9 @@ class Encoder(BitStream):
 class Decoder(BitStream):
     """A BitStream that decodes the bytes of an Encoder."""
 
-    def __init__(self, data: bytes, *, is_version_3: bool = False) -> None:
+    def __init__(self, data: bytes, *, version: int = 5) -> None:
         model, queue = _constriction()
-        self.is_version_3 = is_version_3
+        self.version = version
 
         self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
         self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()

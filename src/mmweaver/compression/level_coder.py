@@ -1,8 +1,8 @@
-"""Entropy coding of the integer levels (part, beam, time, range, doppler) of open cells, whatever the shape.
+"""Entropy coding of the integer levels (part, beam, cell) of open cells (time, range, doppler), whatever the shape.
 
-Beam by beam, in the phases of `lattice`. Contexts are the known neighbours, the preceding beams, the real part for
-the imaginary one, and the place. The FFT windows correlate neighbouring cells along range and Doppler, signs included,
-so a weighted sum of the neighbours predicts the level.
+Beam by beam, or a few beams at once where few cells are open, in the phases of `lattice`. Contexts are the known
+neighbours, the preceding beams, the real part for the imaginary one, and the place. The FFT windows correlate
+neighbouring cells along range and Doppler, signs included, so a weighted sum of the neighbours predicts the level.
 """
 
 import operator
@@ -20,6 +20,7 @@ Integers = np.ndarray  # int64; called thousands of times a cube
 SIZE_BOUNDS = np.array([1, 2, 4, 6, 9, 13, 18, 26, 36, 50, 70, 100, 150, 230, 400, 800, 1600, 3200])  # eighths
 TREND_BOUNDS = np.array([1, 3, 6, 9])  # eighths of a level
 WIDE_BOUNDS = np.array([1, 3, 8, 24])
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
 FAR = 12  # eighths of a level; from this prediction on, the deviation from it is coded
 NUM_SIZES, NUM_TRENDS, NUM_WIDE = len(SIZE_BOUNDS) + 1, len(TREND_BOUNDS) + 2, len(WIDE_BOUNDS) + 1
 NUM_REAL = 4
@@ -27,33 +28,39 @@ UNKNOWN = NUM_SIZES  # class of a size that is not known
 OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
 LARGER, LEAST_SCALE = 2.0, 0.3
 DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
-STRIDES, STRIDES_IN_3 = (4, 2, 1), (1,)  # of the lattices, one after the other
+LARGE, MIDDLE = 20_000, 500  # open cells
+# strides of the lattices, one after the other, by the number of open cells from which on they pay
+LATTICES = ((LARGE, (4, 2, 1)), (MIDDLE, (2, 1)), (0, (1,)))
+LATTICES_IN = {3: (1,), 4: (4, 2, 1)}
+VALUES_AT_ONCE = 20_000  # open cells times beams that are coded in the phases of one pass
 
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseGroup:
-    """Open cells of one phase."""
+    """Open cells of one phase (n,), as indices in the list of open cells; neighbours that are closed are its end."""
 
-    phase: Phase
-    stride: int
-    at: Integers  # flat index in the padded (time, range, doppler)
+    cells: Integers
     column: Integers
     factor: Integers  # step of the cell in units of the fine step
+    around: list[tuple[int, Integers]]  # weights of the known neighbours, and where they are
+    rows: list[Integers]  # neighbours that predict the sign: along range, along Doppler, and diagonal ones
+    columns: list[Integers]
+    corners: list[Integers]
 
 
 @dataclass(frozen=True, kw_only=True)
 class KnownSizes:
-    """Magnitudes around the cells of a group in eighths of a level: same beam, preceding beams, their neighbours."""
+    """Magnitudes around the values of a group in eighths of a level: same beam, preceding beams, their neighbours."""
 
     own: Integers | None
     other: Integers | None
     wide: Integers
     real: Integers | None = None  # magnitude of the real part, in levels
 
-    def some(self, cells: slice, real: Integers | None) -> "KnownSizes":
-        """Of some cells, with the magnitude of the real part of all."""
-        own, other, real = (None if size is None else size[cells] for size in (self.own, self.other, real))
-        return KnownSizes(own=own, other=other, wide=self.wide[cells], real=real)
+    def some(self, values: slice, real: Integers | None) -> "KnownSizes":
+        """Of some values, with the magnitude of the real part of all."""
+        own, other, real = (None if size is None else size[values] for size in (self.own, self.other, real))
+        return KnownSizes(own=own, other=other, wide=self.wide[values], real=real)
 
 
 class LevelCoder:
@@ -76,74 +83,92 @@ class LevelCoder:
         )
 
     def code(self, stream: BitStream, levels: Integers, factor: Integers) -> None:
-        """Encodes `levels` (part, beam, time, range, doppler), or fills them in when decoding.
+        """Encodes `levels` (part, beam, cell) of the open cells, or fills them in when decoding.
 
         `factor` (time, range, doppler): step of each cell in units of the finest, 0 where it is closed.
         """
-        beams = self.shape[0]
-        lattices = STRIDES_IN_3 if stream.is_version_3 else STRIDES
-        batches = Batches(stream)
-        self.offsets = {phase: self._offsets(phase, has_all=stream.is_version_3) for phase in PHASES}
-        margins = [lattices[0] if num > 1 or stream.is_version_3 else 0 for num in self.shape[1:]]
-        size_of = tuple(num + 2 * margin for num, margin in zip(self.shape[1:], margins, strict=True))
-        strides = (size_of[1] * size_of[2], size_of[2], 1)
-        groups = list(_groups(factor, strides, lattices, margins))
-        planes = np.zeros((2, beams, *size_of), np.int64)
-        inside = tuple(slice(margin, margin + num) for margin, num in zip(margins, self.shape[1:], strict=True))
-        inner = planes[(slice(None), slice(None), *inside)]
-        inner[...] = levels * factor
-        planes = planes.reshape(2, beams, -1)
-        before = np.zeros(planes.shape[2], np.int64)
-        for beam in range(beams):
-            size = np.zeros_like(before)
-            wide = _neighbour_mean(before.reshape(size_of)).ravel() if beam else before
+        beams, num = levels.shape[1:]
+        if not num:
+            return
+        lattices = LATTICES_IN.get(stream.version) or next(strides for least, strides in LATTICES if num >= least)
+        margins = [lattices[0] if size > 1 or stream.version == 3 else 0 for size in self.shape[1:]]
+        places = _Places(factor, margins)
+        groups = list(self._groups(places, lattices, has_all=stream.version == 3))
+        beside = [places.of(places.at, offset) for offset in _axes(margins)]
+        factors = factor[factor > 0][:, None]
+        batches, before, first = Batches(stream), np.zeros(num + 1, np.int64), 0
+        while first < beams:
+            at_once = 1 if stream.version in LATTICES_IN else min(max(first, 1), -(-VALUES_AT_ONCE // num))
+            some = levels[:, first : first + at_once]
+            planes = np.zeros((2, num + 1, some.shape[1]), np.int64)
+            planes[:, :-1] = some.swapaxes(1, 2) * factors
+            size = np.zeros(planes.shape[1:], np.int64)
+            wide = sum((before[cells] for cells in beside), np.zeros(num, np.int64)) // 6
             for group in groups:
-                known = self._known(group, size, before if beam else None, wide, strides)
-                self._code_group(stream, group, planes[:, beam], known, beam, strides, batches)
-                size[group.at] = np.abs(planes[0, beam][group.at]) + np.abs(planes[1, beam][group.at])
-            before = (size + before) // 2 if beam else size
-        levels[...] = inner // np.maximum(factor, 1)
+                known = self._known(group, size, before if first else None, wide)
+                self._code_group(stream, group, planes, known, first, batches)
+                size[group.cells] = np.abs(planes[:, group.cells]).sum(axis=0)
+            some[...] = (planes[:, :-1] // factors).swapaxes(1, 2)
+            for beam in size.T:
+                before = (beam + before) // 2 if first else beam
+                first += 1
 
-    def _offsets(self, phase: Phase, *, has_all: bool) -> list[tuple[Phase, int]]:
-        """Known neighbours and their weights, without those along axes of one cell unless `has_all`."""
-        found = known_neighbours(phase)
+    def _groups(self, places: "_Places", lattices: tuple[int, ...], *, has_all: bool) -> Iterator[PhaseGroup]:
+        """`has_all`: with the neighbours along axes of one cell, which count as zeros."""
         single = [num == 1 and not has_all for num in self.shape[1:]]
-        return [(offset, weight) for offset, weight in found if not any(map(operator.and_, map(bool, offset), single))]
+        for stride in lattices:
+            for phase in PHASES if stride == lattices[0] else PHASES[1:]:
+                cells = places.of_phase(phase, stride)
+                if not len(cells):
+                    continue
+                at = places.at[cells]
+                around = [
+                    (weight, places.of(at, [stride * step for step in offset]))
+                    for offset, weight in known_neighbours(phase)
+                    if not any(map(operator.and_, map(bool, offset), single))
+                ]
+                along = bool(phase[1]) and self.correlated[0] and stride == 1
+                across = bool(phase[2]) and self.correlated[1] and stride == 1
+                yield PhaseGroup(
+                    cells=cells, column=places.cell[2][cells], factor=places.factor[cells], around=around,
+                    rows=[places.of(at, (0, side, 0)) for side in (-1, 1) if along],
+                    columns=[places.of(at, (0, 0, side)) for side in (-1, 1) if across],
+                    corners=[places.of(at, (0, *side)) for side in CORNERS if along and across],
+                )  # fmt: skip
 
-    def _known(self, group: PhaseGroup, size: Integers, before, wide: Integers, strides) -> KnownSizes:
-        at, factor = group.at, group.factor
-        around, total = np.zeros(len(at), np.int64), 0
-        for offset, weight in self.offsets[group.phase]:
-            around += weight * size[at + group.stride * _flat(offset, strides)]
+    def _known(self, group: PhaseGroup, size: Integers, before: Integers | None, wide: Integers) -> KnownSizes:
+        cells, factor, beams = group.cells, group.factor, size.shape[1]
+        around, total = np.zeros((len(cells), beams), np.int64), 0
+        for weight, places in group.around:
+            around += weight * size[places]
             total += weight
         return KnownSizes(
-            own=4 * around // (total * factor) if total else None,
-            other=None if before is None else 4 * before[at] // factor,
-            wide=4 * wide[at] // factor,
+            own=(4 * around // (total * factor[:, None])).ravel() if total else None,
+            other=None if before is None else np.repeat(4 * before[cells] // factor, beams),
+            wide=np.repeat(4 * wide[cells] // factor, beams),
         )
 
-    def _code_group(self, stream, group: PhaseGroup, planes, known: KnownSizes, beam: int, strides, batches) -> None:
-        at, factor = group.at, group.factor
-        place = beam * self.shape[3] + group.column
+    def _code_group(self, stream, group: PhaseGroup, planes, known: KnownSizes, first: int, batches) -> None:
+        cells, factor = group.cells, group.factor[:, None]
+        place = ((first + np.arange(planes.shape[2])) * self.shape[3] + group.column[:, None]).ravel()
         real: Integers | None = None
         for plane in planes:
-            trend = self._trend(plane, group, strides)
-            trend = None if trend is None else trend // factor
-            wanted = plane[at] // factor
-            values = np.concatenate(
-                [
-                    self._numbers(
-                        stream,
-                        known.some(batch, real),
-                        None if trend is None else trend[batch],
-                        place[batch],
-                        wanted[batch],
-                    )
-                    for batch in batches.of(len(at))
-                ]
-            )
-            plane[at] = values * factor
-            real = np.abs(values)
+            trend = _trend(plane, group)
+            trend = None if trend is None else (trend // factor).ravel()
+            wanted = plane[cells] // factor
+            values = [
+                self._numbers(
+                    stream,
+                    known.some(batch, real),
+                    None if trend is None else trend[batch],
+                    place[batch],
+                    wanted.ravel()[batch],
+                )
+                for batch in batches.of(wanted.size)
+            ]
+            joined = np.concatenate(values)
+            plane[cells] = joined.reshape(wanted.shape) * factor
+            real = np.abs(joined)
 
     def _numbers(
         self, stream, known: KnownSizes, trend: Integers | None, place: Integers, wanted: Integers
@@ -171,28 +196,53 @@ class LevelCoder:
 
     def _shifts(self, stream: BitStream, expected: Integers) -> tuple[Integers | None, Integers | int]:
         """Low bits of levels that are uniform, None where there are none, and by how much contexts are scaled."""
-        most = DIGITS_IN_3 if stream.is_version_3 else DIGITS
+        most = DIGITS_IN_3 if stream.version == 3 else DIGITS
         if int(expected.max()) >> 3 < 1 << most:
             return None, 0
         digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
         shift = np.maximum(digits - most, 0)
-        return shift, 0 if stream.is_version_3 else shift
+        return shift, 0 if stream.version == 3 else shift
 
-    def _trend(self, plane: Integers, group: PhaseGroup, strides) -> Integers | None:
-        """Level predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
-        at, (_, row, column) = group.at, strides
-        along = bool(group.phase[1]) and self.correlated[0] and group.stride == 1
-        across = bool(group.phase[2]) and self.correlated[1] and group.stride == 1
-        if not (along or across):
-            return None
-        zero = np.zeros(len(at), np.int64)
-        rows = plane[at - row] + plane[at + row] if along else zero
-        columns = plane[at - column] + plane[at + column] if across else zero
-        if not (along and across):
-            return 5 * (rows + columns)
-        corners = plane[at - row - column] + plane[at - row + column]
-        corners = corners + plane[at + row - column] + plane[at + row + column]
-        return 4 * (rows + columns) - 2 * corners
+
+class _Places:
+    """Open cells (cell,) of an array (time, range, doppler), and how they are found from their neighbours."""
+
+    def __init__(self, factor: Integers, margins: Sequence[int]):
+        self.cell = np.nonzero(factor)
+        self.factor = factor[self.cell]
+        sizes = [num + 2 * margin for num, margin in zip(factor.shape, margins, strict=True)]
+        self.strides = (sizes[1] * sizes[2], sizes[2], 1)
+        self.at = self._flat([index + margin for index, margin in zip(self.cell, margins, strict=True)])
+        self._index = np.full(sizes[0] * self.strides[0], len(self.at))
+        self._index[self.at] = np.arange(len(self.at))
+
+    def of(self, at: Integers, offset: Sequence[int]) -> Integers:
+        """Indices of the cells that are `offset` away; the number of cells where there is none."""
+        return self._index[at + self._flat(offset)]
+
+    def of_phase(self, phase: Phase, stride: int) -> Integers:
+        """Indices of the cells of a phase of a lattice."""
+        own = [index % (2 * stride) == stride * odd for index, odd in zip(self.cell, phase, strict=True)]
+        return np.flatnonzero(own[0] & own[1] & own[2])
+
+    def _flat(self, index: Sequence):
+        return index[0] * self.strides[0] + index[1] * self.strides[1] + index[2] * self.strides[2]
+
+
+def _trend(plane: Integers, group: PhaseGroup) -> Integers | None:
+    """Level (cell, beam) predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
+    near = [plane[cells] for cells in (*group.rows, *group.columns)]
+    if not near:
+        return None
+    if not group.corners:
+        return 5 * sum(near)
+    return 4 * sum(near) - 2 * sum(plane[cells] for cells in group.corners)
+
+
+def _axes(margins: Sequence[int]) -> list[tuple[int, ...]]:
+    """Offsets to both sides along the axes of several cells."""
+    axes = [axis for axis, margin in enumerate(margins) if margin]
+    return [tuple(side * (axis == other) for other in range(3)) for axis in axes for side in (-1, 1)]
 
 
 def _expected(known: KnownSizes, num: int) -> Integers:
@@ -209,30 +259,3 @@ def _expected(known: KnownSizes, num: int) -> Integers:
 
 def _class_of(size: Integers | None, shift: Integers | int, num: int) -> Integers:
     return np.full(num, UNKNOWN) if size is None else SIZE_BOUNDS.searchsorted(size >> shift, "right")
-
-
-def _groups(
-    factor: Integers, strides: tuple[int, int, int], lattices: tuple[int, ...], margins: Sequence[int]
-) -> Iterator[PhaseGroup]:
-    for stride in lattices:
-        for phase in PHASES if stride == lattices[0] else PHASES[1:]:
-            own = factor[tuple(slice(stride * odd, None, 2 * stride) for odd in phase)]
-            where = np.nonzero(own)
-            if len(where[0]):
-                cell = [stride * (2 * index + odd) for index, odd in zip(where, phase, strict=True)]
-                at = _flat([index + margin for index, margin in zip(cell, margins, strict=True)], strides)
-                yield PhaseGroup(phase=phase, stride=stride, at=at, column=cell[2], factor=own[where])
-
-
-def _flat(index: Sequence, strides: tuple[int, int, int]):
-    return index[0] * strides[0] + index[1] * strides[1] + index[2] * strides[2]
-
-
-def _neighbour_mean(size: Integers) -> Integers:
-    """Mean magnitude of the six neighbours along the axes."""
-    out = np.zeros_like(size)
-    for axis in range(3):
-        line, into = np.moveaxis(size, axis, 0), np.moveaxis(out, axis, 0)
-        into[1:] += line[:-1]
-        into[:-1] += line[1:]
-    return out // 6

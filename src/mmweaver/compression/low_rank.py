@@ -77,7 +77,7 @@ class RankFactors:
         """Encodes the factors, or fills them in when decoding."""
         for levels in (self.left, self.right):
             every = np.ones(levels.shape[2:], np.int64)
-            LevelCoder(levels.shape[1:], (True, False)).code(stream, levels, every)
+            LevelCoder(levels.shape[1:], (True, False)).code(stream, levels.reshape(2, levels.shape[1], -1), every)
 
     @classmethod
     def empty(cls, rank: int, shape: tuple[int, int, int, int]) -> "RankFactors":

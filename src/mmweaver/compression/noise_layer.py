@@ -36,11 +36,11 @@ class NoiseLayer:
         coefficients = to_noise(quiet, beams)
         cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
         stream = Encoder()
-        _code(stream, cells)
+        _code(stream, cells.levels, cells.classes)
         data = stream.to_bytes()
         return cls(
             packed=HEADER.pack(len(data), step, *cells.centroids) + data,
-            values=from_noise(cells.values(step, 1).astype(np.complex64), beams),
+            values=from_noise(cells.values(step, 1), beams),
         )
 
     @classmethod
@@ -50,7 +50,7 @@ class NoiseLayer:
         shape: tuple[int, int, int, int],
         beams: Complex[Array, "beam antenna"],
         *,
-        is_version_3: bool = False,
+        version: int = Encoder.version,
     ) -> "NoiseLayer":
         """The layer of bytes that begin with `packed`. Raises ValueError for what no encoder writes."""
         size, step, one, more = HEADER.unpack_from(data)
@@ -58,11 +58,9 @@ class NoiseLayer:
         if last > len(data) or not 0 < step < np.inf:
             raise ValueError("impossible noise")
         classes = np.zeros(shape[:3], np.int64)
-        cells = QuantizedCells(
-            levels=np.zeros((2, shape[3], *shape[:3]), np.int64), classes=classes, centroids=(one, more)
-        )
-        _code(Decoder(data[HEADER.size : last], is_version_3=is_version_3), cells)
-        return cls(packed=data[:last], values=from_noise(cells.values(step, 1).astype(np.complex64), beams))
+        levels = _code(Decoder(data[HEADER.size : last], version=version), None, classes, shape[3])
+        cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
+        return cls(packed=data[:last], values=from_noise(cells.values(step, 1), beams))
 
 
 def without_signal(
@@ -102,5 +100,5 @@ def _along(values: Array, transform, axes: tuple[int, ...]) -> Array:
     return real + values.dtype.type(1j) * imaginary
 
 
-def _code(stream: Encoder | Decoder, cells: QuantizedCells) -> None:
-    code_cells(stream, cells.levels, cells.classes, np.zeros(cells.classes.shape, np.int64), (False, False), 1)
+def _code(stream: Encoder | Decoder, levels: Array | None, classes: Array, num_beams: int = 0) -> Array:
+    return code_cells(stream, levels, classes, np.zeros(classes.shape, np.int64), (False, False), 1, num_beams)

@@ -23,6 +23,7 @@ SMALL_EXCESS = 3e-3  # relative error of a size or error that an estimate is ask
 DECISIONS = 2
 CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
 CLOSER, AIM_CLOSER = 0.995, 0.998  # with a noise layer, which has most of the bytes and is coded once
+TRIALS_SHARE = 0.01  # less of the bytes is enough from the third trial on
 CLOSEST = 1.002  # ratio of steps that are tried one after the other, at least
 CLOSE_FIRST = 0.2  # difference of log(bytes) up to which the first file tells the error of one of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
@@ -172,7 +173,8 @@ def _finest(
         progress(f"trial {trial + 1}")
         if one.num_bytes <= num_bytes:
             fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
-            if one.num_bytes >= (CLOSER if noise_step else CLOSE_ENOUGH) * num_bytes or step <= segment.finest_step:
+            enough = (CLOSER if noise_step else CLOSE_ENOUGH) - TRIALS_SHARE * (trial > 1)
+            if one.num_bytes >= enough * num_bytes or step <= segment.finest_step:
                 break
         else:
             larger, low = one, step

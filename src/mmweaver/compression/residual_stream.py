@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Int
+from jaxtyping import Complex, Float, Int
 
 from mmweaver.compression.class_map import CLOSED, COARSE, FINE, ClassMapCoder
 from mmweaver.compression.entropy import BitStream
@@ -12,6 +12,7 @@ from mmweaver.compression.level_coder import LevelCoder
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion
 PRICE = 0.11  # Lagrange multiplier: squared steps per bit
+SLIGHTLY_LESS = 0.999  # for roundings of float32
 LOWERED = (0.5, 0.75, 0.9, 0.0)  # shares of levels that are tried in turn
 ZERO_BITS, SIGN_AND_SIZE_BITS, OPEN_BITS = 0.35, 3.0, 3.0
 FIRST_OCTAVES, FIRST_OCTAVE_BITS, OCTAVE_BITS = 2, 1.6, 1.25
@@ -19,19 +20,31 @@ FIRST_OCTAVES, FIRST_OCTAVE_BITS, OCTAVE_BITS = 2, 1.6, 1.25
 
 @dataclass(frozen=True, kw_only=True)
 class QuantizedCells:
-    """Levels (part, beam, time, range, index), the classes of the cells, and the centroids of the levels."""
+    """Levels (part, beam, cell) of the open cells, the classes of all, and the centroids of the levels."""
 
-    levels: Int[Array, "2 beam time range index"]
+    levels: Int[Array, "2 beam cell"]
     classes: Int[Array, "time range index"]
     centroids: tuple[int, int]  # mean offset of values from level 1, and from higher ones, in 1/256, plus 128
 
-    def values(self, step: float, coarser: int) -> Complex[Array, "beam time range index"]:
-        """The coefficients that a decoder has."""
+    def open_values(self, step: float, coarser: int) -> Complex[Array, "beam cell"]:
+        """The coefficients of the open cells that a decoder has."""
         size = np.abs(self.levels)
         one, more = ((offset - 128) / 256 for offset in self.centroids)
         magnitude = size + np.where(size == 1, one, more)
-        out = np.sign(self.levels) * magnitude * (step * np.where(self.classes == COARSE, coarser, 1))
+        classes = self.classes[self.classes > CLOSED]
+        out = np.sign(self.levels) * magnitude * (step * np.where(classes == COARSE, coarser, 1))
         return out[0] + 1j * out[1]
+
+    def values(self, step: float, coarser: int) -> Complex[Array, "beam time range index"]:
+        """The coefficients that a decoder has, complex64."""
+        out = np.zeros((self.levels.shape[1], *self.classes.shape), np.complex64)
+        out[:, self.classes > CLOSED] = self.open_values(step, coarser)
+        return out
+
+
+def cell_energy(values: Complex[Array, "beam *cells"]) -> Float[Array, "*cells"]:
+    """Energy of each cell in all beams."""
+    return sum(np.square(beam.real) + np.square(beam.imag) for beam in values)
 
 
 def quantized(
@@ -40,41 +53,55 @@ def quantized(
     coarser: int,
     is_active: Array,
     price: float = PRICE,
+    energy: Array | None = None,
 ) -> QuantizedCells:
     """Rate-distortion choice of the cells that are coded. Cells that are not active have `coarser` times the step.
 
     `coarser` 0: cells that are not active stay closed.
 
     `price`: squared steps that a bit must save; at 0 all cells are coded in which any level is not zero, above PRICE
-    levels are lowered too.
+    levels are lowered too. `energy`: that of the cells, if known.
     """
+    energy = cell_energy(coefficients) if energy is None else energy
     own_step = np.where(is_active, step, step * (coarser or 1))
-    parts = np.stack([np.real(coefficients), np.imag(coefficients)])
-    parts /= own_step.astype(parts.dtype)
+    # most cells have less energy than their least level
+    is_open = (energy >= SLIGHTLY_LESS * ((1 - ROUNDING) * own_step) ** 2) & (is_active | (coarser > 0))
+    some = coefficients[:, is_open]
+    parts = np.stack([np.real(some), np.imag(some)])
+    parts /= own_step[is_open].astype(parts.dtype)
     magnitude = np.abs(parts)
     levels = np.floor(magnitude + magnitude.dtype.type(ROUNDING))
     if price > PRICE:
         levels = _lowered(magnitude, levels, price)
-    is_open = _is_worthwhile(magnitude, levels, price) & levels.any(axis=(0, 1)) & (is_active | (coarser > 0))
-    levels *= is_open
-    centroids = _centroids(magnitude[:, :, is_open], levels[:, :, is_open])
-    classes = np.where(is_open, np.where(is_active | (coarser <= 1), FINE, COARSE), CLOSED)
+    worth = _is_worthwhile(magnitude, levels, price) & levels.any(axis=(0, 1))
+    is_open[is_open] = worth
+    parts, magnitude, levels = (values[:, :, worth] for values in (parts, magnitude, levels))
     return QuantizedCells(
-        levels=np.where(parts < 0, -levels, levels).astype(np.int64), classes=classes.astype(np.int64),
-        centroids=centroids,
-    )  # fmt: skip
+        levels=np.where(parts < 0, -levels, levels).astype(np.int64),
+        classes=np.where(is_open, np.where(is_active | (coarser <= 1), FINE, COARSE), CLOSED),
+        centroids=_centroids(magnitude, levels),
+    )
 
 
 def code_cells(
-    stream: BitStream, levels: Array, classes: Array, near: Array, correlated: tuple[bool, bool], coarser: int
-) -> None:
-    """Encodes levels and classes, or fills them in when decoding.
+    stream: BitStream,
+    levels: Array | None,
+    classes: Array,
+    near: Array,
+    correlated: tuple[bool, bool],
+    coarser: int,
+    num_beams: int = 0,
+) -> Array:
+    """Encodes levels and classes; with None for levels, fills in the classes and returns the levels of so many beams.
 
     `near`: strength of the nearest scatterer. `correlated`: see `LevelCoder`.
     """
     ClassMapCoder(classes.shape[2]).code(stream, classes, near)
+    if levels is None:
+        levels = np.zeros((2, num_beams, np.count_nonzero(classes)), np.int64)
     factor = np.where(classes == FINE, 1, coarser) * (classes > CLOSED)
-    LevelCoder(levels.shape[1:], correlated).code(stream, levels, factor)
+    LevelCoder((levels.shape[1], *classes.shape), correlated).code(stream, levels, factor)
+    return levels
 
 
 def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
@@ -93,9 +120,21 @@ def _is_worthwhile(magnitude: Array, levels: Array, price: float) -> Array:
 
 def approximate_bits(levels: Array) -> Array:
     """Approximate bits of magnitudes in open cells."""
+    small = np.minimum(levels, len(BITS_OF_LEVEL) - 1).astype(np.int16)
+    bits = BITS_OF_LEVEL.take(small)
+    is_large = small == len(BITS_OF_LEVEL) - 1
+    if is_large.any():
+        bits[is_large] = _bits_of(levels[is_large])
+    return bits
+
+
+def _bits_of(levels: Array) -> Array:
     octaves = np.log2(np.maximum(levels, 1))
     more = FIRST_OCTAVE_BITS * np.minimum(octaves, FIRST_OCTAVES) + OCTAVE_BITS * np.maximum(octaves - FIRST_OCTAVES, 0)
     return np.where(levels > 0, SIGN_AND_SIZE_BITS + more, ZERO_BITS)
+
+
+BITS_OF_LEVEL = _bits_of(np.arange(256)).astype(np.float32)
 
 
 def _centroids(magnitude: Array, levels: Array) -> tuple[int, int]:

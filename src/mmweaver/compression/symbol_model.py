@@ -29,7 +29,7 @@ class Batches:
     """
 
     def __init__(self, stream: BitStream):
-        self.is_endless, self.num_coded = stream.is_version_3, 0
+        self.is_endless, self.num_coded = stream.version == 3, 0
 
     def of(self, num: int) -> Iterator[slice]:
         """The batches of the next `num` symbols; each is as long as all before it together."""
@@ -141,12 +141,12 @@ class SignedModel:
         symbol = np.where(np.abs(high) <= HALF, high + HALF, ESCAPE)
         symbol = self.symbols.code(stream, contexts, symbol, mirrored)
         out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
-        if len(far) and not stream.is_version_3:
+        if len(far) and stream.version > 3:
             out[far] = self._far(stream, high[far])
-        has_low = (symbol < ESCAPE) | (not stream.is_version_3)
+        has_low = (symbol < ESCAPE) | (stream.version > 3)
         low = stream.uniform(np.where(has_low, 1 << shift, 1), np.where(has_low, low, 0))
         out = (out << shift) - half + low
-        if len(far) and stream.is_version_3:
+        if len(far) and stream.version == 3:
             out[far] = self._far(stream, values[far])
         return out
 
