@@ -62,9 +62,10 @@ def test_what_does_not_fit_is_refused(tmp_path: Path):
         MmwWriter(tmp_path / "b.mmw", append=True)
 
 
-def test_a_file_of_version_3_is_continued(tmp_path: Path):
+@pytest.mark.parametrize("version", [3, 4])
+def test_a_file_of_an_older_version_is_continued(tmp_path: Path, version: int):
     path = tmp_path / "old.mmw"
-    path.write_bytes((Path(__file__).parents[1] / "golden" / "version_3.mmw").read_bytes())
+    path.write_bytes((Path(__file__).parents[1] / "golden" / f"version_{version}.mmw").read_bytes())
     before = read_cube(path)
     again = replace(
         before, values=before.values[:1], grid=replace(before.grid, frame_time_s=before.grid.frame_time_s[:1])

@@ -10,10 +10,10 @@ from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
 from mmweaver.compression.residual_stream import PRICE
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.layers import Layers
+from mmweaver.fields.scatterers.layers import Layers, fit_static, subtract_static
 
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
-POINTS_A_FRAME = 50
+POINTS_A_FRAME = 35
 FIT_STAGES, LAST_STEPS, LEAST_GAIN = 16, 3, 12.0
 SIGNAL_GAIN, MARGIN = 2.0, 3  # of cells that scatterers are fitted to: power over that of noise, cells around them
 CLEAR = 0.995  # of the cost without layers: what layers must have, for estimates are not better
@@ -89,7 +89,7 @@ class ModeChooser:
 
 
 def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
-    """Scatterers and static layer of a chunk, fitted where there is signal."""
+    """Scatterers and static layer of a chunk, fitted where something moves."""
     window, frames = encoder.frames.fit_window(), encoder.frames.num_frames
     # a single frame cannot separate static clutter from slow motion
     recipe = FitRecipe(
@@ -97,26 +97,28 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
         with_calibration=True, stages=FIT_STAGES, last_steps=LAST_STEPS, least_gain=LEAST_GAIN,
         most_noise=encoder.noise_power,
     )  # fmt: skip
-    ranges, bins = _box(encoder.target, encoder.noise_power, with_static=recipe.with_static)
-    axes = replace(window.axes, range_bin=window.axes.range_bin[ranges], doppler_bin=window.axes.doppler_bin[bins])
-    target = torch.from_numpy(np.ascontiguousarray(encoder.target[:, ranges, bins]))
-    layers = fitted(target, replace(window, axes=axes), recipe)
-    static = torch.zeros(encoder.target.shape[1], encoder.target.shape[3], dtype=layers.static.dtype)
-    static[ranges] = layers.static
+    response, axes, target = window.response, window.axes, torch.from_numpy(encoder.target)
+    moving = target.clone()
+    if recipe.with_static:
+        subtract_static(moving, fit_static(target, response, axes), response, axes)
+    ranges, bins = _box(moving.numpy(), encoder.noise_power, with_static=recipe.with_static)
+    own = replace(axes, range_bin=axes.range_bin[ranges], doppler_bin=axes.doppler_bin[bins])
+    layers = fitted(target[:, ranges, bins].contiguous(), replace(window, axes=own), recipe)
+    static = torch.zeros(target.shape[1], target.shape[3], dtype=layers.static.dtype)
+    if recipe.with_static:
+        points = replace(layers.points, amplitude=-layers.points.amplitude)
+        static = fit_static(response.render(points, axes, target / layers.calibration), response, axes)
     return replace(layers, static=static)
 
 
-def _box(target: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[slice, slice]:
-    """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that hold signal, and some more.
-
-    With static clutter all ranges: a mean over frames finds it below the noise of their cells.
-    """
-    power = np.square(target.real).sum(axis=3) + np.square(target.imag).sum(axis=3)
-    strong = (power > SIGNAL_GAIN * (target.shape[3] + LEAST_GAIN) * noise_power).any(axis=0)
+def _box(moving: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[slice, slice]:
+    """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that hold signal, and some more."""
+    power = np.square(moving.real).sum(axis=3) + np.square(moving.imag).sum(axis=3)
+    strong = (power > SIGNAL_GAIN * (moving.shape[3] + LEAST_GAIN) * noise_power).any(axis=0)
     bins = strong.any(axis=0)
     if with_static:
         bins[len(bins) // 2] = True
-    return slice(None) if with_static else _around(strong.any(axis=1)), _around(bins)
+    return _around(strong.any(axis=1)), _around(bins)
 
 
 def _around(mask: np.ndarray) -> slice:

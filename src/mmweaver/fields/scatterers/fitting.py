@@ -14,15 +14,16 @@ from mmweaver.fields.scatterers.layers import (
     fit_static,
     join_points,
     no_points,
-    static_cells,
     static_values,
     strongest,
+    subtract_static,
     values_of_point,
 )
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
 DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
 CALIBRATED_EVERY = 4  # stages: gains change slowly
+NOISE_CELLS = 30_000  # of which the median tells the power of the noise
 WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
@@ -103,8 +104,8 @@ class _Fit:
 
     def _add(self, wanted: int) -> None:
         have = int((self.points.amplitude != 0).sum())
-        least = self.recipe.least_gain * self._noise_power()
         if wanted > have:
+            least = self.recipe.least_gain * self._noise_power()
             new = next_points(self.residual, self.response, self.axes, self.beams, count=wanted - have, least=least)
             self.points = join_points(self.points, new)
             if new.amplitude.shape[1]:
@@ -123,7 +124,9 @@ class _Fit:
         self._update_static()
 
     def _without_static(self) -> Tensor:
-        return self.calibrated - static_cells(self.static, self.response, self.axes)
+        out = self.calibrated.clone()
+        subtract_static(out, self.static, self.response, self.axes)
+        return out
 
     def _update_static(self) -> None:
         """Moves the static part of the residual into the static layer."""
@@ -133,7 +136,7 @@ class _Fit:
         self.static = before + fit_static(self.residual, self.response, self.axes)
         if self.active_beams is not None:
             self.static = (self.static @ self.to_beams.T * self.active_beams) @ self.to_beams.conj()
-        self.residual = self.residual - static_cells(self.static - before, self.response, self.axes)
+        subtract_static(self.residual, self.static - before, self.response, self.axes)
 
     def _worthwhile_beams(self) -> Tensor:
         """Beams (range, beam) that explain more energy per parameter than a weak scatterer does."""
@@ -167,5 +170,5 @@ class _Fit:
 
     def _noise_power(self) -> float:
         """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
-        some = self.residual.flatten()[:: max(1, self.residual.numel() // 100_000)]
+        some = self.residual.flatten()[:: max(1, self.residual.numel() // NOISE_CELLS)]
         return min(float(torch.view_as_real(some).square().sum(-1).median()) / 0.6931, self.recipe.most_noise)

@@ -9,6 +9,7 @@ from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 VALUES_OF_POINT = 4  # range, velocity, complex amplitude; plus one per direction the array resolves
 
+NO_RESPONSE = 1e-5  # relative to the peak
 BITS_OF_VALUE = 32  # float32
 
 
@@ -64,11 +65,25 @@ def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
     return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
 
 
+def subtract_static(residual: Tensor, static: Tensor, response: PointResponse, axes: Axes) -> None:
+    """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
+    kernel, bins = _static_response(response, axes)
+    residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
+
+
 def fit_static(residual: Tensor, response: PointResponse, axes: Axes) -> Tensor:
     """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
-    kernel = response.doppler_kernel(axes.doppler_bin)[0]
-    static = torch.einsum("trda,d->ra", residual, kernel.to(residual.dtype))
+    kernel, bins = _static_response(response, axes)
+    static = torch.einsum("trda,d->ra", residual[:, :, bins], kernel.to(residual.dtype))
     return static / (len(residual) * kernel.square().sum())
+
+
+def _static_response(response: PointResponse, axes: Axes) -> tuple[Tensor, slice]:
+    """Doppler response of zero velocity where it is not zero, and these bins: three for a Hann window."""
+    kernel = response.doppler_kernel(axes.doppler_bin)[0]
+    found = (kernel.abs() > NO_RESPONSE).nonzero()
+    bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
+    return kernel[bins], bins
 
 
 def no_points(num_frames: int) -> Points:

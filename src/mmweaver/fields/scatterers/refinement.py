@@ -17,7 +17,7 @@ LARGEST_STEP_BINS = 0.5
 LARGEST_STEP_DIRECTION = 0.25
 DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 3e-2, 3e-3, 1e3
 DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a step that is rejected costs as much as one that is not
-LEAST_BATCH, MOST_BATCHES, WORTH_BATCHES = 5, 6, 12  # frames, batches; points from which on they pay
+LEAST_BATCH, MOST_BATCHES, WORTH_BATCHES = 5, 2, 12  # frames, batches; points from which on they pay
 HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
 # parameter: range bin, Doppler bin, direction x, direction z, real and imaginary amplitude
