@@ -22,7 +22,7 @@ from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.compression.residual_stream import PRICE, QuantizedCells, cell_energy, code_cells, quantized
-from mmweaver.compression.transforms import beams_of
+from mmweaver.compression.transforms import beams_of, static_bins
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import CubeValues
@@ -42,6 +42,8 @@ KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
+FINER, FINER_STEPS = 8, (1, 2, 4, 8)  # which of these: in the byte of the coarse step, times 8
+NO_OFFSET = (128, 128)  # centroids
 COARSE_STEPS = (1, 2, 4, 8, 16, 32, 3)  # in fine steps, as the prefix numbers them
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
 MOST_VALUES, MOST_CELLS = 2**21, 2**26
@@ -55,6 +57,7 @@ class ChunkMode:
     with_points: bool = False
     with_rank: bool = False
     noise_step: float = 0.0  # of the noise layer, where there is one
+    finer: int = 1  # the step over that of moving cells
 
     def name(self) -> str:
         """For people."""
@@ -193,19 +196,41 @@ class ChunkEncoder:
             front += draft.transform.packed
             code_cells(stream, cells.levels, cells.classes, draft.near, draft.transform.correlated, coarser)
         is_active, lost = draft.is_active, draft.energy.astype(np.float64)
-        if draft.transform.choice.range_dct:  # which spreads signal over all cells: errors are those of the cells
+        if draft.transform.choice.range_dct or mode.finer > 1:  # errors are those of the cells of the frames
             rest = draft.transform.inverse(draft.coefficients - cells.values(step, coarser))
-            is_active, lost = self.is_active, cell_energy(np.moveaxis(rest, 3, 0))
+            is_active, lost = self.is_active, self._without_moving(stream, rest, step, mode.finer)
         else:
             lost[is_open] = cell_energy(draft.coefficients[:, is_open] - cells.open_values(step, coarser))
         prefix = PREFIX.pack(
             self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
-            IS_VERSION_5 + COARSE_STEPS.index(coarser or 1), draft.rank, flags,
+            IS_VERSION_5 + FINER * FINER_STEPS.index(mode.finer) + COARSE_STEPS.index(coarser or 1), draft.rank, flags,
         )  # fmt: skip
         return CodedChunk(
             data=prefix + front + stream.to_bytes(), active_error=float(lost[is_active].sum()),
             all_error=float(lost.sum()), step=step, mode=mode, sample=sample,
         )  # fmt: skip
+
+    def _without_moving(self, stream: BitStream, rest: np.ndarray, step: float, finer: int) -> np.ndarray:
+        """Codes moving cells of what is left (frame, range, doppler, antenna) with a finer step, if it is one.
+
+        Returns the energy of each cell that is left then.
+        """
+        beams = np.tensordot(self.beams.astype(rest.dtype), rest, axes=(1, 3))
+        left = cell_energy(beams)
+        if finer > 1:
+            cells = quantized(beams, step / finer, 0, self.is_moving, energy=left)
+            cells = replace(cells, centroids=NO_OFFSET)
+            _code_moving(stream, cells.levels, cells.classes)
+            is_open = cells.classes > 0
+            left[is_open] = cell_energy(beams[:, is_open] - cells.open_values(step / finer, 1))
+        return left
+
+    @property
+    def is_moving(self) -> np.ndarray:
+        """Active cells (frame, range, doppler) outside the static Doppler bins."""
+        mask = self.is_active.copy()
+        mask[:, :, static_bins(mask.shape[2])] = False
+        return mask
 
     def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
         """The chunk with its layers coded, and its cells not."""
@@ -348,7 +373,9 @@ def frames_of_chunk(data: bytes) -> int:
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
     version = (5 if coarse & IS_VERSION_5 else 4) if flags & IS_NEW else 3
-    coarse &= ~IS_VERSION_5
+    finer = 1
+    if version == 5:
+        finer, coarse = FINER_STEPS[coarse // FINER % 4], coarse & ~(IS_VERSION_5 + 3 * FINER)
     if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse < len(COARSE_STEPS)):
         raise ValueError("impossible prefix")
     if bool(flags & HAS_RANK) != bool(rank):
@@ -388,10 +415,19 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
     num_values = 0
     if transform is not None and with_residual:
         classes = np.zeros(shape[:3], np.int64)
-        levels = code_cells(stream, None, classes, near, transform.correlated, COARSE_STEPS[coarse], shape[3])
+        coarser = COARSE_STEPS[coarse]
+        levels = code_cells(stream, None, classes, near, transform.correlated, coarser, shape[3])
         num_values = int(np.count_nonzero(levels))
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
-        rest = transform.inverse(cells.values(step, COARSE_STEPS[coarse]))
+        rest = transform.inverse(cells.values(step, coarser))
+        residual = rest if residual is None else residual + rest
+    if finer > 1 and with_residual:
+        classes = np.zeros(shape[:3], np.int64)
+        cells = QuantizedCells(
+            levels=_code_moving(stream, None, classes, shape[3]), classes=classes, centroids=NO_OFFSET
+        )
+        rest = np.moveaxis(np.tensordot(beams.conj(), cells.values(step / finer, 1), axes=(0, 0)), 0, 3)
+        rest = rest.astype(np.complex64)
         residual = rest if residual is None else residual + rest
     return DecodedChunk(
         frames=frames, layers=layers, residual=None if residual is None else finite(residual), peak=peak,
@@ -434,6 +470,10 @@ def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
     every = np.ones(levels.shape[2:], np.int64)
     LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
+
+
+def _code_moving(stream: BitStream, levels: np.ndarray | None, classes: np.ndarray, num_beams: int = 0) -> np.ndarray:
+    return code_cells(stream, levels, classes, np.zeros_like(classes), (False, False), 1, num_beams)
 
 
 def _static_step(window: FitWindow, step: float) -> float:

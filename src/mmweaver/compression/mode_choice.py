@@ -1,21 +1,24 @@
 """Rate-distortion choice of a chunk's mode: transforms, scatterers, low rank (encoder side)."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import torch
 
 from mmweaver.compression.cell_sample import CellSample
-from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
+from mmweaver.compression.chunk import FINER_STEPS, ChunkEncoder, ChunkMode, CodedChunk
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
-from mmweaver.compression.residual_stream import PRICE
+from mmweaver.compression.residual_stream import PRICE, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, fit_static, subtract_static
 
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
-POINTS_A_FRAME = 35
+POINTS_A_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many each, as many in all
 FIT_STAGES, LAST_STEPS, LEAST_GAIN = 16, 3, 12.0
-SIGNAL_GAIN, MARGIN = 2.0, 3  # of cells that scatterers are fitted to: power over that of noise, cells around them
+DEVIATIONS, MARGIN = 3.5, 3  # of noise, by which cells that scatterers are fitted to exceed it; cells around them
+FINER_SHARE, MAP_BITS = 0.05, 6.0  # of the bytes that finer steps of moving cells may have; bits to say where one is
+WEAKER = 2.5  # power of active cells over that of moving ones from which on these are too inaccurate otherwise
 CLEAR = 0.995  # of the cost without layers: what layers must have, for estimates are not better
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
@@ -69,7 +72,21 @@ class ModeChooser:
         samples += [self.encoder.draft(step, mode, coarser).sample() for mode in modes[1:]]
         costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
         best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
-        self.mode, self.sample = modes[best], samples[best]
+        mode, self.sample = modes[best], samples[best]
+        self.mode = replace(mode, finer=self._finer(self.sample.at(step, coarser).num_bytes))
+
+    def _finer(self, num_bytes: float) -> int:
+        """The largest of FINER_STEPS that costs little, where few and weak cells move; else 1."""
+        encoder = self.encoder
+        is_moving, antennas = encoder.is_moving, encoder.target.shape[3]
+        num = int(np.count_nonzero(is_moving))
+        if not num or encoder.frames.hop or num * antennas > 4 * FINER_SHARE * num_bytes:  # cheaply said for most cubes
+            return 1
+        power = cell_energy(np.moveaxis(encoder.target, 3, 0))
+        if power[encoder.is_active].mean() < WEAKER * power[is_moving].mean():
+            return 1
+        cost = {one: num * (MAP_BITS + 2 * antennas * (1 + math.log2(one))) for one in FINER_STEPS[1:]}
+        return max([1, *(one for one, bits in cost.items() if bits <= 8 * FINER_SHARE * num_bytes)])
 
     def _layered(self, step: float, coarser: int) -> list[ChunkMode]:
         encoder, modes = self.encoder, []
@@ -92,8 +109,10 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
     """Scatterers and static layer of a chunk, fitted where something moves."""
     window, frames = encoder.frames.fit_window(), encoder.frames.num_frames
     # a single frame cannot separate static clutter from slow motion
+    each, most = POINTS_OF_FEW_FRAMES
+    num_points = max(POINTS_A_FRAME * frames, min(each * frames, most))
     recipe = FitRecipe(
-        num_points=min(POINTS_A_FRAME * frames, int(num_bytes / BYTES_A_POINT)), with_static=frames > 1,
+        num_points=min(num_points, int(num_bytes / BYTES_A_POINT)), with_static=frames > 1,
         with_calibration=True, stages=FIT_STAGES, last_steps=LAST_STEPS, least_gain=LEAST_GAIN,
         most_noise=encoder.noise_power,
     )  # fmt: skip
@@ -114,7 +133,8 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
 def _box(moving: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[slice, slice]:
     """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that hold signal, and some more."""
     power = np.square(moving.real).sum(axis=3) + np.square(moving.imag).sum(axis=3)
-    strong = (power > SIGNAL_GAIN * (moving.shape[3] + LEAST_GAIN) * noise_power).any(axis=0)
+    antennas = moving.shape[3]
+    strong = (power > (antennas + DEVIATIONS * math.sqrt(antennas) + LEAST_GAIN) * noise_power).any(axis=0)
     bins = strong.any(axis=0)
     if with_static:
         bins[len(bins) // 2] = True
