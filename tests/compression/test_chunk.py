@@ -9,6 +9,7 @@ from mmweaver.compression.chunk import PREFIX, ChunkEncoder, ChunkMode, decode_c
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import NO_DCT, TransformChoice
 from mmweaver.compression.mmw_codec import scale_of
+from mmweaver.compression.moving_cells import moving_cells
 from mmweaver.compression.segment import chunk_encoder, noise_power
 from mmweaver.core.errors import InputError
 from mmweaver.fields.scatterers.fit_window import FitWindow
@@ -120,3 +121,23 @@ def test_a_damaged_stream_ends_in_one_clear_error_or_in_values(encoder: ChunkEnc
         broken = bytes(data[:at]) + bytes([data[at] ^ 0x55]) + bytes(data[at + 1 :])
         with contextlib.suppress(InputError):
             assert decode_chunk(broken, SMALL).cube_values().shape == crowd().values.shape
+
+
+@pytest.mark.parametrize("transform", [TransformChoice(), TransformChoice(time=NO_DCT, doppler_klt=True)])
+def test_moving_cells_may_have_finer_steps(transform: TransformChoice):
+    cube = crowd()
+    encoder = chunk_encoder(cube, scale_of(cube))
+    truth, moving = cube.values / np.abs(cube.values).max(), moving_cells(encoder.is_active)
+    left, sizes = [], []
+    for finer in (1, 8):
+        coded = encoder.encode(0.01, ChunkMode(transform=transform, finer=finer), 4)
+        error = np.sum(
+            np.abs(decode_chunk(coded.data, SMALL).cube_values() / np.abs(cube.values).max() - truth) ** 2, -1
+        )
+        assert coded.all_error == pytest.approx(error.sum(), rel=0.02)
+        left.append((error[moving].mean(), error[~moving].sum()))
+        sizes.append(len(coded.data))
+    assert moving.any()
+    assert left[1][0] < left[0][0] / 20
+    assert left[1][1] == pytest.approx(left[0][1], rel=0.02)
+    assert sizes[0] < sizes[1]

@@ -88,8 +88,16 @@ def test_files_of_version_1_are_still_read():
 @pytest.mark.parametrize(
     ("version", "transform", "errors_db"),
     [
-        (3, "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins", [-38.74, -22.65, -38.80, -49.50]),
-        (4, "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins, DCT of ranges", [-43.24, -18.98, -43.3, -43.31]),
+        (
+            3,
+            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins",
+            [-38.74, -22.65, -38.80, -49.50],
+        ),
+        (
+            4,
+            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins, DCT of ranges",
+            [-43.24, -18.98, -43.3, -43.31],
+        ),
     ],
 )
 def test_files_of_older_versions_are_still_read(version: int, transform: str, errors_db: list[float]):

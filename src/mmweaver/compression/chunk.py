@@ -6,6 +6,7 @@ All are quantised with one step: an error of one step in any value leaves about 
 import math
 import struct
 from dataclasses import dataclass, field, replace
+from functools import reduce
 
 import numpy as np
 import torch
@@ -19,10 +20,11 @@ from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
 from mmweaver.compression.low_rank import Components, RankFactors, components_of
+from mmweaver.compression.moving_cells import code_moving, decoded_moving, moving_cells, pack_steps, unpack_steps
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.compression.residual_stream import PRICE, QuantizedCells, cell_energy, code_cells, quantized
-from mmweaver.compression.transforms import beams_of, static_bins
+from mmweaver.compression.transforms import beams_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import CubeValues
@@ -34,7 +36,6 @@ from mmweaver.fields.scatterers.refinement import Damping, refined
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")
 HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_NEW = 1, 2, 4, 8, 16, 32, 64, 128
-IS_VERSION_5 = 64  # in the byte of the coarse step; without it IS_NEW says version 4
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
@@ -42,9 +43,6 @@ KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
-FINER, FINER_STEPS = 8, (1, 2, 4, 8)  # which of these: in the byte of the coarse step, times 8
-NO_OFFSET = (128, 128)  # centroids
-COARSE_STEPS = (1, 2, 4, 8, 16, 32, 3)  # in fine steps, as the prefix numbers them
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
 MOST_VALUES, MOST_CELLS = 2**21, 2**26
 
@@ -198,39 +196,19 @@ class ChunkEncoder:
         is_active, lost = draft.is_active, draft.energy.astype(np.float64)
         if draft.transform.choice.range_dct or mode.finer > 1:  # errors are those of the cells of the frames
             rest = draft.transform.inverse(draft.coefficients - cells.values(step, coarser))
-            is_active, lost = self.is_active, self._without_moving(stream, rest, step, mode.finer)
+            is_active, lost = self.is_active, cell_energy(np.moveaxis(rest, 3, 0))
+            if mode.finer > 1:
+                lost = code_moving(stream, rest, self.beams, moving_cells(is_active), step / mode.finer)
         else:
             lost[is_open] = cell_energy(draft.coefficients[:, is_open] - cells.open_values(step, coarser))
         prefix = PREFIX.pack(
             self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
-            IS_VERSION_5 + FINER * FINER_STEPS.index(mode.finer) + COARSE_STEPS.index(coarser or 1), draft.rank, flags,
+            pack_steps(coarser or 1, mode.finer), draft.rank, flags,
         )  # fmt: skip
         return CodedChunk(
             data=prefix + front + stream.to_bytes(), active_error=float(lost[is_active].sum()),
             all_error=float(lost.sum()), step=step, mode=mode, sample=sample,
         )  # fmt: skip
-
-    def _without_moving(self, stream: BitStream, rest: np.ndarray, step: float, finer: int) -> np.ndarray:
-        """Codes moving cells of what is left (frame, range, doppler, antenna) with a finer step, if it is one.
-
-        Returns the energy of each cell that is left then.
-        """
-        beams = np.tensordot(self.beams.astype(rest.dtype), rest, axes=(1, 3))
-        left = cell_energy(beams)
-        if finer > 1:
-            cells = quantized(beams, step / finer, 0, self.is_moving, energy=left)
-            cells = replace(cells, centroids=NO_OFFSET)
-            _code_moving(stream, cells.levels, cells.classes)
-            is_open = cells.classes > 0
-            left[is_open] = cell_energy(beams[:, is_open] - cells.open_values(step / finer, 1))
-        return left
-
-    @property
-    def is_moving(self) -> np.ndarray:
-        """Active cells (frame, range, doppler) outside the static Doppler bins."""
-        mask = self.is_active.copy()
-        mask[:, :, static_bins(mask.shape[2])] = False
-        return mask
 
     def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
         """The chunk with its layers coded, and its cells not."""
@@ -372,11 +350,8 @@ def frames_of_chunk(data: bytes) -> int:
 
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
-    version = (5 if coarse & IS_VERSION_5 else 4) if flags & IS_NEW else 3
-    finer = 1
-    if version == 5:
-        finer, coarse = FINER_STEPS[coarse // FINER % 4], coarse & ~(IS_VERSION_5 + 3 * FINER)
-    if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse < len(COARSE_STEPS)):
+    coarser, finer, version = unpack_steps(coarse, is_version_3=not flags & IS_NEW)
+    if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak)):
         raise ValueError("impossible prefix")
     if bool(flags & HAS_RANK) != bool(rank):
         raise ValueError("impossible flags")
@@ -403,34 +378,22 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         at += len(transform.packed)
     stream = Decoder(data[at:], version=version)
     layers, near = _decode_layers(stream, frames, step, flags, gains, noise_power)
-    residual: np.ndarray | None = None
+    parts: list[np.ndarray] = []
     if flags & HAS_RANK:
-        if rank > min(shape[0] * shape[1], shape[2] * shape[3]):
-            raise ValueError("impossible rank")
-        factors = RankFactors.empty(rank, shape)
-        factors.code(stream)
-        residual = factors.values(step, shape).astype(np.complex64)
+        parts.append(_decode_rank(stream, rank, shape, step))
     if noise is not None and with_residual:
-        residual = noise.values if residual is None else residual + noise.values
+        parts.append(noise.values)
     num_values = 0
     if transform is not None and with_residual:
         classes = np.zeros(shape[:3], np.int64)
-        coarser = COARSE_STEPS[coarse]
         levels = code_cells(stream, None, classes, near, transform.correlated, coarser, shape[3])
         num_values = int(np.count_nonzero(levels))
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
-        rest = transform.inverse(cells.values(step, coarser))
-        residual = rest if residual is None else residual + rest
+        parts.append(transform.inverse(cells.values(step, coarser)))
     if finer > 1 and with_residual:
-        classes = np.zeros(shape[:3], np.int64)
-        cells = QuantizedCells(
-            levels=_code_moving(stream, None, classes, shape[3]), classes=classes, centroids=NO_OFFSET
-        )
-        rest = np.moveaxis(np.tensordot(beams.conj(), cells.values(step / finer, 1), axes=(0, 0)), 0, 3)
-        rest = rest.astype(np.complex64)
-        residual = rest if residual is None else residual + rest
+        parts.append(decoded_moving(stream, shape, beams, step / finer))
     return DecodedChunk(
-        frames=frames, layers=layers, residual=None if residual is None else finite(residual), peak=peak,
+        frames=frames, layers=layers, residual=finite(reduce(np.add, parts)) if parts else None, peak=peak,
         noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None,
         transform=None if transform is None else transform.choice,
     )  # fmt: skip
@@ -457,6 +420,14 @@ def _decode_layers(stream, frames: ChunkFrames, step: float, flags: int, gains: 
     return layers, near
 
 
+def _decode_rank(stream: BitStream, rank: int, shape: tuple[int, int, int, int], step: float) -> np.ndarray:
+    if rank > min(shape[0] * shape[1], shape[2] * shape[3]):
+        raise ValueError("impossible rank")
+    factors = RankFactors.empty(rank, shape)
+    factors.code(stream)
+    return factors.values(step, shape).astype(np.complex64)
+
+
 def _point_coder(frames: ChunkFrames, window: FitWindow, steps: PointSteps) -> PointCoder:
     config, response = frames.config, window.response
     moves = round(256 * config.frame_period_s * response.velocity_a_bin_mps / response.range_a_bin_m)
@@ -470,10 +441,6 @@ def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
     every = np.ones(levels.shape[2:], np.int64)
     LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
-
-
-def _code_moving(stream: BitStream, levels: np.ndarray | None, classes: np.ndarray, num_beams: int = 0) -> np.ndarray:
-    return code_cells(stream, levels, classes, np.zeros_like(classes), (False, False), 1, num_beams)
 
 
 def _static_step(window: FitWindow, step: float) -> float:

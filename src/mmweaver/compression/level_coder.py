@@ -29,6 +29,7 @@ OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
 LARGER, LEAST_SCALE = 2.0, 0.3
 DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
 LARGE, MIDDLE = 20_000, 500  # open cells
+FEW_BEAMS = 3  # up to which all lattices pay
 # strides of the lattices, one after the other, by the number of open cells from which on they pay
 LATTICES = ((LARGE, (4, 2, 1)), (MIDDLE, (2, 1)), (0, (1,)))
 LATTICES_IN = {3: (1,), 4: (4, 2, 1)}
@@ -90,7 +91,7 @@ class LevelCoder:
         beams, num = levels.shape[1:]
         if not num:
             return
-        lattices = LATTICES_IN.get(stream.version) or next(strides for least, strides in LATTICES if num >= least)
+        lattices = LATTICES_IN.get(stream.version) or _lattices(num, beams)
         margins = [lattices[0] if size > 1 or stream.version == 3 else 0 for size in self.shape[1:]]
         places = _Places(factor, margins)
         groups = list(self._groups(places, lattices, has_all=stream.version == 3))
@@ -237,6 +238,10 @@ def _trend(plane: Integers, group: PhaseGroup) -> Integers | None:
     if not group.corners:
         return 5 * sum(near)
     return 4 * sum(near) - 2 * sum(plane[cells] for cells in group.corners)
+
+
+def _lattices(num_open: int, num_beams: int) -> tuple[int, ...]:
+    return next(strides for least, strides in LATTICES if num_open >= least or num_beams <= FEW_BEAMS)
 
 
 def _axes(margins: Sequence[int]) -> list[tuple[int, ...]]:

@@ -7,8 +7,9 @@ import numpy as np
 import torch
 
 from mmweaver.compression.cell_sample import CellSample
-from mmweaver.compression.chunk import FINER_STEPS, ChunkEncoder, ChunkMode, CodedChunk
+from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
+from mmweaver.compression.moving_cells import FINER_STEPS, moving_cells
 from mmweaver.compression.residual_stream import PRICE, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, fit_static, subtract_static
@@ -18,7 +19,7 @@ POINTS_A_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many e
 FIT_STAGES, LAST_STEPS, LEAST_GAIN = 16, 3, 12.0
 DEVIATIONS, MARGIN = 3.5, 3  # of noise, by which cells that scatterers are fitted to exceed it; cells around them
 FINER_SHARE, MAP_BITS = 0.05, 6.0  # of the bytes that finer steps of moving cells may have; bits to say where one is
-WEAKER = 2.5  # power of active cells over that of moving ones from which on these are too inaccurate otherwise
+WEAKER, ENOUGH = 2.5, 2.5e-4  # power of active cells over that of weak moving ones; their error that is low enough
 CLEAR = 0.995  # of the cost without layers: what layers must have, for estimates are not better
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
@@ -47,7 +48,8 @@ class ModeChooser:
         if self.mode is None:
             self.decide(step, coarser)
         assert self.mode is not None
-        return self.encoder.encode(step, replace(self.mode, noise_step=noise_step), coarser, price)
+        mode = replace(self.mode, noise_step=noise_step, finer=1) if noise_step else self.mode
+        return self.encoder.encode(step, mode, coarser, price)
 
     def decide_transform(self, step: float, coarser: int) -> None:
         """Decides on the transform of `plain`, the best mode without any layer."""
@@ -73,20 +75,26 @@ class ModeChooser:
         costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
         best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
         mode, self.sample = modes[best], samples[best]
-        self.mode = replace(mode, finer=self._finer(self.sample.at(step, coarser).num_bytes))
+        self.mode = replace(mode, finer=self._finer(step, self.sample.at(step, coarser).num_bytes))
 
-    def _finer(self, num_bytes: float) -> int:
-        """The largest of FINER_STEPS that costs little, where few and weak cells move; else 1."""
+    def _finer(self, step: float, num_bytes: float) -> int:
+        """Which of FINER_STEPS weak moving cells need, as far as that costs little; 1 where they do not."""
         encoder = self.encoder
-        is_moving, antennas = encoder.is_moving, encoder.target.shape[3]
+        is_moving, antennas = moving_cells(encoder.is_active), encoder.target.shape[3]
         num = int(np.count_nonzero(is_moving))
         if not num or encoder.frames.hop or num * antennas > 4 * FINER_SHARE * num_bytes:  # cheaply said for most cubes
             return 1
         power = cell_energy(np.moveaxis(encoder.target, 3, 0))
-        if power[encoder.is_active].mean() < WEAKER * power[is_moving].mean():
+        moving, error = float(power[is_moving].mean()), antennas * step**2 / 6
+        if power[encoder.is_active].mean() < WEAKER * moving:
             return 1
         cost = {one: num * (MAP_BITS + 2 * antennas * (1 + math.log2(one))) for one in FINER_STEPS[1:]}
-        return max([1, *(one for one, bits in cost.items() if bits <= 8 * FINER_SHARE * num_bytes)])
+        found = 1
+        for one, bits in cost.items():
+            if error / found**2 <= ENOUGH * moving or bits > 8 * FINER_SHARE * num_bytes:
+                break
+            found = one
+        return found
 
     def _layered(self, step: float, coarser: int) -> list[ChunkMode]:
         encoder, modes = self.encoder, []
