@@ -1,4 +1,4 @@
-"""How many prompts of other text-to-motion projects are understood, and how many correctly? Five draws, read once.
+"""How many prompts of other text-to-motion projects are understood, and how many correctly? Seven draws, read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -9,9 +9,12 @@ and of an evaluation of HY-Motion. `captions`: 145 captions of HumanML3D's valid
 labels in BABEL's form, from characters 40,000 and 800,000).
 `third`: 106 prompts of a list for evaluation in English and Chinese and of the demos of MotionLCM, StableMoFusion and
 FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 1,400,000); those from 150,000, 250,000,
-400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. Each prompt counts once, without those read to
-widen the grammar or in an earlier draw. Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before
-the first, 0a28cc6 before the next two, 3755052 before the last two); what was understood was evaluated by hand, once,
+400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. `captions_third`: 210 further ones (from 90,000,
+320,000 and 1,470,000), after those from 900,000, 980,000, 1,050,000, 1,100,000, 1,250,000 and 1,330,000 had been read
+to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. Each prompt
+counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
+Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
+3755052 before the next two, abf0c79 and 5af3c0b before the last two); what was understood was evaluated by hand, once,
 as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the
 prompts' sha256.
 """
@@ -33,7 +36,7 @@ from studies.study import Reads
 
 DRAWS = {  # -> ending of the names of their files
     "first": "", "second": "_second", "captions": "_captions", "third": "_third",
-    "captions_second": "_captions_second",
+    "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
 }  # fmt: skip
 
 

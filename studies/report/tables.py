@@ -270,9 +270,9 @@ KITML = MetricTable(
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
-UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS, UNREAD_THIRD, UNREAD_CAPTIONS_SECOND = (
-    MetricTable(
-        sources=(source,),
+UNREAD = {
+    f"unread_{'captions' if 'captions' in name else 'prompts'}{name.removeprefix('_captions')}": MetricTable(
+        sources=(f"unread_prompts/reading{name}",),
         columns=KITML.columns,
         lines=(
             ("understood", "understood, of all (frozen grammar)"),
@@ -282,14 +282,10 @@ UNREAD_PROMPTS, UNREAD_SECOND, UNREAD_CAPTIONS, UNREAD_THIRD, UNREAD_CAPTIONS_SE
             *((("in_part_today", "of these, a clause is not done, which is said"),) if in_part else ()),
         ),
     )
-    for source, in_part in (
-        ("unread_prompts/reading", False),
-        ("unread_prompts/reading_second", False),
-        ("unread_prompts/reading_captions", False),
-        ("unread_prompts/reading_third", True),
-        ("unread_prompts/reading_captions_second", True),
+    for name, in_part in (
+        ("", False), ("_second", False), ("_captions", False), ("_third", True), ("_captions_second", True),
     )
-)
+}  # fmt: skip
 STRANGERS = MetricTable(
     sources=("strangers/default",),
     columns=(("200 sentences", "{label}"), ("share", "{metric:percent.1}")),
@@ -448,9 +444,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
-    "unread_prompts": UNREAD_PROMPTS.render, "unread_prompts_second": UNREAD_SECOND.render,
-    "unread_captions": UNREAD_CAPTIONS.render, "unread_prompts_third": UNREAD_THIRD.render,
-    "unread_captions_second": UNREAD_CAPTIONS_SECOND.render,
+    **{name: table.render for name, table in UNREAD.items()},
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,

@@ -38,6 +38,8 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,
     (r"\b(left|right)[- ]hand side\b", r"\1 side"),
+    (r"\band after (?=(?!this|that|which|his|its|a few)[a-z]+(?:s|ed)\b)", " then "),
+    (r"\b(?:lays|laying) (?:it|them)(?: back)?(?: down)?\b", " put_down "),
     (r"\bjump(?:s|ing)?[- ](?:n|an|and)[- ]?jacks?\b", " jumping_jack "),
     (r"\bjumping[- ]?jacks?\b|\bstar[- ]?jumps?\b|\bjump(?:s|ed)?[- ]jacks?\b", " jumping_jack "),
     (r"\bshadow[- ]box", "shadowbox"),

@@ -9,6 +9,7 @@ _ON_BODY = (
 
 # Also where the sentence would be understood, but as something else.
 INSTEAD_OF_ANOTHER: tuple[tuple[str, str, str], ...] = (
+    (r"\b(?:spin|rotat|twirl)(?:s|es|ing) (?:it|them)\b(?: around)?", "stays", "how it is turned is not shown"),
     (r"\b(?:something|someone|somebody|an?other person|a force) (?:then )?(?:push|shov|bump|hit|knock)(?:es|s|ed|ing)?(?: into)? (?:them|him|her|it|the person)\b(?: over)?", "is pushed", "who or what pushes is not shown"),
     (rf",? with {_OWN}(?:shoulders?|hips?|head|chest|arms?|hands?|legs?|knees?|body) (?:[a-z]+ )?and (?:bounc|sway|swing|shak|wiggl|mov|danc|rotat|twist)ing\b", "", "how the body is held is not shown"),
     (r"\b(?:is )?(?:prepar(?:es|ing)|gets? ready|getting ready|about|readies (?:him|her|it)self) to [^,.;]*?(?=(?:,|;|\.|,? and|,? then|,? before)+ [a-z])", "stays", "what is only prepared is not shown"),

@@ -343,7 +343,8 @@ def _in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
-            together = form == "ing" or _can_overlay(steps[-1], step)  # "sits drinking water"
+            in_turn = form == "s" and steps[-1].moves  # "walks forward lifts the arms"
+            together = form == "ing" or (_can_overlay(steps[-1], step) and not in_turn)  # "sits drinking water"
             if together and not (leaving == _ROUGH and not _can_be_joined(steps[-1], step)):
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"

@@ -13,7 +13,8 @@ SHORTEST = 6  # letters; shorter words have too many neighbours
 # Correct English words one edit away from words of the lexicon.
 OTHER_WORDS = words_in(
     """
-    swagger swaggers sagging staging slapping clasping swaying strokes singing clasps shaved
+    shovel shovels shoveling shovelling jagged swagger swaggers
+    sagging staging slapping clasping swaying strokes singing clasps shaved
     showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
     stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
     falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
