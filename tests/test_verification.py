@@ -9,6 +9,7 @@ import torch
 
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
+from mmweaver.core.staging import staging_path
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.verification import verify
 
@@ -137,6 +138,8 @@ def test_a_training_run(tmp_path: Path):
     torch.save({"a": torch.ones(100)}, tmp_path / "checkpoint.pt")
     assert verify(tmp_path).is_sound
     assert verify(tmp_path / "best.safetensors").is_sound
+    staging_path(tmp_path / "best.safetensors").write_bytes(b"cut short by a kill")
+    assert verify(tmp_path).is_sound
     flip(tmp_path / "best.safetensors")
     flip(tmp_path / "checkpoint.pt", (tmp_path / "checkpoint.pt").stat().st_size // 2)
     assert len(verify(tmp_path).damaged) >= 1

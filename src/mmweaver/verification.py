@@ -15,7 +15,7 @@ from mmweaver.core.checksums import SUMS_FILE, Damage, damage_of_file, read_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_arrays import is_sound_zip
 from mmweaver.core.safe_files.safe_text import read_json, read_toml
-from mmweaver.core.staging import COMMITTED
+from mmweaver.core.staging import COMMITTED, is_staged
 from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
 from mmweaver.datasets.dataset_plan import check_plan, command_of, room_name, shell_words
@@ -175,7 +175,8 @@ def _is_of(entry: dict[str, Any], folder: Path) -> bool:
 def _verified_run(folder: Path) -> Verification:
     found = Verification(path=folder, kind="training run")
     for file in sorted(folder.glob("*.safetensors")):
-        _check_tensors(found, file)
+        if not is_staged(file.name):
+            _check_tensors(found, file)
     checkpoint = folder / CHECKPOINT
     if checkpoint.is_file():
         found.checked += 1
