@@ -10,9 +10,9 @@ after a freeze. Now 300 are drawn of what is left: 97 of these, and 209 of the u
 understood ones are annotated by hand, once. Right: every movement that the sentence names is shown in its order, with
 its side, direction, hand or foot where one is given. Said: some of it is shown otherwise or not, and the clause
 says so. Wrong: the same, without a word. The verdicts are in results/kitml/judgements.json with the readings they were
-given for; a reading that has changed since makes its verdict void, and the result counts those. Seven earlier samples
-(judgements_first.json and so on) are unchanged and evaluate earlier grammars. docs/motion.md says what else limits the
-figures.
+given for and evaluate the grammar of that day; how many of today's readings have no verdict is counted. Seven earlier
+samples (judgements_first.json and so on) are unchanged and evaluate earlier grammars. docs/motion.md says what else
+limits the figures.
 """
 
 import argparse
@@ -125,8 +125,8 @@ def result_row(
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
     developed_on, drawn = fresh_draw(checking, _judged_before_development(before))
     names = [name for name in drawn if name in readings]
-    valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
-    verdicts = Counter(judgements[name]["verdict"] for name in valid)
+    void = sum(judgements.get(name, {}).get("reading") != readings[name] for name in names)
+    verdicts = Counter(one["verdict"] for one in judgements.values())
     seen = {_plain(sentence.text) for sentence in developed}
     metrics = {
         "understood": share(len(readings), len(sentences), "sentences that give a plan, of all"),
@@ -155,16 +155,21 @@ def result_row(
             )
             for name, earlier in before.items()
         },
-        "wrong": share(verdicts["wrong"], len(valid), "wrong by hand annotation without a word, of those understood"),
-        "said": share(verdicts["said"], len(valid), "shown otherwise or in part, which the clause's record says"),
+        "understood_frozen": share(len(judgements), len(drawn), "the same draw, by the grammar that was annotated"),
+        "wrong": share(
+            verdicts["wrong"],
+            len(judgements),
+            "wrong by hand without a word, of those the annotated grammar understood",
+        ),
+        "said": share(verdicts["said"], len(judgements), "shown otherwise or in part, which the clause's record says"),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
     return {
         "dataset": {"name": "KIT-ML sentences", "sha256": digest, "split": "motions by hash, half for checking"},
         "n": len(sentences),
         "seeds": [SEED],
-        "evaluated": len(valid),
-        "evaluated_void": len(names) - len(valid),
+        "evaluated": len(judgements),
+        "evaluated_void": void,
         "activities_named": dict(activities.most_common()),
         "metrics": metrics,
     }

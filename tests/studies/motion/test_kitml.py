@@ -45,7 +45,8 @@ def test_shares_and_judgements(monkeypatch: pytest.MonkeyPatch):
     row = result_row(some, verdicts, {"first": {}}, "digest")
     assert row["metrics"]["understood"]["value"] == 0.5
     assert row["evaluated_void"] == 1
-    assert row["metrics"]["wrong"]["value"] == round(3 / (len(names) - 1), 4)
+    assert row["metrics"]["wrong"]["value"] == round(3 / len(names), 4)
+    assert row["metrics"]["understood_frozen"]["value"] == round(len(names) / 300, 4)
 
 
 def test_mirrored_motions_are_left_out(tmp_path: Path):
