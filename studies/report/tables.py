@@ -256,7 +256,8 @@ KITML = MetricTable(
         ("understood_checking_half", "understood, of the half not developed on"),
         ("understood_draw", "understood, of 300 drawn uniformly from that half"),
         ("understood_development_draw", "understood, of 1,100 of that half read to widen the grammar"),
-        ("understood_fresh_draw", "understood, of 300 in no earlier sample (harder than the half)"),
+        ("understood_frozen", "understood, of 300 in no earlier sample (harder than the half; frozen grammar)"),
+        ("understood_fresh_draw", "the same, by today's grammar, which what was wrong there has changed"),
         ("understood_new_sentences",
          "understood, of those among them whose words occur in no sentence of the other half"),
         ("wrong_first_sample", "wrong by hand, first sample (faults mended since)"),
@@ -284,6 +285,7 @@ UNREAD = {
     )
     for name, in_part in (
         ("", False), ("_second", False), ("_captions", False), ("_third", True), ("_captions_second", True),
+        ("_captions_third", True), ("_captions_fourth", True),
     )
 }  # fmt: skip
 STRANGERS = MetricTable(
