@@ -37,6 +37,7 @@ LEAST_ERROR = 1e-30  # relative to the squared peak
 SAME_ERROR = 0.1  # difference of log(error) within which an estimate is trusted
 CLOSE_ERROR = 1.01  # times the error allowed that is as good
 OVER_RANGE_LOSES = 1.7  # times the error estimated: cells are predicted by neighbours, which no estimate knows
+CLEARLY_FINER = 0.9  # steps that a noise layer must have where there need not be one
 NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
 MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 8, 5
@@ -227,11 +228,11 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
     own_error = first.all_error * sum(sample.at(own_step, first.coarser).all_error for sample in samples) / before
     step = _step_of_size(plain, SPARE * num_bytes / factor, 1, *bounds)
     if own_error <= sum(sample.at(step, 1).all_error for sample in plain):
-        return None
+        return _noise_instead(segment, num_bytes, own_error, samples, factor, own_step, progress)
     even, even_factor = _even_error(segment, num_bytes, plain, factor)
     allowed = even * 10 ** (EVEN_DB / 10)
     if own_error <= allowed:
-        return None
+        return _noise_instead(segment, num_bytes, own_error, samples, factor, own_step, progress)
     error_factor = first.all_error / before
     for coarser in (3, 2, 1):
         share = math.log(coarser) / math.log(segment.coarser)
@@ -250,6 +251,19 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
     if segment.decide(step, 1):  # modes were chosen for cells without signal that count less
         step = _step_of_size(segment.decided_samples(), AIM * num_bytes / even_factor, 1, *bounds)
     return _finest(segment, num_bytes, step, 1, progress)
+
+
+def _noise_instead(
+    segment: SegmentEncoder, num_bytes: int, own_error: float, samples: list[CellSample], factor: float,
+    own_step: float, progress: Progress,
+) -> Found | None:  # fmt: skip
+    """The chunks with a noise layer and no more error than without, where estimates have a clearly finer step."""
+    if "noise layer" in segment.without:
+        return None
+    noise_step, with_noise = _noise_steps(segment, num_bytes, own_error, samples, factor)
+    if not noise_step or with_noise > CLEARLY_FINER * own_step:
+        return None
+    return _with_noise(segment, num_bytes, own_error, samples, factor, own_step, progress)
 
 
 def _with_noise(
