@@ -1,3 +1,6 @@
+import json
+from dataclasses import asdict
+
 import torch
 
 from mmweaver.fields.beams import beams_of
@@ -79,3 +82,8 @@ def test_the_parameter_budget_holds_and_useless_static_beams_are_dropped():
         active_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
     assert active_db[1200] < active_db[600] - 2
     assert active_db[1200] < -30
+
+
+def test_a_recipe_can_be_written_down():
+    """Studies store it as JSON, which has no infinity."""
+    assert json.loads(json.dumps(asdict(FitRecipe(num_points=9)), allow_nan=False))["num_points"] == 9

@@ -1,6 +1,5 @@
 """Fits scatterers to a cube: alternates greedy selection with joint refinement."""
 
-import math
 from dataclasses import dataclass, replace
 
 import torch
@@ -48,7 +47,7 @@ class FitRecipe:
     swapped_share: float = 0.15
     largest_group: int = 160
     least_gain: float = 8.0
-    most_noise: float = math.inf  # noise power of a cell, where it is known; the residual may show less
+    most_noise: float | None = None  # noise power of a cell, where it is known; the residual may show less
 
 
 def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
@@ -171,4 +170,6 @@ class _Fit:
     def _noise_power(self) -> float:
         """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
         some = self.residual.flatten()[:: max(1, self.residual.numel() // NOISE_CELLS)]
-        return min(float(torch.view_as_real(some).square().sum(-1).median()) / 0.6931, self.recipe.most_noise)
+        found = float(torch.view_as_real(some).square().sum(-1).median()) / 0.6931
+        most = self.recipe.most_noise
+        return found if most is None else min(found, most)
