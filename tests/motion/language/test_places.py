@@ -23,6 +23,9 @@ TABLE = Landmark(kind="table", position_m=np.array([0.0, 2.0, -0.5]), approach_m
         ("stands at a distance of 1.5 m from the radar and waves", "1.5 m from the radar"),
         ("a person waves on the left", "on the left"),
         ("a woman sits in the middle of the room", "in the middle"),
+        ("a person waves two metres away on the left", "2 m from the radar, on the left"),
+        ("a person waves on the left two metres away", "on the left, 2 m from the radar"),
+        ("a person claps on the right near the window", "near the window, on the right"),
     ],
 )
 def test_places_are_read(text: str, words: str):
@@ -71,3 +74,13 @@ def test_cells_are_where_the_words_say():
         cells_of(Place("near", "window"), floor)
     with pytest.raises(InputError, match=r"9 m from the radar"):
         cells_of(Place("range", distance_m=9.0), floor)
+
+
+def test_two_places_are_both_obeyed_or_refused():
+    floor = FloorMap(room(), (0.7, 3.5), 1.75)
+    cells = cells_of(Place("range", distance_m=2.0).together_with(Place("left")), floor)
+    assert len(cells)
+    assert np.all(np.abs(np.hypot(*cells.T) - 2.0) < 0.21)
+    assert np.all(cells[:, 0] < 0.1)
+    with pytest.raises(InputError, match=r"0\.2 m from the radar, on the left"):
+        cells_of(Place("range", distance_m=0.2).together_with(Place("left")), floor)

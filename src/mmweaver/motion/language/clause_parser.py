@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
@@ -151,7 +152,8 @@ def parse_clause(clause: Clause) -> ParsedClause:
     verbs = _verbs(words)
     if not verbs:
         parsed.about = replace(
-            modifiers(words, clause.text, parsed.notes), place=place_of(places[0]) if places else None
+            modifiers(words, clause.text, parsed.notes),
+            place=reduce(Place.together_with, map(place_of, places)) if places else None,
         )
         _note_unknown(words, clause, parsed, has_verb=False)
         return parsed
@@ -204,7 +206,8 @@ def _put_at(parsed: ParsedClause, place: Place) -> None:
     elif last.moves and last.lower not in ("walk", "jog"):
         parsed.approximate(f"{place.words!r} is left open for {last.name}")
     else:
-        last = replace(last, place=place, target="" if place.landmark else last.target)
+        both = place if last.place is None else last.place.together_with(place)
+        last = replace(last, place=both, target="" if place.landmark else last.target)
         if place.landmark and last.direction in ("towards", "forwards", "seat"):
             last = replace(last, direction="")
     parsed.steps[-1] = last

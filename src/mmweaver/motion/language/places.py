@@ -1,7 +1,7 @@
 """Where something is done: 'near the window', 'behind the sofa', 'two metres away', 'on the left'."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mmweaver.motion.language.lexicon import NUMBERS, RADAR, TARGETS
 
@@ -19,7 +19,10 @@ _NUMBER = (
     r"(?P<number>\d+(?:\.\d+)?|" + "|".join(word for word, value in NUMBERS.items() if value < 13) + r"|an?|half a)"
 )
 _ROOMS = "kitchen|living room|bedroom|bathroom|office|hall|hallway|corridor|lab|laboratory|garage|gym|studio|classroom"
-_END = r"(?= *(?:$|[,.;!]|and\b|then\b|while\b|with\b|for\b|facing\b|near\b|in\b|waving\b))"
+_END = (
+    r"(?= *(?:$|[,.;!]|and\b|then\b|while\b|with\b|for\b|facing\b|near\b|next\b|beside\b|behind\b|in\b|on\b|at\b|waving\b"
+    rf"|{MARK}))"
+)
 _PATTERNS = (
     *((re.compile(rf"\b(?:{words}) (?:the |a |an |his |her |their )?{_ADJECTIVES}(?P<object>{_OBJECT})\b"), relation)
       for relation, words in _RELATIONS.items()),
@@ -41,10 +44,18 @@ class Place:
     relation: str  # near | behind | front | leftof | rightof | range | left | right | middle | far | close
     landmark: str = ""  # the Landmark.kind that it is relative to
     distance_m: float = 0.0  # of "range"
+    also: "Place | None" = None  # where it is at the same time: 'two metres away on the left'
+
+    def together_with(self, other: "Place") -> "Place":
+        """Both places at once, the one at a landmark first."""
+        one, more = (other, self) if other.landmark and not self.landmark else (self, other)
+        return replace(one, also=more if one.also is None else one.also.together_with(more))
 
     @property
     def words(self) -> str:
         """As it is shown in messages."""
+        if self.also is not None:
+            return f"{replace(self, also=None).words}, {self.also.words}"
         if self.relation == "range":
             return f"{self.distance_m:g} m from the radar"
         relation = {"front": "in front of", "leftof": "left of", "rightof": "right of"}.get(

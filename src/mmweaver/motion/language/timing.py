@@ -126,7 +126,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
     notes, clauses = list(plan.notes), list(plan.clauses)
 
     def record(step: Step, status: str, how: str) -> None:
-        notes.append(f"{how}: {step.clause or step.name!r}")
+        notes.append(f"{step.clause or step.name!r}: {how}")
         for number in step.clauses:
             clauses[number] = clauses[number].lowered_to(status, how)
 

@@ -50,11 +50,14 @@ def _is_open(step: Step) -> bool:
 def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
     """The walkable cells (x, y) of a place, in metres. Raises InputError where the room has none."""
     cells = floor.walkable_m
-    if place.landmark:
-        found = [cells[_at(place, middle, cells)] for middle in _middles(place, floor.scene)]
-        cells = np.concatenate(found) if found else cells[:0]
-    elif len(cells):
-        cells = cells[_within(place, cells)]
+    inside, part = np.ones(len(cells), bool), place
+    while part is not None and len(cells):
+        if part.landmark:
+            inside &= np.any([_at(part, middle, cells) for middle in _middles(part, floor.scene)], axis=0)
+        else:
+            inside &= _within(part, cells)
+        part = part.also
+    cells = cells[inside]
     if not len(cells):
         raise InputError(
             f"nobody can be {place.words}: no free floor is there in the picture and the radar's window; say another"
