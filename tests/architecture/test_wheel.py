@@ -1,4 +1,4 @@
-"""What the wheel holds: the package with the files it needs, no study, at most 17.2 MB."""
+"""What the wheel holds: the package with the files it needs, no study, at most 17.4 MB."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ from setuptools import find_packages
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "mmweaver"
-LARGEST_BYTES = 17_200_000
+LARGEST_BYTES = 17_400_000
 
 
 def packaged_files() -> list[Path]:

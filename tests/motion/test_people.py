@@ -32,6 +32,7 @@ def test_a_described_person_is_of_that_kind():
     assert max(one.girth for one in drawn("a slim woman", 50)) < 1 < min(one.girth for one in drawn("a fat man", 50))
     assert drawn("an elderly woman", 1)[0].age == "old"
     assert drawn("she", 1)[0].sex == "female"
+    assert described_person("she walks in a figure eight").words == "she"
 
 
 def test_a_subject_is_always_the_same_person():

@@ -7,8 +7,8 @@ _WOMEN = "woman|women|lady|girl|female|mother|mom|grandma|grandmother|granny|wif
 _MEN = "man|men|gentleman|boy|male|guy|father|dad|grandpa|grandfather|husband|son|brother|policeman|fireman|waiter"
 _CHILDREN = "child|kid|boy|girl|toddler|baby|schoolboy|schoolgirl|pupil"
 _ANYBODY = (
-    "person|human|adult|user|subject|figure|individual|participant|patient|resident|tenant|somebody|someone|youth"
-    "|teenager|nurse"
+    r"person|human|adult|user|subject|figure(?![- ](?:of |eight|8))|individual|participant|patient"
+    "|resident|tenant|somebody|someone|youth|teenager|nurse"
 )
 _NOUN = rf"(?P<noun>{_WOMEN}|{_MEN}|{_CHILDREN}|{_ANYBODY}|elderly|athlete|worker|student|player|dancer)"
 _OLD = frozenset(["old", "elderly", "aged", "senior", "aging", "ageing"])
