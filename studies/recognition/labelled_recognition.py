@@ -17,15 +17,12 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.recognition.labelled_training import labelled_alone, own_trees, with_labelled
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.train_recogniser import (
-    GeneratedWindows,
-    TrainingOptions,
-    trees_of,
-    with_labelled,
-)
+from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions, trees_of
+from mmweaver.recognition.tree_ensemble import joined_trees
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import add_task_options, task_data
 from studies.recognition.zero_shot_curve import chosen_recordings
@@ -36,25 +33,19 @@ TREES = 150
 TRAINING = {"mhomeges": "80[0-5]_", "mars_exercises": ".* validate"}  # how names of recordings that may train begin
 
 
-def alone(features: np.ndarray, labels: np.ndarray, made: GeneratedWindows) -> GeneratedWindows:
-    """Labelled windows as if they were the only ones that train."""
-    whole = np.zeros(len(labels), bool)
-    return GeneratedWindows(
-        features=features, label=labels, person=np.zeros(len(labels), int), is_copy=whole, names=made.names
-    )
-
-
 def accuracy(
     made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, tested: np.ndarray, *,
-    generated: bool,
+    each: int, generated: bool,
 ) -> float:  # fmt: skip
     """Balanced accuracy on the windows `tested` (window,) of all (window, feature), of which some train (window,)."""
-    options = TrainingOptions(trees=TREES)
-    few = features[trains], labels[trains]
-    training = made
-    if trains.any():
-        training = with_labelled(made, *few, options) if generated else alone(*few, made)
-    guess = trees_of(training, options).probabilities(features[tested]).argmax(axis=1)
+    options, own, training = TrainingOptions(trees=TREES), None, made
+    if trains.any() and generated:
+        own, options = own_trees(made, features[trains], labels[trains], each, options)
+        training = with_labelled(made, features[trains], labels[trains], options)
+    elif trains.any():
+        training = labelled_alone(made, features[trains], labels[trains])
+    trees = joined_trees(trees_of(training, options), own)
+    guess = trees.probabilities(features[tested]).argmax(axis=1)
     return balanced_accuracy(labels[tested], guess)
 
 
@@ -76,7 +67,7 @@ def curve(
             for seed in SEEDS if each else SEEDS[:1]:
                 trains = np.isin(owner, allowed[chosen_recordings(kinds[allowed], each, seed)])
                 tested = ~trains if may_train is None else ~may_train[owner]
-                scores.append(accuracy(made, features, labels, trains, tested, generated=generated))
+                scores.append(accuracy(made, features, labels, trains, tested, each=each, generated=generated))
             rows.append({
                 "real_recordings_each": each, "generated": generated, "seeds": list(SEEDS[: len(scores)]),
                 "n": len(scores),

@@ -105,6 +105,7 @@ def test_labelled_recordings_train_along(task_file: Path, tmp_path: Path):
     write_recordings(tmp_path / "taught", taught)
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "taught")
     assert model.meta["labelled_windows"] == 16
+    assert model.meta["trees_of_labelled_alone"] == 0  # nobody rests in them
     plain = score_recordings(small_recogniser(task_file), people)["window"]["balanced_accuracy"]
     assert score_recordings(model, people)["window"]["balanced_accuracy"] > max(0.9, plain + 0.3)
     (tmp_path / "none").mkdir()

@@ -16,6 +16,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
+from mmweaver.recognition.labelled_training import fewest_recordings, own_trees, with_labelled
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.performance_variation import PerformanceVariation, varied
 from mmweaver.recognition.point_recording import PointRecording
@@ -31,7 +32,7 @@ from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.sensitivity import sensitivity_weights
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
+from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees, joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
 
 SEQUENCES, QUICK_SEQUENCES = 40, 8  # people an activity
@@ -222,11 +223,11 @@ def fitted(
 
     With the accuracy on generated people who were held out.
     """
-    own = ~made.is_copy
+    is_own = ~made.is_copy
     generated = quantiles_of(made.features)
     shares = outside_share(made.features, generated)
     meta: dict[str, Any] = {
-        "generated_windows": int(own.sum()), "with_disturbed_copies": len(made.label),
+        "generated_windows": int(is_own.sum()), "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
     }  # fmt: skip
     features = recognition_features(unlabelled, made.names) if unlabelled else None
@@ -236,11 +237,15 @@ def fitted(
     if features is not None and options.matching:
         matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
         features = matching.apply(features)
+    own = None
     if labelled:
         known = recognition_features(labelled, made.names)
+        known = known if matching is None else matching.apply(known)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
-        made = with_labelled(made, known if matching is None else matching.apply(known), labels, options)
-        meta["labelled_windows"] = len(labelled)
+        fewest = fewest_recordings(labelled, task.recordings.labels)
+        own, options = own_trees(made, known, labels, fewest, options)
+        made = with_labelled(made, known, labels, options)
+        meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
     trees = trees_of(made, options)
     if features is not None:
         meta["unlabelled_windows"] = len(unlabelled)
@@ -249,24 +254,8 @@ def fitted(
 
             trees, meta["self_training"] = self_trained(made, features, trees, options)
     return Recogniser(
-        settings=task.recordings, names=made.names, trees=trees, generated=generated,
+        settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
         outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
-    )  # fmt: skip
-
-
-def with_labelled(
-    made: GeneratedWindows, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"],
-    options: TrainingOptions,
-) -> GeneratedWindows:  # fmt: skip
-    """The generated windows and labelled recorded ones, which weigh `labelled_weight` times as much in each label."""
-    own = np.ones(len(made.label)) if made.importance is None else made.importance
-    classes = int(made.label.max()) + 1
-    of_made, of_real = np.bincount(made.label, own, classes), np.bincount(labels, minlength=classes)
-    weight = options.labelled_weight * of_made[labels] / of_real[labels]
-    return replace(
-        made, features=np.concatenate([made.features, features]), label=np.concatenate([made.label, labels]),
-        person=np.concatenate([made.person, np.full(len(labels), -1)]),
-        is_copy=np.concatenate([made.is_copy, np.zeros(len(labels), bool)]), importance=np.concatenate([own, weight]),
     )  # fmt: skip
 
 

@@ -82,6 +82,20 @@ def grow_trees(
     )  # fmt: skip
 
 
+def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
+    """The trees of both, each with the same vote."""
+    if other is None:
+        return one
+    start = len(one.left)
+    return TreeEnsemble(
+        root=np.concatenate([one.root, other.root + start]), left=np.concatenate([one.left, other.left + start]),
+        right=np.concatenate([one.right, other.right + start]), feature=np.concatenate([one.feature, other.feature]),
+        threshold=np.concatenate([one.threshold, other.threshold]),
+        unknown_left=np.concatenate([one.unknown_left, other.unknown_left]),
+        votes=np.concatenate([one.votes, other.votes]),
+    )  # fmt: skip
+
+
 def write_trees(file: Path, ensemble: TreeEnsemble) -> None:
     """One .npz of the arrays."""
     with atomic_file(file) as temporary, temporary.open("wb") as stream:
