@@ -182,7 +182,7 @@ def chances(real: dict[str, Units], made: dict[str, Units], left_out: str) -> tu
     return of_recorded, of_made
 
 
-def judged(of_recorded: np.ndarray, of_made: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def verdicts(of_recorded: np.ndarray, of_made: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which recorded and which simulated units are right, of their probabilities of "recorded"."""
     return of_recorded >= 0.5, of_made < 0.5
 
@@ -246,7 +246,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         whole = {board: np.concatenate(list(each.values())) for board, each in made.items()}
         for board in BOARDS:
             found = chances(real, whole, board)
-            metrics = {"accuracy": accuracy(judged(*found)), "ranking": ranking(*found)}
+            metrics = {"accuracy": accuracy(verdicts(*found)), "ranking": ranking(*found)}
             rows.append({"method": f"{condition}, {board} left out", "n": sum(map(len, found)), "metrics": metrics})
         of_rooms.append(
             {"method": MEANT[condition], "n": len(rooms), "metrics": room_rows(made["openradar_two_people"])}

@@ -95,7 +95,7 @@ class LevelCoder:
         margins = [lattices[0] if size > 1 or stream.version == 3 else 0 for size in self.shape[1:]]
         places = _Places(factor, margins)
         groups = list(self._groups(places, lattices, has_all=stream.version == 3))
-        beside = [places.of(places.at, offset) for offset in _axes(margins)]
+        neighbours = [places.of(places.at, offset) for offset in _axes(margins)]
         factors = factor[factor > 0][:, None]
         batches, before, first = Batches(stream), np.zeros(num + 1, np.int64), 0
         while first < beams:
@@ -104,7 +104,7 @@ class LevelCoder:
             planes = np.zeros((2, num + 1, some.shape[1]), np.int64)
             planes[:, :-1] = some.swapaxes(1, 2) * factors
             size = np.zeros(planes.shape[1:], np.int64)
-            wide = sum((before[cells] for cells in beside), np.zeros(num, np.int64)) // 6
+            wide = sum((before[cells] for cells in neighbours), np.zeros(num, np.int64)) // 6
             for group in groups:
                 known = self._known(group, size, before if first else None, wide)
                 self._code_group(stream, group, planes, known, first, batches)

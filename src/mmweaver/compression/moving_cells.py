@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Complex, Float
 
 from mmweaver.compression.entropy import BitStream, Encoder
-from mmweaver.compression.residual_stream import QuantizedCells, cell_energy, code_cells, quantized
+from mmweaver.compression.residual_stream import QuantizedCells, cell_energy, code_plain_cells, quantized
 from mmweaver.compression.transforms import static_bins
 
 Array = np.ndarray
@@ -35,7 +35,7 @@ def code_moving(
     values = np.tensordot(beams.astype(rest.dtype), rest, axes=(1, 3))
     left = cell_energy(values)
     cells = replace(quantized(values, step, 0, is_moving, energy=left), centroids=NO_OFFSET)
-    _code(stream, cells.levels, cells.classes)
+    code_plain_cells(stream, cells.levels, cells.classes)
     is_open = cells.classes > 0
     left[is_open] = cell_energy(values[:, is_open] - cells.open_values(step, 1))
     return left
@@ -46,7 +46,9 @@ def decoded_moving(
 ) -> Complex[Array, "frame range doppler antenna"]:
     """What `code_moving` coded of a chunk of this shape, complex64."""
     classes = np.zeros(shape[:3], np.int64)
-    cells = QuantizedCells(levels=_code(stream, None, classes, shape[3]), classes=classes, centroids=NO_OFFSET)
+    cells = QuantizedCells(
+        levels=code_plain_cells(stream, None, classes, shape[3]), classes=classes, centroids=NO_OFFSET
+    )
     rest = np.tensordot(beams.conj(), cells.values(step, 1), axes=(0, 0))
     return np.moveaxis(rest, 0, 3).astype(np.complex64)
 
@@ -64,7 +66,3 @@ def unpack_steps(byte: int, *, is_version_3: bool) -> tuple[int, int, int]:
     if byte >= len(COARSE_STEPS):
         raise ValueError("impossible prefix")
     return COARSE_STEPS[byte], finer, version
-
-
-def _code(stream: BitStream, levels: Array | None, classes: Array, num_beams: int = 0) -> Array:
-    return code_cells(stream, levels, classes, np.zeros_like(classes), (False, False), 1, num_beams)

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Complex
 from scipy import fft
 
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.residual_stream import QuantizedCells, code_cells, quantized
+from mmweaver.compression.residual_stream import QuantizedCells, code_plain_cells, quantized
 
 Array = np.ndarray
 MOST_HOLES = 0.25  # share of active cells up to which they are filled
@@ -36,7 +36,7 @@ class NoiseLayer:
         coefficients = to_noise(quiet, beams)
         cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
         stream = Encoder()
-        _code(stream, cells.levels, cells.classes)
+        code_plain_cells(stream, cells.levels, cells.classes)
         data = stream.to_bytes()
         return cls(
             packed=HEADER.pack(len(data), step, *cells.centroids) + data,
@@ -58,7 +58,7 @@ class NoiseLayer:
         if last > len(data) or not 0 < step < np.inf:
             raise ValueError("impossible noise")
         classes = np.zeros(shape[:3], np.int64)
-        levels = _code(Decoder(data[HEADER.size : last], version=version), None, classes, shape[3])
+        levels = code_plain_cells(Decoder(data[HEADER.size : last], version=version), None, classes, shape[3])
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
         return cls(packed=data[:last], values=from_noise(cells.values(step, 1), beams))
 
@@ -98,7 +98,3 @@ def _along(values: Array, transform, axes: tuple[int, ...]) -> Array:
     """A real transform of a complex array; complex64 stays complex64."""
     real, imaginary = (transform(part, axes=axes, norm="ortho") for part in (np.real(values), np.imag(values)))
     return real + values.dtype.type(1j) * imaginary
-
-
-def _code(stream: Encoder | Decoder, levels: Array | None, classes: Array, num_beams: int = 0) -> Array:
-    return code_cells(stream, levels, classes, np.zeros(classes.shape, np.int64), (False, False), 1, num_beams)

@@ -228,21 +228,20 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
     own_error = first.all_error * sum(sample.at(own_step, first.coarser).all_error for sample in samples) / before
     step = _step_of_size(plain, SPARE * num_bytes / factor, 1, *bounds)
     if own_error <= sum(sample.at(step, 1).all_error for sample in plain):
-        return _noise_instead(segment, num_bytes, own_error, samples, factor, own_step, progress)
+        return _with_noise(segment, num_bytes, own_error, samples, factor, own_step, progress, CLEARLY_FINER)
     even, even_factor = _even_error(segment, num_bytes, plain, factor)
     allowed = even * 10 ** (EVEN_DB / 10)
     if own_error <= allowed:
-        return _noise_instead(segment, num_bytes, own_error, samples, factor, own_step, progress)
+        return _with_noise(segment, num_bytes, own_error, samples, factor, own_step, progress, CLEARLY_FINER)
     error_factor = first.all_error / before
     for coarser in (3, 2, 1):
         share = math.log(coarser) / math.log(segment.coarser)
         step = _step_of_size(samples, num_bytes / (factor**share * even_factor ** (1 - share)), coarser, *bounds)
         if coarser == 1 or error_factor * sum(sample.at(step, coarser).all_error for sample in samples) <= allowed:
             break
-    if "noise layer" not in segment.without:
-        one = _with_noise(segment, num_bytes, allowed, samples, factor, step, progress)
-        if one is not None:
-            return one
+    noisy = _with_noise(segment, num_bytes, allowed, samples, factor, step, progress)
+    if noisy is not None:
+        return noisy
     while coarser > 1:
         one = _finest(segment, num_bytes, step, coarser, progress)
         if one.all_error <= allowed * CLOSE_ERROR:
@@ -253,26 +252,18 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found, progress: Pro
     return _finest(segment, num_bytes, step, 1, progress)
 
 
-def _noise_instead(
-    segment: SegmentEncoder, num_bytes: int, own_error: float, samples: list[CellSample], factor: float,
-    own_step: float, progress: Progress,
-) -> Found | None:  # fmt: skip
-    """The chunks with a noise layer and no more error than without, where estimates have a clearly finer step."""
-    if "noise layer" in segment.without:
-        return None
-    noise_step, with_noise = _noise_steps(segment, num_bytes, own_error, samples, factor)
-    if not noise_step or with_noise > CLEARLY_FINER * own_step:
-        return None
-    return _with_noise(segment, num_bytes, own_error, samples, factor, own_step, progress)
-
-
 def _with_noise(
     segment: SegmentEncoder, num_bytes: int, allowed: float, samples: list[CellSample], factor: float, step: float,
-    progress: Progress,
+    progress: Progress, clearly: float = 1.0,
 ) -> Found | None:  # fmt: skip
-    """The chunks with a noise layer and no more error than allowed; None where their step is no finer than `step`."""
+    """The chunks with a noise layer and no more error than allowed; None where their step is no finer than `step`.
+
+    `clearly`: share of `step` below which the first estimate must be.
+    """
+    if "noise layer" in segment.without:
+        return None
     noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
-    if not noise_step or with_noise >= step:
+    if not noise_step or with_noise >= clearly * step:
         return None
     trial = _coded(segment, with_noise, 0, noise_step)
     noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded)

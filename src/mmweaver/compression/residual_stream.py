@@ -104,6 +104,11 @@ def code_cells(
     return levels
 
 
+def code_plain_cells(stream: BitStream, levels: Array | None, classes: Array, num_beams: int = 0) -> Array:
+    """The same of cells without scatterers near, without correlation, and with one step."""
+    return code_cells(stream, levels, classes, np.zeros_like(classes), (False, False), 1, num_beams)
+
+
 def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
     """Levels lowered as far as each bit that this saves costs less error than `price`."""
     for share in LOWERED:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -44,9 +44,7 @@ class Propagation:
 # What the network is given of a room: of the orders that it has learned.
 FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False, fine_roughness=False, hidden_faces=False)
 # What the network has learned from, and what studies published before there was a second order were computed with.
-AS_PUBLISHED = Propagation(
-    bounces=1, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False, hidden_faces=False
-)  # fmt: skip
+AS_PUBLISHED = replace(FIRST_ORDER, straight_edges=False)
 
 
 @dataclass(frozen=True, kw_only=True)

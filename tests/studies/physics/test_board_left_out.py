@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.comparison.compare_signals import FEATURES
-from studies.physics.board_left_out import RANGES, accuracy, chances, judged, ranking, room_rows, walkers
+from studies.physics.board_left_out import RANGES, accuracy, chances, ranking, room_rows, verdicts, walkers
 from tests.rooms import back_wall, floor, scene_of
 
 BOARDS = ("one", "two", "three")
@@ -16,7 +16,7 @@ def units(offset: float, seed: int) -> dict[str, np.ndarray]:
 
 def test_what_differs_is_found_and_what_is_alike_is_not():
     of_apart, of_alike = (chances(units(0.0, 0), units(offset, 1), "two") for offset in (5.0, 0.0))
-    apart, alike = accuracy(judged(*of_apart)), accuracy(judged(*of_alike))
+    apart, alike = accuracy(verdicts(*of_apart)), accuracy(verdicts(*of_alike))
     assert ranking(*of_apart)["value"] > 0.99
     assert 0.2 < ranking(*of_alike)["value"] < 0.8
     assert apart["value"] > 0.95

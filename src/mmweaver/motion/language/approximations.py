@@ -34,7 +34,7 @@ def _verb(stem: str, end: str = "") -> str:
 _THING = r"(?: +(?!and\b|then\b|while\b|with\b|before\b|after\b|,)[a-z'-]+){0,4}"
 _AS = "is shown as"
 
-_NOT_DONE = (  # beside something that is done
+_NOT_DONE = (  # where something else is done
     r"(?<=[a-z]),? without [a-z]+ing\b[^,.;]*?(?=$|[,.;]| and\b| then\b)|,? so (?:that )?(?:no ?one|nobody) [^,.;]*"
     r"|(?<=[a-z]),? but (?:does|do|did|is|was)(?: not|n't) [^,.;]*?(?=$|[,.;]| and\b| then\b)"
 )

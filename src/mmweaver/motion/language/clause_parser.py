@@ -270,6 +270,7 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
     return word.text == "against" and "pushed" in lemmas
 
 
+_NO_THINGS = words_in("way step steps few little bit couple room body position feet foot")  # that are moved
 _FACED = words_in("the a an to me us another other each opposite what where away")
 _IT = ("them", "it", "him", "her")
 _OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head", "legs", "leg", "knees", "body"})
@@ -322,20 +323,7 @@ def _moves_a_thing(after: list[Word]) -> bool:
     texts = [word.text for word in after]
     if not texts or texts[0] not in (*OWN, "the", "a", "an"):
         return False
-    return not {
-        "way",
-        "step",
-        "steps",
-        "few",
-        "little",
-        "bit",
-        "couple",
-        "room",
-        "body",
-        "position",
-        "feet",
-        "foot",
-    } & {*texts}
+    return not _NO_THINGS & {*texts}
 
 
 def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
