@@ -39,7 +39,7 @@ def main() -> int:
     shutil.copytree(ROOT / "docs", source)
     for name, page in TOP.items():
         (source / page).write_text((ROOT / name).read_text(encoding="utf-8").replace("](docs/", "]("), encoding="utf-8")
-    decisions = write_decision_index(source / "decisions")
+    decisions = decision_navigation(source / "decisions")
     packages = write_references(source / "reference")
     write_gallery(source / "gallery")
     (source / "reference" / "studies.md").write_text(list_of_studies(), encoding="utf-8")
@@ -76,20 +76,16 @@ def rewritten(text: str, page: Path, source: Path) -> str:
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link, text)
 
 
-def write_decision_index(folder: Path) -> str:
-    """Writes the list of decisions with their status; returns their entries of the navigation."""
-    lines, entries = (
-        ["# Decisions", "", "Why things are as they are.", "", "| | decision | status |", "| --- | --- | --- |"],
-        [],
-    )
-    for path in sorted(folder.glob("[0-9]*.md")):
-        title, _, status = path.read_text(encoding="utf-8").splitlines()[:3]
-        number, _, words = title.removeprefix("# ").partition(". ")
-        state = re.match(r"Status: (accepted|superseded by \d+)", status)
-        lines.append(f"| {number} | [{words}]({path.name}) | {state[1] if state else ''} |")
-        plain = re.sub('[`"]', "", words)
-        entries.append(f'{{ "{number}. {plain}" = "decisions/{path.name}" }}')
-    (folder / "index.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+def decision_navigation(folder: Path) -> str:
+    """Makes the list of decisions the front page of their folder; returns their entries of the navigation by subject."""
+    page = (folder / "README.md").rename(folder / "index.md")
+    entries = []
+    for subject, records in re.findall(r"^## (.*)\n\n((?:- .*\n)+)", page.read_text(encoding="utf-8"), re.MULTILINE):
+        pages = [
+            f'{{ "{re.sub(r"[`]", "", title)}" = "decisions/{name}" }}'
+            for title, name in re.findall(r"^- \[(.*?)\]\((.*?)\)", records, re.MULTILINE)
+        ]
+        entries.append(f'{{ "{subject}" = [{", ".join(pages)}] }}')
     return ", ".join(entries)
 
 

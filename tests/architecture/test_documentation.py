@@ -63,6 +63,16 @@ def test_every_decision_has_its_number_and_a_status():
         assert found[2] is None or int(found[2]) in numbers, f"{path.name} names no decision"
 
 
+def test_every_decision_is_listed_once_under_its_title():
+    listed = re.findall(r"^- (.*)$", (DECISIONS[0].parent / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    expected = []
+    for path in DECISIONS:
+        title, _, status = path.read_text(encoding="utf-8").splitlines()[:3]
+        superseded = re.match(r"Status: superseded by (\d+)", status)
+        expected.append(f"[{title[2:]}]({path.name})" + (f" (superseded by {superseded[1]})" if superseded else ""))
+    assert sorted(listed) == sorted(expected)
+
+
 def test_contributing_has_the_packages_in_the_order_of_the_import_contract():
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     (contract,) = [one for one in settings["tool"]["importlinter"]["contracts"] if one["type"] == "layers"]
