@@ -33,6 +33,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
     out = parser.parse_args().out.resolve()
+    del sys.argv[1:]  # examples read their own arguments
     source = out / "source"
     if out.exists():
         shutil.rmtree(out)
@@ -77,13 +78,13 @@ def rewritten(text: str, page: Path, source: Path) -> str:
 
 
 def decision_navigation(folder: Path) -> str:
-    """Makes the list of decisions the front page of their folder; returns their entries of the navigation by subject."""
+    """Makes the list of decisions the front page of their folder; returns their navigation by subject."""
     page = (folder / "README.md").rename(folder / "index.md")
     entries = []
     for subject, records in re.findall(r"^## (.*)\n\n((?:- .*\n)+)", page.read_text(encoding="utf-8"), re.MULTILINE):
         pages = [
-            f'{{ "{re.sub(r"[`]", "", title)}" = "decisions/{name}" }}'
-            for title, name in re.findall(r"^- \[(.*?)\]\((.*?)\)", records, re.MULTILINE)
+            f'{{ "{title.replace("`", "")}" = "decisions/{name}" }}'
+            for title, name in re.findall(r"^- \[(.*?)\]\((.*?)\)", records.replace("`", ""), re.MULTILINE)
         ]
         entries.append(f'{{ "{subject}" = [{", ".join(pages)}] }}')
     return ", ".join(entries)
