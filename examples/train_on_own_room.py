@@ -1,6 +1,6 @@
 """A labelled set of the bundled room, and a small network that tells three activities of people it has not seen.
 
-python examples/train_on_own_room.py [FOLDER] [SEQUENCES A LABEL]
+Usage: `python examples/train_on_own_room.py [FOLDER] [SEQUENCES_PER_LABEL]`
 """
 
 import sys

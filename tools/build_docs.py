@@ -151,10 +151,11 @@ def write_gallery(folder: Path) -> None:
         with chdir(work), redirect_stdout(printed):
             runpy.run_path(str(script), run_name="__main__")
         notebook = jupytext.reads(code, fmt="py:percent")
-        title = notebook.cells[0].source.strip().strip('"').rstrip(".")  # the docstring
-        notebook.cells[0] = new_markdown_cell(f"# {title}")
+        title, _, usage = notebook.cells[0].source.strip().strip('"').partition("\n")  # the docstring
+        title = title.rstrip(".")
+        notebook.cells[0] = new_markdown_cell(f"# {title}\n{usage}")
         jupytext.write(notebook, folder / f"{script.stem}.ipynb")
-        page += [f"## {title}", ""]
+        page += [f"## {title}", usage, ""]
         for cell in notebook.cells[1:]:
             page += [cell.source if cell.cell_type == "markdown" else f"```python\n{cell.source}\n```", ""]
         page += ["It prints", "", f"```text\n{printed.getvalue().rstrip()}\n```", ""]

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -12,11 +11,9 @@ from mmweaver.cli import radar
 from mmweaver.cli.main import main
 
 
-def test_help_is_quick_and_loads_nothing_heavy():
-    code = "import sys; sys.argv = ['mmweaver', '--help']; from mmweaver.cli.main import main\ntry: main()\nfinally: sys.stderr.write(' '.join(m for m in ('numpy', 'matplotlib', 'scipy') if m in sys.modules))"  # noqa: E501
-    start = time.perf_counter()
+def test_help_loads_nothing_heavy():
+    code = "import sys; sys.argv = ['mmweaver', '--help']; from mmweaver.cli.main import main\ntry: main()\nfinally: sys.stderr.write(' '.join(m for m in ('numpy', 'matplotlib', 'scipy', 'torch') if m in sys.modules))"  # noqa: E501
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert time.perf_counter() - start < 1.5  # 0.5 s on an idle machine
     assert "examples:" in done.stdout
     assert done.stderr == ""
     assert done.returncode == 0

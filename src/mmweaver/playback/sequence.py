@@ -24,7 +24,7 @@ class Playback:
 
     Arrays: `range_doppler`, `range_doppler_moving` (frame, range, doppler), `range_azimuth`, `range_azimuth_moving`
     (frame, range, azimuth), `range_time` (frame, range) and `micro_doppler` (frame, doppler) as bytes of power in
-    decibels, 0 = header["db"]["low"], 255 = header["db"]["high"]; `points` (point, 5): x, y, z in metres, radial
+    decibels, 0 = `header["db"]["low"]`, 255 = `header["db"]["high"]`; `points` (point, 5): x, y, z in metres, radial
     velocity in m/s, SNR in dB, with `point_frame` (point,); `joints` (person, frame, 22, 3) and `capsules` (person,
     frame, capsule, 6): start and end of each part of the body in metres, with `radii` (person, capsule, 2).
     """
