@@ -26,7 +26,8 @@ from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
-from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions, fitted, generated_windows
+from mmweaver.recognition.train_recogniser import fitted, generated_windows
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
 from studies.manifest import StudyRun, content_of
 from studies.motion.mars_exercises import EXERCISES
 from studies.schema import metric
@@ -68,7 +69,7 @@ def recordings_of(name: str, folder: Path, task: RecognitionTask) -> list[PointR
 
 
 def scored(
-    made: GeneratedWindows, recordings: list[PointRecording], task: RecognitionTask, *, adapted: bool
+    made: TrainingWindows, recordings: list[PointRecording], task: RecognitionTask, *, adapted: bool
 ) -> dict[str, Any]:
     """Scores, alone or with the recordings as unlabelled ones, and what was done."""
     options = TrainingOptions()
@@ -117,7 +118,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--part", metavar="WORDS", help="what these recordings are called")
 
 
-def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, GeneratedWindows, list[PointRecording]]:
+def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, TrainingWindows, list[PointRecording]]:
     """A task with its generated windows and its recordings."""
     task = read_task(TASKS / f"{options.task}.toml")
     sequences = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences)

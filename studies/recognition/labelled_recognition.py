@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.labelled_training import labelled_alone, own_trees, with_labelled
+from mmweaver.recognition.labelled_training import labelled_alone, own_trees
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions, trees_of
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
 from mmweaver.recognition.tree_ensemble import joined_trees
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import add_task_options, task_data
@@ -34,14 +34,14 @@ TRAINING = {"mhomeges": "80[0-5]_", "mars_exercises": ".* validate"}  # how name
 
 
 def accuracy(
-    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, tested: np.ndarray, *,
+    made: TrainingWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, tested: np.ndarray, *,
     each: int, generated: bool,
 ) -> float:  # fmt: skip
     """Balanced accuracy on the windows `tested` (window,) of all (window, feature), of which some train (window,)."""
     options, own, training = TrainingOptions(trees=TREES), None, made
     if trains.any() and generated:
         own, options = own_trees(made, features[trains], labels[trains], each, options)
-        training = with_labelled(made, features[trains], labels[trains], options)
+        training = with_recorded(made, features[trains], labels[trains], options.labelled_weight)
     elif trains.any():
         training = labelled_alone(made, features[trains], labels[trains])
     trees = joined_trees(trees_of(training, options), own)
@@ -50,7 +50,7 @@ def accuracy(
 
 
 def curve(
-    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray,
+    made: TrainingWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray,
     may_train: np.ndarray | None = None,
 ) -> list[dict[str, Any]]:  # fmt: skip
     """Scores by number of recordings; `owner` (window,) is the recording, `kinds` (recording,) its label.

@@ -18,7 +18,8 @@ from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_se
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.train_recogniser import TrainingOptions, fitted, generated_windows
+from mmweaver.recognition.train_recogniser import fitted, generated_windows
+from mmweaver.recognition.training_windows import TrainingOptions
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import TASKS, result_row
 
@@ -27,6 +28,7 @@ LOWER_THRESHOLD = 0.85  # of the CFAR in range, in counts
 HABITS = PerformancePrior(
     tempo_of_person=0.25, amplitude_of_person=0.25, on_spot=0.9, on_way=(0.9, 1.1), usual_amplitude=1.0,
     sway_mps=(0.02, 0.15), calm_sway_mps=(0.01, 0.06), held_sway_mps=(0.01, 0.06), heading_deg=25.0,
+    at_turns=(0.0, 0.0),
 )  # fmt: skip
 
 

@@ -16,7 +16,8 @@ from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_se
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.train_recogniser import TrainingOptions, fitted, generated_windows
+from mmweaver.recognition.train_recogniser import fitted, generated_windows
+from mmweaver.recognition.training_windows import TrainingOptions
 from studies.manifest import StudyRun
 from studies.recognition.blind_recognition import TASKS, add_task_options, recordings_of
 from studies.recognition.zero_shot_pictures import draw

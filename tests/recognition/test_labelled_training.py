@@ -1,32 +1,30 @@
 """Labelled recordings: how many of the trees are theirs alone."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.labelled_training import fewest_recordings, own_trees, with_labelled
+from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions, trees_of
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
 from mmweaver.recognition.tree_ensemble import joined_trees, read_trees, write_trees
 
 OPTIONS = TrainingOptions(trees=30)
 
 
 @pytest.fixture
-def made() -> GeneratedWindows:
+def made() -> TrainingWindows:
     """Two labels by one feature; what is recorded has it the other way round."""
     label = np.tile([0, 1], 20)
-    return GeneratedWindows(
+    return TrainingWindows(
         features=label[:, None] + np.linspace(0, 0.1, 40)[:, None], label=label, person=np.arange(40),
         is_copy=np.zeros(40, bool), names=("one",),
     )  # fmt: skip
 
 
-def test_more_recordings_grow_more_trees_alone(made: GeneratedWindows):
+def test_more_recordings_grow_more_trees_alone(made: TrainingWindows):
     features, labels = np.tile([[1.0], [0.0]], (10, 1)), np.tile([0, 1], 10)
     sizes = []
     for fewest in (1, 4, 36):
@@ -39,11 +37,11 @@ def test_more_recordings_grow_more_trees_alone(made: GeneratedWindows):
     assert own_trees(made, features, labels, 0, OPTIONS) == (None, OPTIONS)
 
 
-def test_joined_trees_vote_as_both_do_and_are_read_back(made: GeneratedWindows, tmp_path):
+def test_joined_trees_vote_as_both_do_and_are_read_back(made: TrainingWindows, tmp_path):
     features, labels = np.tile([[1.0], [0.0]], (10, 1)), np.tile([0, 1], 10)
     own, others = own_trees(made, features, labels, 4, OPTIONS)
     assert own is not None
-    mixed = trees_of(with_labelled(made, features, labels, replace(others, labelled_weight=0.1)), others)
+    mixed = trees_of(with_recorded(made, features, labels, 0.1), others)
     both = joined_trees(mixed, own)
     asked = np.array([[0.0], [0.5], [1.05], [np.nan]])
     mean = (mixed.probabilities(asked) + own.probabilities(asked)) / 2

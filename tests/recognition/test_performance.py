@@ -12,6 +12,7 @@ from mmweaver.recognition.performance import (
     lingering,
     perform,
     performer,
+    slow_at_turns,
     task_variation,
     with_feet_apart,
 )
@@ -101,3 +102,17 @@ def test_who_lingers_stays_longer_where_the_movement_begins():
     np.testing.assert_allclose(warped_s[[0, -1]], time_s[[0, -1]])
     still = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
     np.testing.assert_array_equal(lingering(time_s, still, 3.0), time_s)
+
+
+def test_who_turns_slowly_takes_longer_where_the_way_ends_and_nowhere_else():
+    time_s = np.arange(0, 12, 1 / 60)
+    joints_m = np.zeros((len(time_s), 22, 3))  # who stands from 4 to 5 and from 9 to 10 s
+    joints_m[:, :, 1] = np.interp(time_s, [0, 4, 5, 9, 10, 14], [0, 2.8, 2.8, 0, 0, 2.8])[
+        :, None
+    ]  # stands at 4 and 9 s
+    slower_s = slow_at_turns(time_s, joints_m, 2.0)
+    took_s = np.interp([3.9, 5.1, 8.9], time_s, slower_s)
+    assert took_s[0] == pytest.approx(3.9, abs=0.1)
+    assert took_s[1] - took_s[0] == pytest.approx(3.2, abs=0.2)  # one second became three
+    assert took_s[2] - took_s[1] == pytest.approx(3.8, abs=0.1)
+    np.testing.assert_allclose(slow_at_turns(time_s, joints_m, 0.0), time_s)

@@ -77,12 +77,8 @@ def run_command(arguments: argparse.Namespace) -> int:
 def _train(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import training_lines
     from mmweaver.recognition.task_file import read_task
-    from mmweaver.recognition.train_recogniser import (
-        QUICK_SEQUENCES,
-        TrainingOptions,
-        train_recogniser,
-        usual_sequences,
-    )
+    from mmweaver.recognition.train_recogniser import QUICK_SEQUENCES, train_recogniser, usual_sequences
+    from mmweaver.recognition.training_windows import TrainingOptions
 
     usual = QUICK_SEQUENCES if arguments.quick else usual_sequences(read_task(arguments.place))
     sequences = usual if arguments.sequences is None else arguments.sequences

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 CONFUSIONS, SHARES = 4, (1 / 3, 2 / 3)
-REACH_M, SHOWN_MPS = 1.0, 2.5  # about the median of the moving points; at full colour
+REACH_M = 1.0  # shown about the median of the moving points
+SHOWN_MPS, COLOURS = 2.5, "coolwarm"  # velocity at full colour
 
 
 def confusion_picture(
@@ -71,11 +72,13 @@ def draw_confusions(
 ) -> None:  # fmt: skip
     """Two rows a confusion, range and height over time about the median of the moving points.
 
-    `guess`: the label that each real window was given. Static points are grey.
+    `guess`: the label that each real window was given.
     """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13.0, 2.7 * len(pairs)), layout="constrained", dpi=90)
+    figure = Figure(figsize=(13.8, 2.7 * len(pairs)), layout="constrained", dpi=90)
     axes = figure.subplots(2 * len(pairs), 4 * len(SHARES), sharex=True, sharey=True, squeeze=False)
     for row, (true, taken) in enumerate(pairs):
         names = labels[true].replace("_", " "), labels[taken].replace("_", " ")
@@ -103,6 +106,10 @@ def draw_confusions(
         axes[2 * row + 1, 0].set_ylabel("height, m", fontsize=8)
     for axis in axes[-1]:
         axis.set_xlabel("time, s", fontsize=8)
+    colours = ScalarMappable(Normalize(-SHOWN_MPS, SHOWN_MPS), COLOURS)
+    bar = figure.colorbar(colours, ax=axes, aspect=60, fraction=0.02, pad=0.01, extend="both")
+    bar.set_label("radial velocity, m/s: blue approaches, red recedes; points at rest are grey", fontsize=8)
+    bar.ax.tick_params(labelsize=8)
     with atomic_file(path) as temporary:
         figure.savefig(temporary, format="png")
 
@@ -116,6 +123,6 @@ def _scatter(upper: "Axes", lower: "Axes", window: PointRecording) -> None:
         places = values - (np.median(values[middle]) if middle.any() else 0.0)
         axis.scatter(time_s[~moving], places[~moving], s=1, color="0.8", linewidths=0)
         axis.scatter(
-            time_s[moving], places[moving], s=5, c=cloud.radial_velocity_mps[moving], cmap="coolwarm",
+            time_s[moving], places[moving], s=5, c=cloud.radial_velocity_mps[moving], cmap=COLOURS,
             vmin=-SHOWN_MPS, vmax=SHOWN_MPS, linewidths=0,
         )  # fmt: skip

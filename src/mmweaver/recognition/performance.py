@@ -50,7 +50,8 @@ class PerformancePrior:
     gesture, `held_sway_mps` of who stays in a posture.
     `heading_deg`: standard deviation from facing the radar, `heading_of_performance_deg` that of one performance from
     the person's usual. `wider_m`: how much farther apart than in the motion library narrow feet of who stays in place
-    are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform.
+    are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform. `at_turns`:
+    how much longer than in the library people who walk or run take to turn and set out again, uniform.
     """
 
     tempo_of_person: float = 0.2
@@ -69,6 +70,7 @@ class PerformancePrior:
     heading_of_performance_deg: float = 5.7
     wider_m: Span = (0.0, 0.0)
     linger: Span = (0.0, 0.0)
+    at_turns: Span = (0.0, 2.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +85,7 @@ class Performer:
     wider_m: float
     linger: float
     on_way: float  # tempo of walks and runs
+    at_turns: float
 
 
 def task_variation(mount: Mount) -> Variation:
@@ -118,6 +121,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         wider_m=float(rng.uniform(*prior.wider_m)),
         linger=float(rng.uniform(*prior.linger)),
         on_way=float(np.exp(rng.uniform(*np.log(prior.on_way)))),
+        at_turns=float(rng.uniform(*prior.at_turns)),
     )
 
 
@@ -167,7 +171,11 @@ def perform(
     usual_sway = prior.calm_sway_mps if once else prior.held_sway_mps if is_held else prior.sway_mps
     sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
-    even_s = pose.time_s if moves or once else lingering(pose.time_s, joints_m, who.linger)
+    even_s = pose.time_s
+    if moves:
+        even_s = slow_at_turns(pose.time_s, joints_m, who.at_turns)
+    elif not once:
+        even_s = lingering(pose.time_s, joints_m, who.linger)
     time_s = time_warped(
         even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
     )
@@ -221,6 +229,19 @@ def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray
     slower = 1 / (1 + linger * ((far_m - near) / (most - near)).clip(0, 1))
     gone = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
     return time_s[0] + gone * (time_s[-1] - time_s[0]) / gone[-1]
+
+
+def slow_at_turns(time_s: np.ndarray, joints_m: Joints, slower: float) -> np.ndarray:
+    """Times (time,) of a way on which whoever stands takes 1 + `slower` times as long, and who walks as long as before.
+
+    In between in proportion to the speed of the pelvis, relative to that which three quarters of the time it is below.
+    """
+    step_m = np.linalg.norm(np.gradient(joints_m[:, joint("pelvis"), :2], axis=0), axis=-1)
+    speed_mps = step_m / np.gradient(time_s)
+    usual_mps = max(float(np.quantile(speed_mps[time_s >= LEAD_S], 0.75)), SLOWEST_MPS)
+    longer = 1 + slower * (1 - speed_mps / usual_mps).clip(0, 1)
+    gone_s = np.concatenate([[0.0], np.cumsum((longer[1:] + longer[:-1]) / 2 * np.diff(time_s))])
+    return time_s[0] + gone_s
 
 
 def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:

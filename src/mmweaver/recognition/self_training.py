@@ -1,49 +1,73 @@
-"""Self-training with a guard: confident labels of unlabelled windows join the generated ones, if nothing collapses."""
+"""Self-training with a guard: confident labels of unlabelled windows join the generated ones, if nothing collapses.
 
-from typing import TYPE_CHECKING, Any
+Decisions 238, 269 and 280.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
-
-if TYPE_CHECKING:
-    from mmweaver.recognition.train_recogniser import GeneratedWindows, TrainingOptions
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
+from mmweaver.recognition.tree_ensemble import TreeEnsemble
 
 CONFIDENT_SHARE = 0.6  # of the windows given to each label, those with the highest votes
-REAL_WEIGHT = 1.0  # of all pseudo-labelled windows relative to all generated ones
+WITH_NEIGHBOURS = 0.8  # the same, where the windows before and after vote along
+REAL_WEIGHT = 1.0  # of a label's pseudo-labelled windows relative to its others
 LEAST_SHARE, MOST_CHANGED = 0.2, 0.35  # the guard: of a label's fair share of windows; of labels that change
 
 
 def self_trained(
-    made: "GeneratedWindows", features: Float[np.ndarray, "window feature"], trees: TreeEnsemble,
-    options: "TrainingOptions",
+    made: TrainingWindows, features: Float[np.ndarray, "window feature"], trees: TreeEnsemble,
+    options: TrainingOptions, follows: Bool[np.ndarray, " window"] | None = None,
 ) -> tuple[TreeEnsemble, dict[str, Any]]:  # fmt: skip
     """The trees to use, and what was done: the same trees where the guard refuses.
 
-    `features` (window, feature) of unlabelled windows, matched. The guard asks that no label all but vanishes, and
-    that most labels stay as they were.
+    `features` (window, feature) of unlabelled windows, matched. `follows`, as `following` gives it: where people go on
+    with what they do, windows before and after vote along for a label. The guard asks that no label all but vanishes,
+    and that most labels stay as they were.
     """
-    votes = trees.probabilities(features)
+    votes, share = trees.probabilities(features), CONFIDENT_SHARE
+    if follows is not None:
+        votes, share = with_neighbours(votes, follows), WITH_NEIGHBOURS
     guess, classes = votes.argmax(axis=1), votes.shape[1]
     kept = np.zeros(len(guess), bool)
     for label in range(classes):
         own = np.flatnonzero(guess == label)
-        kept[own[np.argsort(-votes[own, label])][: int(np.ceil(CONFIDENT_SHARE * len(own)))]] = True
+        kept[own[np.argsort(-votes[own, label])][: int(np.ceil(share * len(own)))]] = True
     note: dict[str, Any] = {"windows": int(kept.sum()), "used": False}
     count = np.bincount(guess[kept], minlength=classes)
     if count.min() < LEAST_SHARE * kept.sum() / classes:
         return trees, note | {"why": "a label is hardly ever given to the unlabelled windows"}
-    weight = 1.0 / count[guess[kept]] * kept.sum()
-    weight *= REAL_WEIGHT * made.weights.sum() / weight.sum()
-    again = grow_trees(
-        np.concatenate([made.features, features[kept]]), np.concatenate([made.label, guess[kept]]),
-        np.concatenate([made.weights, weight]), classes, trees=options.trees, leaf_size=options.leaf_size,
-        feature_share=options.feature_share, seed=options.seed,
-    )  # fmt: skip
+    again = trees_of(with_recorded(made, features[kept], guess[kept], REAL_WEIGHT), options)
     new = again.probabilities(features).argmax(axis=1)
     changed = float((new != guess).mean())
     note["labels_changed"] = round(changed, 4)
     if changed > MOST_CHANGED or np.bincount(new, minlength=classes).min() < LEAST_SHARE * len(new) / classes:
         return trees, note | {"why": "too many labels would change"}
     return again, note | {"used": True}
+
+
+def following(windows: Sequence[PointRecording]) -> Bool[np.ndarray, " window"]:
+    """Whether a window begins where the one before it in the list ends, in the same recording."""
+    found = np.zeros(len(windows), bool)
+    found[1:] = [
+        one.name == after.name and after.first_frame == one.first_frame + one.num_frames
+        for one, after in pairwise(windows)
+    ]
+    return found
+
+
+def with_neighbours(
+    votes: Float[np.ndarray, "window label"], follows: Bool[np.ndarray, " window"]
+) -> Float[np.ndarray, "window label"]:
+    """The mean vote of each window, the one before it and the one after it, where they follow each other."""
+    total, count = votes.copy(), np.ones(len(votes))
+    after = np.flatnonzero(follows)
+    for here, there in ((after, after - 1), (after - 1, after)):
+        total[here] += votes[there]
+        count[here] += 1
+    return total / count[:, None]

@@ -32,6 +32,7 @@ POSE_PRIOR = PerformancePrior(
     wider_m=(0.0, 0.3),
     heading_of_performance_deg=15.0,
     linger=(0.0, 3.0),
+    at_turns=(0.0, 0.0),
 )
 
 

@@ -2,12 +2,11 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_folder
@@ -16,9 +15,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.labelled_training import fewest_recordings, own_trees, with_labelled
-from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.performance_variation import PerformanceVariation, varied
+from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
+from mmweaver.recognition.performance_variation import varied
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
@@ -29,13 +27,21 @@ from mmweaver.recognition.recogniser import (
     window_row,
 )
 from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.self_training import following, self_trained
 from mmweaver.recognition.sensitivity import sensitivity_weights
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees, joined_trees
+from mmweaver.recognition.training_windows import (
+    SEQUENCES,
+    TrainingOptions,
+    TrainingWindows,
+    trees_of,
+    with_recorded,
+)
+from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
 
-SEQUENCES, QUICK_SEQUENCES = 40, 8  # people an activity
+QUICK_SEQUENCES = 8  # people an activity
 SINGLE_SEQUENCES = 100  # of single performances, which give one window each
 SEQUENCE_FOLDER = "sequences"
 HELD_OUT = 4  # one person in so many is held out to test on generated people
@@ -43,48 +49,6 @@ SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
 OVERLAP = 3  # windows of a generated sequence begin every so many parts of a window
 INSIDE_SHARE = 0.99  # of generated windows
 Listener = Callable[[str, int, int], object]
-
-
-@dataclass(frozen=True, kw_only=True)
-class TrainingOptions:
-    """How a recogniser is trained; the same for every task."""
-
-    sequences: int = SEQUENCES
-    seed: int = 0
-    prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
-    copies: int = 4  # varied and disturbed ones of each window
-    variation: PerformanceVariation = PerformanceVariation()  # noqa: RUF009 (frozen)
-    trees: int = 300
-    leaf_size: int = 3
-    feature_share: float = 0.15
-    sensitivity: bool = False  # of the board weighed, where there are unlabelled recordings
-    matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
-    self_training: bool = True
-    labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
-
-    def __post_init__(self) -> None:
-        if not 2 <= self.sequences <= 100_000:
-            raise InputError(f"sequences must be 2 to 100000 of each activity, not {self.sequences}")
-        if self.seed < 0:
-            raise InputError(f"the seed must be 0 or above, not {self.seed}")
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class GeneratedWindows:
-    """Features of generated windows and of their disturbed copies."""
-
-    features: Float[np.ndarray, "window feature"]
-    label: Int[np.ndarray, " window"]
-    person: Int[np.ndarray, " window"]
-    is_copy: np.ndarray  # (window,) bool
-    names: tuple[str, ...]
-    importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
-
-    @property
-    def weights(self) -> Float[np.ndarray, " window"]:
-        """Every label weighs the same."""
-        own = np.ones(len(self.label)) if self.importance is None else self.importance
-        return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
 
 def train_recogniser(
@@ -156,7 +120,7 @@ def labelled_windows(folder: Path | str, task: RecognitionTask) -> list[PointRec
 def generated_windows(
     sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
     background: Sequence[PointRecording] = (),
-) -> GeneratedWindows:  # fmt: skip
+) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
     Raises InputError where an activity gave no window.
@@ -188,7 +152,7 @@ def generated_windows(
     ]
     everything += copies
     names = feature_names_of(everything[0])
-    return GeneratedWindows(
+    return TrainingWindows(
         features=recognition_features(everything, names),
         label=np.array([task.recordings.labels.index(window.label) for window in everything]),
         person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
@@ -216,7 +180,7 @@ def _before(window: PointRecording, background: Sequence[PointRecording], rng: n
 
 # fitting ------------------------------------------------------------------------------------------------------------
 def fitted(
-    made: GeneratedWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
+    made: TrainingWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
     labelled: Sequence[PointRecording] = (),
 ) -> Recogniser:  # fmt: skip
     """Trees on all generated windows and the labelled ones, adapted to unlabelled ones.
@@ -244,34 +208,21 @@ def fitted(
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         fewest = fewest_recordings(labelled, task.recordings.labels)
         own, options = own_trees(made, known, labels, fewest, options)
-        made = with_labelled(made, known, labels, options)
+        made = with_recorded(made, known, labels, options.labelled_weight)
         meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
     trees = trees_of(made, options)
     if features is not None:
         meta["unlabelled_windows"] = len(unlabelled)
         if options.self_training:
-            from mmweaver.recognition.self_training import self_trained
-
-            trees, meta["self_training"] = self_trained(made, features, trees, options)
+            follows = None if task.recordings.has_single_performances else following(unlabelled)
+            trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
         outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
     )  # fmt: skip
 
 
-def trees_of(
-    made: GeneratedWindows, options: TrainingOptions, *, which: np.ndarray | None = None, num_trees: int | None = None
-) -> TreeEnsemble:
-    """Trees on generated windows, or on those of a mask (window,)."""
-    which = np.ones(len(made.label), bool) if which is None else which
-    return grow_trees(
-        made.features[which], made.label[which], made.weights[which], int(made.label.max()) + 1,
-        trees=num_trees or options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share,
-        seed=options.seed,
-    )  # fmt: skip
-
-
-def generated_accuracy(made: GeneratedWindows, options: TrainingOptions) -> dict[str, float]:
+def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, float]:
     """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best."""
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():

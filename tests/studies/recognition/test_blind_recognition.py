@@ -8,7 +8,8 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.recognition.task_file import read_task
-from mmweaver.recognition.train_recogniser import TrainingOptions, generated_windows
+from mmweaver.recognition.train_recogniser import generated_windows
+from mmweaver.recognition.training_windows import TrainingOptions
 from studies.recognition import blind_recognition
 from studies.recognition.blind_recognition import TASKS, recordings_of, result_row, scored
 from studies.schema import _row_violations

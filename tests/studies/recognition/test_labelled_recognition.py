@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.recognition.train_recogniser import GeneratedWindows
+from mmweaver.recognition.training_windows import TrainingWindows
 from studies.recognition import labelled_recognition
 from studies.recognition.labelled_recognition import curve, row_of
 from studies.schema import _row_violations
@@ -18,7 +18,7 @@ def test_a_curve_begins_with_what_was_generated_alone(monkeypatch: pytest.Monkey
     kinds = np.repeat([0, 1], 7)
     owner, labels = np.repeat(np.arange(14), 4), np.repeat(kinds, 4)
     features = (labels + rng.normal(0, 0.1, 56))[:, None]
-    made = GeneratedWindows(
+    made = TrainingWindows(
         features=np.repeat([[1.2], [2.2]], 40, axis=0) + rng.normal(0, 0.1, (80, 1)), label=np.repeat([0, 1], 40),
         person=np.arange(80), is_copy=np.zeros(80, bool), names=("one",),
     )  # fmt: skip
@@ -39,7 +39,7 @@ def test_only_what_may_train_does_and_the_others_are_tested(monkeypatch: pytest.
     may_train = np.arange(20) < 10
     owner, labels = np.repeat(np.arange(20), 3), np.repeat(kinds, 3)
     features = np.where(may_train[owner], 1 - labels, labels)[:, None].astype(float)
-    made = GeneratedWindows(
+    made = TrainingWindows(
         features=np.array([[0.0], [1.0]] * 9), label=np.array([0, 1] * 9), person=np.arange(18),
         is_copy=np.zeros(18, bool), names=("one",),
     )  # fmt: skip
