@@ -20,6 +20,7 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.board_effects import as_built
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.paths.static_paths import Propagation, RayTracedRoom
+from mmweaver.paths.unresolved_clutter import seed_of_room
 
 if TYPE_CHECKING:
     from mmweaver.models.learned_paths import EchoNetwork, LearnedRoom
@@ -134,7 +135,10 @@ class Physics:
     ) -> Simulator:
         built = config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
         room = self._traced.get(scene, built, None, None)
-        return Simulator(scene, config, background=background, board=board, propagation=self.propagation, room=room)
+        return Simulator(
+            scene, config, micro_seed=seed_of_room(scene), background=background, board=board,
+            propagation=self.propagation, room=room,
+        )  # fmt: skip
 
 
 def physics_with(method: Method, bounces: int | None, clutter: str | None) -> Physics:

@@ -1,9 +1,12 @@
 """Static clutter that photo and mesh do not resolve: level, distribution and where it is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mmweaver.core.presets import AWR1843
+from mmweaver.core.stages import Stages
 from mmweaver.methods import Physics, physics_with
 from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.paths import Interaction
@@ -16,6 +19,7 @@ from mmweaver.paths.unresolved_clutter import (
     NEAREST_M,
     SQUARE_METRES_A_METRE,
     room_level,
+    seed_of_room,
     unresolved_clutter,
 )
 from tests.rooms import back_wall, floor, scene_of
@@ -58,3 +62,20 @@ def test_the_front_door_has_it_and_the_ray_tracer_only_where_asked():
     assert Physics().propagation.clutter
     assert not physics_with(Physics(), 1, "resolved").propagation.clutter
     assert physics_with(Physics(), 1, None).propagation == Propagation(bounces=1, clutter=True)
+
+
+def test_rooms_have_clutter_of_their_own_and_keep_it():
+    """Whatever the sequence's seed is: clutter belongs to the room, and another room's is not this one's."""
+    rooms = [scene_of((floor(), back_wall())), scene_of((floor(),))]
+    seeds = [seed_of_room(room) for room in rooms]
+    assert seeds[0] != seeds[1]
+    moved = replace(rooms[0], vertices_m=rooms[0].vertices_m * (1 + 1e-7))  # as another processor rounds
+    assert seed_of_room(moved) == seeds[0]
+    physics = Physics()
+    clutter = []
+    for seed, room in ((0, rooms[0]), (1, rooms[0]), (0, rooms[1])):
+        physics(room, (), AWR1843, num_frames=1, seed=seed, keep_adc=False, stages=Stages())
+        paths = physics._prepared.get(room, AWR1843, None, None).room.paths
+        clutter.append(paths.amplitude[paths.interaction == int(Interaction.CLUTTER)].numpy())
+    assert np.array_equal(clutter[0], clutter[1])
+    assert not np.array_equal(clutter[0], clutter[2])

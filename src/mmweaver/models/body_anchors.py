@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmweaver.core.skeleton import NUM_JOINTS, joint
+from mmweaver.core.skeleton import NUM_JOINTS, PARENTS, joint
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.precision import in_full_precision
@@ -141,13 +141,8 @@ def _reflected(table: Tensor, cos: Tensor) -> Tensor:
 
 def _bones(joints_m: Tensor) -> Tensor:
     """(..., anchor, 3): the bone each anchor lies on; a joint's own is the one that ends there."""
-    from mmweaver.core.skeleton import PARENTS
-
-    parts = []
-    for first, second, _ in ANCHORS:
-        start = first if first != second else max(PARENTS[first], 0)
-        parts.append(joints_m[..., second, :] - joints_m[..., start, :])
-    return torch.stack(parts, dim=-2)
+    starts = [first if first != second else max(PARENTS[first], 0) for first, second, _ in ANCHORS]
+    return joints_m[..., [second for _, second, _ in ANCHORS], :] - joints_m[..., starts, :]
 
 
 def facing(joints_m: Tensor) -> Tensor:

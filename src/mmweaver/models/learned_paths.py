@@ -287,8 +287,7 @@ class LearnedRoom:
             noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()
-            occluded_layers = [self._noticed[row].layer() for row in lost]
-            self.renderer.add_static(values, layer - torch.stack(occluded_layers))
+            self.renderer.add_static(values, layer - self._noticed.layers(lost))
             values += torch.from_numpy(noise)
             cube = RadarCube(values=values.numpy(), grid=grid, config=self.nominal, scale=1.0)
             adc = self._adc(paths, replace(cube, values=noise), seed, first_frame) if keep_adc else None

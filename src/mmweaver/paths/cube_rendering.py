@@ -46,6 +46,14 @@ class StaticResponse(TensorRecord):
         antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
         return torch.view_as_complex((in_range.T @ antennas).unflatten(1, (-1, 2)))
 
+    def layers(self, chosen: Tensor) -> Tensor:
+        """The sums of the chosen paths (frame, path), complex (frame, range, antenna)."""
+        in_range = torch.cat([self.at_range, self.range_slope])
+        antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
+        rows = (torch.nonzero(one.repeat(2))[:, 0] for one in chosen)  # with their slopes
+        each = torch.stack([in_range[row].T @ antennas[row] for row in rows])
+        return torch.view_as_complex(each.unflatten(2, (-1, 2)))
+
     def each(self) -> Tensor:
         """Every path's own, complex (range * antenna, path)."""
         both = self.at_range[..., None] * self.echo[:, None] + self.range_slope[..., None] * self.tilted[:, None]

@@ -4,7 +4,7 @@ Reference: ITU-R P.2040-3, table 3 (permittivity, equation 28) and equations 31,
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,30 +37,29 @@ class Material:
         return 1 - np.exp(-(turn**2))
 
 
-PLASTERED = ("concrete", "brick", "plasterboard", "ceiling_board")
-PLASTER_M = (
-    0.15e-3  # ingrain wallpaper 0.13, concrete plaster 0.15 mm (from memory of Piesiewicz et al., IEEE TAP, 2007)
-)
 # Thickness and scattering are choices of this project, not of the standard. P.2040 gives brick up to 40 GHz, marble
 # up to 60, plywood up to 40: their laws are carried on to 77. Fabric (upholstery) is not in the standard: foam and
-# cloth, after wood with a lower density.
+# cloth, after wood with a lower density. Roughness is that of plaster (0.05 and 0.15 mm on two samples, ingrain
+# wallpaper 0.13 mm), taken to be on concrete, brick, plasterboard and ceilings: Piesiewicz et al., "Scattering analysis
+# for the modeling of THz communication systems", IEEE Trans. Antennas Propag. 55(11), 2007, table I; decision 285.
+_COLUMNS = ("name", "a", "b", "c", "d", "thickness_m", "scattering", "roughness_m")
 MATERIALS: Registry[Material] = Registry(
     "material",
     [
-        (m.name, replace(m, roughness_m=PLASTER_M) if m.name in PLASTERED else m)
-        for m in (
-            Material(name="concrete", a=5.24, b=0.0, c=0.0462, d=0.7822, thickness_m=0.20, scattering=0.35),
-            Material(name="brick", a=3.91, b=0.0, c=0.0238, d=0.16, thickness_m=0.12, scattering=0.45),
-            Material(name="plasterboard", a=2.73, b=0.0, c=0.0085, d=0.9395, thickness_m=0.0125, scattering=0.25),
-            Material(name="wood", a=1.99, b=0.0, c=0.0047, d=1.0718, thickness_m=0.03, scattering=0.35),
-            Material(name="glass", a=6.31, b=0.0, c=0.0036, d=1.3394, thickness_m=0.006, scattering=0.10),
-            Material(name="ceiling_board", a=1.48, b=0.0, c=0.0011, d=1.0750, thickness_m=0.0095, scattering=0.35),
-            Material(name="chipboard", a=2.58, b=0.0, c=0.0217, d=0.7800, thickness_m=0.018, scattering=0.30),
-            Material(name="plywood", a=2.71, b=0.0, c=0.33, d=0.0, thickness_m=0.012, scattering=0.30),
-            Material(name="marble", a=7.074, b=0.0, c=0.0055, d=0.9262, thickness_m=0.02, scattering=0.15),
-            Material(name="floorboard", a=3.66, b=0.0, c=0.0044, d=1.3515, thickness_m=0.02, scattering=0.30),
-            Material(name="metal", a=1.0, b=0.0, c=1.0e7, d=0.0, thickness_m=0.002, scattering=0.15),
-            Material(name="fabric", a=1.4, b=0.0, c=0.0040, d=1.0, thickness_m=0.08, scattering=0.60),
+        (row[0], Material(**dict(zip(_COLUMNS, row, strict=True))))
+        for row in (
+            ("concrete", 5.24, 0.0, 0.0462, 0.7822, 0.20, 0.35, 0.15e-3),
+            ("brick", 3.91, 0.0, 0.0238, 0.16, 0.12, 0.45, 0.15e-3),
+            ("plasterboard", 2.73, 0.0, 0.0085, 0.9395, 0.0125, 0.25, 0.15e-3),
+            ("wood", 1.99, 0.0, 0.0047, 1.0718, 0.03, 0.35, 0.0),
+            ("glass", 6.31, 0.0, 0.0036, 1.3394, 0.006, 0.10, 0.0),
+            ("ceiling_board", 1.48, 0.0, 0.0011, 1.0750, 0.0095, 0.35, 0.15e-3),
+            ("chipboard", 2.58, 0.0, 0.0217, 0.7800, 0.018, 0.30, 0.0),
+            ("plywood", 2.71, 0.0, 0.33, 0.0, 0.012, 0.30, 0.0),
+            ("marble", 7.074, 0.0, 0.0055, 0.9262, 0.02, 0.15, 0.0),
+            ("floorboard", 3.66, 0.0, 0.0044, 1.3515, 0.02, 0.30, 0.0),
+            ("metal", 1.0, 0.0, 1.0e7, 0.0, 0.002, 0.15, 0.0),
+            ("fabric", 1.4, 0.0, 0.0040, 1.0, 0.08, 0.60, 0.0),
         )
     ],
 )

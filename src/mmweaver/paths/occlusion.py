@@ -10,6 +10,7 @@ from mmweaver.paths.body_model import average_body
 
 WIDEST_M = 0.2  # from a bone to the skin at most
 BEHIND_M = 0.1  # farther than the body at least
+FRAMES_AT_ONCE = 10  # stay in the cache
 CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer's bodies occlude
 
 
@@ -26,37 +27,47 @@ def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
     width = torch.from_numpy(body.widths).float()
     ends = ends_m.cpu().float().expand(len(starts), *ends_m.shape[-2:])
     distance = ends.norm(dim=-1)
-    out = torch.zeros(ends.shape[:2], dtype=torch.bool)
     rays = ends / distance.clamp(min=1e-6)[..., None]
-    for row, ray, far, start, axis, right in zip(
-        out, rays, distance - BEHIND_M, starts, axes, rotations[..., 0], strict=True
-    ):
-        near = _towards(ray, start, start + axis)
-        row[near] = _met(ray[near], far[near], radius, width, start, axis, right)
+    near = _towards(rays, starts, starts + axes)
+    out = torch.zeros_like(near)
+    for first in range(0, len(rays), FRAMES_AT_ONCE):
+        some = slice(first, first + FRAMES_AT_ONCE)
+        asked = torch.nonzero(near[some].any(dim=0))[:, 0]
+        far = distance[some, asked] - BEHIND_M
+        met = _met(rays[some, asked], far, radius, width, starts[some], axes[some], rotations[some, ..., 0])
+        out[some, asked] = met & near[some, asked]
     return out.to(joints_m.device)
 
 
 def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
-    """Indices of the unit vectors (ray, 3) within the cone that the body fills, its flesh included."""
-    ends = torch.cat(ends_m)
+    """Which unit vectors (frame, ray, 3) lie within the cone that the body fills, its flesh included, (frame, ray)."""
+    ends = torch.cat(ends_m, dim=1)
     distance = ends.norm(dim=-1)
-    unit = ends / distance[:, None]
-    middle = torch.nn.functional.normalize(unit.mean(dim=0), dim=0)
-    widest = torch.acos((unit @ middle).min().clamp(-1, 1)) + torch.asin((WIDEST_M / distance.min()).clamp(max=1.0))
-    return torch.nonzero(rays @ middle > torch.cos(widest.clamp(max=torch.pi)))[:, 0]
+    unit = ends / distance[..., None]
+    middle = torch.nn.functional.normalize(unit.mean(dim=1), dim=-1)[..., None]
+    flesh = torch.asin((WIDEST_M / distance.amin(dim=1)).clamp(max=1.0))
+    widest = torch.acos((unit @ middle)[..., 0].amin(dim=1).clamp(-1, 1)) + flesh
+    return (rays @ middle)[..., 0] > torch.cos(widest.clamp(max=torch.pi))[:, None]
 
 
 def _met(
     rays: Tensor, far_m: Tensor, radius_m: Tensor, width: Tensor, start_m: Tensor, axis_m: Tensor, right: Tensor
 ) -> Tensor:
-    """Whether each ray (ray, 3) comes nearer to a capsule (capsule, 3) than its radius before it gets `far_m`."""
-    along, begun, across_m = rays @ axis_m.T, rays @ start_m.T, rays @ right.T  # (ray, capsule)
-    length2, slope = axis_m.square().sum(-1), (axis_m * start_m).sum(-1)
+    """Whether each ray (frame, ray, 3) comes nearer to a capsule than its radius before it gets `far_m` (frame, ray).
+
+    Capsules (frame, capsule, 3), their radii (capsule, 2).
+    """
+    along, begun, across_m = (rays @ part.mT for part in (axis_m, start_m, right))  # (frame, ray, capsule)
+
+    def dot(one: Tensor, other: Tensor) -> Tensor:
+        return (one * other).sum(-1)[:, None]
+
+    length2, slope = dot(axis_m, axis_m), dot(axis_m, start_m)
     # the point of the bone nearest to the ray, both seen along the ray
-    share = ((along * begun - slope) / (length2 - along.square()).clamp(min=1e-9)).clamp(0, 1)
+    share = ((along * begun).sub_(slope) / (length2 - along.square()).clamp_(min=1e-9)).clamp_(0, 1)
     gone = begun + share * along
-    sideways = (start_m * right).sum(-1) + share * (axis_m * right).sum(-1) - gone * across_m
-    gap2 = start_m.square().sum(-1) + share * (2 * slope + share * length2) - gone.square()
+    sideways = dot(start_m, right) + share * dot(axis_m, right) - gone * across_m
+    gap2 = dot(start_m, start_m) + share * (2 * slope + share * length2) - gone.square()
     reach = radius_m[:, 0] + share * (radius_m[:, 1] - radius_m[:, 0])
     met = gap2 - sideways.square() * (1 - width**-2) < reach.square()
-    return (met & (gone > 0) & (gone < far_m[:, None])).any(dim=-1)
+    return (met & (gone > 0) & (gone < far_m[..., None])).any(dim=-1)

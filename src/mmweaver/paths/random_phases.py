@@ -6,6 +6,7 @@ give the same signal, and a person's frames belong together. Reference: decision
 """
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import torch
@@ -29,7 +30,7 @@ FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are le
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
     """Static echoes (echo,) with sampled phases, the strongest first; those too faint to matter are left out."""
     rng = stream(room_seed, "weaver", "room")
-    amplitude = points_of(static, PointResponse(config)).amplitude
+    amplitude = points_of(static, _response(config)).amplitude
     cycles = torch.from_numpy(rng.random(len(amplitude)))
     size = amplitude / amplitude.max()
     kept = size.argsort(descending=True)[: int((size > FAINTEST).sum())]
@@ -46,7 +47,7 @@ def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subje
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
     scintillation = (carrier(along_m, config) * level).sum(dim=-1)
-    amplitude = points_of(moving, PointResponse(config)).amplitude * scintillation
+    amplitude = points_of(moving, _response(config)).amplitude * scintillation
     return Paths.direct(amplitude, _scatterers(moving, moving.range_m, moving.velocity_mps, 0 * moving.range_m))
 
 
@@ -65,7 +66,7 @@ def sample_moving_segments(
     turning_mps = torch.gradient(along_m, spacing=(time_s.float(),), dim=1)[0]
     velocity_mps = moving.velocity_mps[..., None] + turning_mps
     acceleration = torch.gradient(velocity_mps, spacing=(time_s.float(),), dim=1)[0]
-    amplitude = points_of(moving, PointResponse(config)).amplitude[..., None] * level
+    amplitude = points_of(moving, _response(config)).amplitude[..., None] * level
     spots = moving.map(lambda tensor: tensor[:, :, :, None].expand(-1, -1, -1, SPOTS, *tensor.shape[3:]))
     return Paths.direct(amplitude, _scatterers(spots, range_m, velocity_mps, acceleration)).map(
         lambda tensor: tensor.flatten(0, 1).flatten(1, 2)
@@ -78,7 +79,7 @@ def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject
     A cell is one scatterer at its place that moves with its velocity. It has one random phase, which turns with that
     velocity from frame to frame as it does from chirp to chirp; at rest it stays.
     """
-    amplitude = points_of(cells, PointResponse(config)).amplitude
+    amplitude = points_of(cells, _response(config)).amplitude
     turned = carrier(cells.velocity_mps.double() * time_s[..., None], config)
     place = _scatterers(cells, cells.range_m, cells.velocity_mps, 0 * cells.range_m)
     return Paths.direct(amplitude * turned * _cell_phases(cells.cell, subject), place).map(
@@ -93,6 +94,11 @@ def _cell_phases(cell: Tensor, subject: int) -> Tensor:
         mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)
     share = torch.from_numpy(((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(40)).astype(np.float32) / 2**24)
     return torch.polar(torch.ones_like(share), 2 * math.pi * share)
+
+
+@lru_cache(maxsize=4)
+def _response(config: RadarConfig) -> PointResponse:
+    return PointResponse(config)
 
 
 def place_of(echoes: MeanEchoes) -> Tensor:

@@ -5,9 +5,12 @@ distributed about a mean, so that amplitudes are K distributed. Level and densit
 decisions 226 and 267. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
 """
 
+import zlib
+
 import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import Interaction, StaticPaths
@@ -47,6 +50,14 @@ def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     amplitude = scatterer_gain(config) * gain * np.sqrt(cross_section_m2) / range_m**2
     phase = np.exp(2j * np.pi * rng.random(count))
     return scattered_paths(towards * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config)
+
+
+def seed_of_room(scene: Scene) -> int:
+    """A number that belongs to a room's mesh: every room has its own clutter, and the same in every sequence.
+
+    Of the faces' corners alone, which are integers: coordinates differ in their last bits between processors.
+    """
+    return zlib.crc32(np.ascontiguousarray(scene.faces, dtype="<i4").tobytes())
 
 
 def room_level(micro_seed: int) -> float:
