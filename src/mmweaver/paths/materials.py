@@ -42,12 +42,11 @@ class Material:
 # cloth, after wood with a lower density. Roughness is that of plaster (0.05 and 0.15 mm on two samples, ingrain
 # wallpaper 0.13 mm), taken to be on concrete, brick, plasterboard and ceilings: Piesiewicz et al., "Scattering analysis
 # for the modeling of THz communication systems", IEEE Trans. Antennas Propag. 55(11), 2007, table I; decision 285.
-_COLUMNS = ("name", "a", "b", "c", "d", "thickness_m", "scattering", "roughness_m")
 MATERIALS: Registry[Material] = Registry(
     "material",
     [
-        (row[0], Material(**dict(zip(_COLUMNS, row, strict=True))))
-        for row in (
+        (name, Material(name=name, a=a, b=b, c=c, d=d, thickness_m=thick, scattering=diffuse, roughness_m=rough))
+        for name, a, b, c, d, thick, diffuse, rough in (
             ("concrete", 5.24, 0.0, 0.0462, 0.7822, 0.20, 0.35, 0.15e-3),
             ("brick", 3.91, 0.0, 0.0238, 0.16, 0.12, 0.45, 0.15e-3),
             ("plasterboard", 2.73, 0.0, 0.0085, 0.9395, 0.0125, 0.25, 0.15e-3),
