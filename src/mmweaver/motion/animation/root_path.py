@@ -39,7 +39,10 @@ class Move:
 
     def shift_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
         """Displacement (x, y) in metres from the start of the move, at each time."""
-        gone = self.gone_m(time_s)
+        return self.shift_after_m(self.gone_m(time_s))
+
+    def shift_after_m(self, gone: Float[Array, "*shape"]) -> Float[Array, "*shape 2"]:
+        """Displacement (x, y) in metres after so many metres of the way."""
         bend = self.curvature_per_m
         ahead = np.sin(bend * gone) / bend if bend else gone
         left = (1 - np.cos(bend * gone)) / bend if bend else np.zeros_like(gone)

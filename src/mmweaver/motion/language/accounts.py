@@ -8,6 +8,7 @@ clause that they stand in, whatever patterns have made of it, and a word that no
 import re
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
+from itertools import groupby
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.coverage import goes_aside
@@ -107,6 +108,7 @@ _ALSO: dict[str, Callable[[Step], bool]] = {
     **dict.fromkeys(("high", "higher"), lambda step: step.style == "high"),
     **dict.fromkeys(("up", "upward", "upwards"), lambda step: step.direction == "pacing" or step.style == "high"),
 }
+_RISES = words_in("stand sit get wind come")
 _ANGLES = words_in("90 180 270 360")
 _ROUND, _NOT_OUT = words_in("draw_circle stir arm_circles"), words_in("raise raise_hold wave clap hands_up")
 _COUNTED = words_in("few several multiple couple many")
@@ -174,22 +176,24 @@ def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tupl
 def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
     """The sentence's own words of each clause, whose record may hold what they were taken as.
 
-    A clause whose words do not stand together keeps those of its record.
+    Words that do not stand together are joined by an ellipsis. A clause that patterns have added has none.
     """
     found = list(_TOKEN.finditer(text.lower()))
     tokens = [one[0] for one in found]
+    for i in range(1, len(tokens)):  # "for a while" links nothing
+        tokens[i] = "_" if tokens[i - 1 : i + 1] == ["a", "while"] else tokens[i]
     numbers, _ = _clause_of_each(tokens, records)
-    words = {number: record.clause for number, record in records.items()}
+    words = {}
     for number in records:
-        places = [i for i, own in enumerate(numbers) if own == number]
-        if not places or places[-1] - places[0] != len(places) - 1:
-            continue
-        while places and found[places[0]][0] in _LINKS:
-            del places[0]
-        while places and found[places[-1]][0] in _LINKS:
-            del places[-1]
-        if places:
-            words[number] = text[found[places[0]].start() : found[places[-1]].end()]
+        runs = [[*run] for own, run in groupby(range(len(tokens)), key=numbers.__getitem__) if own == number]
+        said = []
+        for run in runs:
+            while run and tokens[run[0]] in _LINKS:
+                del run[0]
+            while run and tokens[run[-1]] in _LINKS:
+                del run[-1]
+            said += [text[found[run[0]].start() : found[run[-1]].end()]] if run else []
+        words[number] = " ... ".join(said)
     return words
 
 
@@ -286,7 +290,7 @@ def _way(tokens: list[str], i: int, own: list[Step]) -> str:
         token in _TO and {"left", "right"} & {*after}
     ):
         return ""
-    if token == "up" and i and word_of(tokens[i - 1]).lemma in ("stand", "sit", "get", "wind"):
+    if token == "up" and i and {word_of(word).lemma for word in tokens[max(i - 2, 0) : i]} & _RISES:
         return ""
     return f"{token!r} is not shown"
 
@@ -305,6 +309,7 @@ def _verb(tokens: list[str], i: int, own: list[Step]) -> str:
         or not word.is_activity
         or token in _NOUNS
         or (word.form == "base" and i and tokens[i - 1] not in ("and", "then"))
+        or tokens[i + 1 : i + 2] == ["asleep"]
     ):
         return ""
     lower, upper = ACTIVITY_OF_LEMMA[word.lemma]

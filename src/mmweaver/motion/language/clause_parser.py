@@ -8,6 +8,7 @@ from itertools import pairwise
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.approximations import MARK, how_of
 from mmweaver.motion.language.clauses import Clause
+from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import (
     ARMS,
     BEFORE_NOUNS,
@@ -55,16 +56,12 @@ class ParsedClause:
     form: str = ""  # of the first verb: ing, s, ...
     forms: list[str] = field(default_factory=list)  # of each step's verb
     about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
-    notes: list[str] = field(default_factory=list)
-    approximations: list[str] = field(default_factory=list)  # what is not shown as it was said; also in `notes`
+    notes: list[str] = field(default_factory=list)  # what was assumed
+    approximations: list[str] = field(default_factory=list)  # what is not shown as it was said
     unknown: list[str] = field(default_factory=list)
     number: int = 0  # of the clause in the sentence
     words: list[Word] = field(default_factory=list)
     lost: list[str] = field(default_factory=list)  # as `approximations`, found once all clauses are parsed
-
-    def approximate(self, how: str) -> None:
-        self.notes.append(how)
-        self.approximations.append(how)
 
     @property
     def adds_nothing(self) -> bool:
@@ -83,6 +80,17 @@ class ParsedClause:
     def absorb(self, more: "ParsedClause") -> None:
         """Applies the modifiers of a clause without an activity to the last step."""
         last, about = self.steps[-1], more.about
+        if (
+            more.link == "and"
+            and last.lower in GAITS
+            and about.direction == "back"
+            and last.direction in ("", "seat")
+            and last.moves
+        ):
+            back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
+            self.steps.append(replace(back, speed=about.speed or last.speed))
+            self.forms.append("s")
+            return
         if last.direction and about.direction and last.direction != about.direction:
             if last.moves and self._leads_back(last, about, more.number):
                 return
@@ -142,10 +150,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
     parsed = ParsedClause(clause.link, clause.text, number=clause.number, words=words)
     marked = [word.text for word in words if word.text.startswith(MARK)]
     clause.words = words = [word for word in words if word.text not in marked]
-    for token in dict.fromkeys(marked):
-        how = how_of(token)
-        parsed.approximations.append(how)
-        parsed.notes.append(f"of {clause.text!r}, {how}")
+    parsed.approximations += [how_of(token) for token in dict.fromkeys(marked)]
     places = [word.text for word in words if word.text.startswith(PLACE)]
     clause.words = words = [word for word in words if word.text not in places]
     _refuse(clause)
@@ -187,7 +192,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
         for one, other in pairwise(words)
     )  # "ten feet", "a few metres", not "his feet"
     if lengths and not kept:
-        parsed.approximate(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
+        parsed.approximations.append("the distance is not kept: it follows from time and speed")
     return parsed
 
 
@@ -204,7 +209,7 @@ def _put_at(parsed: ParsedClause, place: Place) -> None:
     if last.moves and place.relation == "range":
         last = replace(last, distance_m=place.distance_m)
     elif last.moves and last.lower not in ("walk", "jog"):
-        parsed.approximate(f"{place.words!r} is left open for {last.name}")
+        parsed.approximations.append(f"{place.words!r} is left open for {last.name}")
     else:
         both = place if last.place is None else last.place.together_with(place)
         last = replace(last, place=both, target="" if place.landmark else last.target)
@@ -403,9 +408,9 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     if moved is not None and any(not is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
     if {word.text for word in words} & {"uppercut", "uppercuts", "hook", "hooks"}:
-        parsed.approximate(f"the kind of punch in {clause.text!r} is not distinguished")
+        parsed.approximations.append("the kind of punch is not distinguished")
     if moved is not None and {word.text for word in words} & ARMS and sum(word.is_activity for word in words):
-        parsed.approximate(f"how the arms move in {clause.text!r} is not shown")
+        parsed.approximations.append("how the arms move is not shown")
     odd = _unknown_manner(words)
     if odd:
         raise InputError(not_known(clause.text, odd))
@@ -417,7 +422,7 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     unknown = [text for text in unknown if text not in (subject, "if")]
     if unknown:
         listed = " and ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
-        parsed.approximate(f"{listed} {'is' if len(unknown) == 1 else 'are'} not shown")
+        parsed.approximations.append(f"{listed} {'is' if len(unknown) == 1 else 'are'} not shown")
 
 
 def _subject(words: list[Word]) -> str:
@@ -463,6 +468,7 @@ def is_known(word: Word) -> bool:
         or text in BOTH
         or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
         or text in TARGETS
+        or text in PEOPLE
         or text in LEGS
         or text.startswith(("arc", "deg", "from_", "on_", "fraction_", "rounds_"))
         or text in ("onback", "onbelly", "highkick", "frontlunge", "reach_high")

@@ -1,5 +1,6 @@
 """The record of every clause: what of it no step shows, and what it is shown as, in the sentence's own words."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -7,8 +8,10 @@ from mmweaver.motion.language.accounts import as_given, unaccounted
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
+from mmweaver.motion.language.lexicon import PRONOUNS
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.words import word_of
 
 _ONE = ("left", "right")
 _AIMED = ("turn", "stumble", "lean", "leap")
@@ -20,18 +23,13 @@ _WAYS = {
 
 
 def note_what_is_not_shown(
-    given_text: str,
-    every_clause: list[ParsedClause],
-    steps: list[Step],
-    records: dict[int, ClauseRecord],
-    notes: list[str],
+    given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
 ) -> None:
-    """Says of each clause what its steps do not show; sizes are looked for in the sentence: phrases take them away."""
+    """Records what of each clause its steps do not show; sizes are looked for in the sentence: phrases lose them."""
 
     def say(number: int, how: str) -> None:
         if how not in records[number].how and records[number].status != NOT_DONE:
             records[number] = records[number].lowered_to(APPROXIMATED, how)
-            notes.append(f"of {records[number].clause!r}, {how}")
 
     for parsed in every_clause:
         own = [step for step in steps if parsed.number in step.clauses] or steps
@@ -52,27 +50,88 @@ def note_what_is_not_shown(
 
 
 def in_the_given_words(
-    given_text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], notes: Sequence[str], *, roughly: bool
-) -> tuple[list[ClauseRecord], list[str]]:
-    """The records in the sentence's order and the notes, both with the clauses as they were given.
+    given_text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], *, roughly: bool
+) -> tuple[list[Step], list[ClauseRecord], list[str]]:
+    """Steps and records with the clauses as they were given, in the sentence's order, and a note for each not done so.
 
-    A clause that is not simply done says what it is shown as; of a sentence that is read `roughly` every clause does.
+    A clause that is not simply done says what it is shown as; of a sentence that is read `roughly` every clause does,
+    unless its words say just that. A clause that patterns have added counts with the one before.
     """
     own_words = as_given(given_text, records)
-    said = list(notes)
-    for number, record in records.items():
-        of_it, words = f"of {record.clause!r}, ", own_words[number]
-        said = [_sentence(words, note.removeprefix(of_it)) if note.startswith(of_it) else note for note in said]
-        shown = ", then ".join(dict.fromkeys(_doing(step) for step in steps if number in step.clauses))
-        if not shown or record.status == NOT_DONE or (record.status == DONE and not roughly):
-            continue
-        if record.status == DONE:
-            said.append(f"{words!r} is shown as {shown}")
-        if "shown as" not in record.how:
-            how = "; ".join(filter(None, (f"is shown as {shown}", record.how)))
-            records[number] = replace(record, status=APPROXIMATED, how=how)
-    clauses = [replace(records[number], clause=own_words[number]) for number in sorted(records)]
-    return clauses, list(dict.fromkeys(said))
+    given = [number for number in sorted(records) if own_words[number]] or [min(records)]
+    of_given = {number: max((one for one in given if one <= number), default=given[0]) for number in records}
+    clauses, notes = [], []
+    for number in given:
+        parts = [record for other, record in sorted(records.items()) if of_given[other] == number]
+        words, status = own_words[number] or given_text.strip(), max((part.status for part in parts), key=_WORSE.index)
+        shown = ", then ".join(dict.fromkeys(_doing(s) for s in steps if number in {of_given[n] for n in s.clauses}))
+        hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
+        if roughly and status == DONE and shown and not _says(words, shown):
+            status = APPROXIMATED
+        if status == APPROXIMATED:
+            is_said = any("shown as" in how or "no movement" in how for how in hows)
+            hows = _without_repeats([f"is shown as {shown}"] * bool(shown and not is_said) + hows)
+        record = ClauseRecord(words, status, "; ".join(hows))
+        clauses.append(record)
+        notes += [record.sentence] if record.how else []
+    index = {number: given.index(of_given[number]) for number in records}
+    return [_in_own_words(step, index, clauses) for step in steps], clauses, notes
+
+
+def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
+    numbers = tuple(dict.fromkeys(index[number] for number in step.clauses))
+    words = ", ".join(clauses[number].clause for number in numbers) or step.clause
+    return replace(step, clauses=numbers, clause=words)
+
+
+def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
+    """A message that quotes clauses as they were taken, with the sentence's own words instead."""
+    if not clauses:
+        return message
+    own_words = as_given(given_text, {number: ClauseRecord(text) for number, text in clauses.items()})
+    for number, text in clauses.items():
+        message = message.replace(repr(text), repr(own_words[number] or given_text.strip()))
+    return message
+
+
+_WORSE = (DONE, APPROXIMATED, NOT_DONE)
+_LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_STEM = 4
+
+
+def _without_repeats(hows: list[str]) -> list[str]:
+    """Reasons without those that only say again which words are not shown; all such words in one reason."""
+    lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
+    others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
+    others = [how for how in others if not any(_names(how, words) for words in lost)]
+    others = [how for how in others if "the other " not in how or how.replace("the other ", "the ") not in others]
+    said = _stems(" ".join(others))
+    kept = [
+        words
+        for words in dict.fromkeys(lost)
+        if not any(words != more and f" {words} " in f" {more} " for more in lost) and not _stems(words) <= said
+    ]
+    listed = [*map(repr, kept)]
+    all_lost = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
+    return [*others, *([f"{all_lost} {'is' if len(kept) == 1 else 'are'} not shown"] if kept else [])]
+
+
+def _names(how: str, words: str) -> bool:
+    """Whether a reason says only what happens with a part of the body that the words name, too."""
+    found = re.fullmatch("what happens with '([^']+)' is not shown", how)
+    return found is not None and f" {found[1]} " in f" {words} "
+
+
+def _stems(text: str) -> set[str]:
+    return {word_of(word).lemma[:_STEM] for word in re.findall("[a-z0-9]+", text.lower())}
+
+
+def _says(words: str, shown: str) -> bool:
+    """Whether the words of a clause are those of what it is shown as: 'she kneels down', 'kneeling down'."""
+    return _stems(words) - {*_NO_WORDS} <= _stems(shown)
+
+
+_NO_WORDS = _stems(" ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their")))
 
 
 def _doing(step: Step) -> str:
@@ -86,6 +145,8 @@ def _doing(step: Step) -> str:
     )
     limb = " with both hands" if step.hand == "both" and step.upper else limb
     way = _WAYS.get(step.direction, "") if step.moves or step.lower in _AIMED else ""
+    if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
+        way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
     upper = BY_KEY[step.upper].name if step.upper else ""
     if step.upper == "raise":
         upper, limb = (
@@ -94,8 +155,3 @@ def _doing(step: Step) -> str:
         )
     lower = "" if step.lower == "stand" and upper else f"{BY_KEY[step.lower].name}{way}"
     return " and ".join(filter(None, (lower, upper))) + limb
-
-
-def _sentence(words: str, how: str) -> str:
-    """What became of a clause, as it is said to the user."""
-    return f"{words!r} {how}" if how.startswith(("is ", "has ")) else f"in {words!r}, {how}"

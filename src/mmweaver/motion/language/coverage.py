@@ -72,8 +72,8 @@ def _lost_aims(texts: list[str], steps: Sequence[Step]) -> list[str]:
             lost.append(f"{' '.join(texts[i : i + 3])!r} is not shown")
     if "pacing_to_and_fro" in texts and not any(step.moves for step in steps):
         lost.append("where it goes is not shown")
-    if {"above", "overhead", "over"} & set(texts) and any(step.upper in ("clap", "wave") for step in steps):
-        lost.append("how high the hands are is not shown")
+    if any(step.upper in ("clap", "wave") for step in steps):
+        lost += [f"{text!r} is not shown" for text in texts if text in ("above", "overhead", "over")]
     return lost
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 _WOMEN = "woman|women|lady|girl|female|mother|mom|grandma|grandmother|granny|wife|daughter|sister|waitress|actress"
 _MEN = "man|men|gentleman|boy|male|guy|father|dad|grandpa|grandfather|husband|son|brother|policeman|fireman|waiter"
 _CHILDREN = "child|kid|boy|girl|toddler|baby|schoolboy|schoolgirl|pupil"
+PEOPLE = frozenset("|".join((_WOMEN, _MEN, _CHILDREN)).split("|"))
 _ANYBODY = (
     r"person|human|adult|user|subject|figure(?![- ](?:of |eight|8))|individual|participant|patient"
     "|resident|tenant|somebody|someone|youth|teenager|nurse"

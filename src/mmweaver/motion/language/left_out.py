@@ -75,11 +75,11 @@ def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
         if any(step.upper or step.lower != "stand" for step in shorter.steps):
             shorter.text = clause.text
             for phrase in cut:
-                shorter.approximate(f"{shown(phrase)!r} is not shown")
+                shorter.approximations.append(f"{shown(phrase)!r} is not shown")
             return shorter
     if not is_first and _only_says_how(clause):
         parsed = ParsedClause(clause.link, clause.text, number=clause.number)
-        parsed.approximate(f"{clause.text!r} is not shown")
+        parsed.approximations.append(f"{clause.text!r} is not shown")
         return parsed
     return parse_clause(Clause(clause.link, words, clause.number))
 

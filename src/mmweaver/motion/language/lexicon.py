@@ -34,6 +34,7 @@ IRREGULAR = {
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
 
 PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anything is looked up
+    (r"\bfor (?:a|quite a) (?:little |short |long )?while\b", " "),
     *SIDED_PHRASES,
     *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,
@@ -46,6 +47,7 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bsits? (?:back )?down\b|\bsat (?:back )?down\b|\bsitting (?:back )?down\b", " sit_down "),
     (r"\b(?:takes?|took|taking|has|having) a seat\b", " sit_down "),
     (r"\b(?:stand|stands|stood|standing|get|gets|got|getting|rise|rises|rose|rising) (?:back )?up\b", " stand_up "),
+    (r"\b(?:comes?|came|coming) back up\b(?! (?:the|some|to) )", " stand_up "),
     (r"\b(?:rises?|rose|rising)\b", " stand_up "),
     (r"\b(?:puts?|holds?|putting|holding|throws?|sticks?|reaches|stretches)"
      r" (up (?:his |her |their |its |the |both |left |right )*(?:hands?|arms?))\b", r" raise \1 "),

@@ -116,6 +116,11 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
         rf"(?<=from )(?:off )?(?:an? |{_WHOSE} )?(?:[a-z]+ )?(?:shelf|table|desk|counter|cupboard|wall|bookshelf|rack)",
         lambda step: not _does("pick_up")(step),
     ),
+    (r"across (?:the|a) (?:room|floor|hall|kitchen)", lambda step: step.moves),
+    (
+        rf"(?:onto|on|into|to) (?:an? |{_WHOSE} )?(?:[a-z]+ )?(?:shelf|table|desk|counter|cupboard|bookshelf|rack)\b",
+        lambda step: not _does("pick_up")(step),
+    ),
     (
         r"(?<=opens )(?!(?:the |a |an |his |her |their )?(?:[a-z]+ )?doors?\b)[a-z]+(?: [a-z]+)?",
         _opens_no_door,

@@ -6,6 +6,8 @@ from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.described_person import DescribedPerson
 from mmweaver.motion.language.places import Place
 
+HOPPING = ("hop", "hop_one_leg")  # on the spot unless a way is named
+
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
@@ -56,6 +58,8 @@ class Step:
     @property
     def moves(self) -> bool:
         """Whether the position on the floor changes."""
+        if self.lower in HOPPING:
+            return self.direction not in ("", "spot")
         return BY_KEY[self.lower].moves and self.direction != "spot"
 
     @property
@@ -79,6 +83,20 @@ class ClauseRecord:
     clause: str
     status: str = DONE  # done | approximated | not done
     how: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What became of it, as it is said to the user."""
+        if self.status == NOT_DONE:
+            return f"{self.clause!r} is not done: {self.how}"
+        own = self.how.startswith(repr(self.clause))
+        return (
+            self.how
+            if own
+            else f"{self.clause!r} {self.how}"
+            if self.how.startswith("is ")
+            else f"in {self.clause!r}, {self.how}"
+        )
 
     def lowered_to(self, status: str, how: str) -> "ClauseRecord":
         """The record with a worse status, or the same one with one more reason."""

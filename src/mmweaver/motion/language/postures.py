@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import Step
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
+_WITH_FREE_HANDS = ("sit_down", "kneel_down")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -51,17 +53,24 @@ def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
         return [step]
     first = _up_from(posture, step)
     down = ENTERING.get(step.lower, step.lower)
+    during = step.upper if step.lower in _WITH_FREE_HANDS and not _is_done_once(step) else ""
     if not anything_before and step.lower == down and step.upper and step.lower != "fall":
-        return [replace(step, upper="", count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
+        return [replace(step, upper=during, count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
     if not anything_before:
         return [step]
     if step.upper:  # goes down, then does it there
         return [
             *first,
-            replace(step, lower=down, upper="", count=0, seconds=0.0),
+            replace(step, lower=down, upper=during, count=0, seconds=0.0),
             replace(step, lower=STILL[step.posture]),
         ]
     return [*first, replace(step, lower=down)]
+
+
+def _is_done_once(step: Step) -> bool:
+    """Whether the hands' movement has a beginning and an end, so that it is not begun while going down."""
+    activity = BY_KEY[step.upper] if step.upper else None
+    return activity is not None and (activity.once or activity.counted_s is not None)
 
 
 def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:

@@ -45,7 +45,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
             parsed = None
         if parsed is not None and any(step.upper or step.lower != "stand" for step in parsed.steps):
             parsed.text = clause.text
-            parsed.approximate(f"{shown(dropped)!r} is not shown")
+            parsed.approximations.append(f"{shown(dropped)!r} is not shown")
             return parsed
     if any(word.is_activity and word.lemma not in _IN_PLACE for word in clause.words):
         return None
@@ -54,7 +54,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
         return None
     rough = ParsedClause(clause.link, clause.text, number=clause.number, words=list(clause.words), form="s")
     rough.steps, rough.forms = [replace(step, clause=clause.text, clauses=(clause.number,))], ["s"]
-    rough.approximate(how)
+    rough.approximations.append(how)
     return rough
 
 

@@ -3,13 +3,14 @@
 import re
 from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
-from mmweaver.motion.language.clause_records import in_the_given_words, note_what_is_not_shown
+from mmweaver.motion.language.clause_records import in_own_words, in_the_given_words, note_what_is_not_shown
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.left_out import may_be_missed, parse_with_less, says_more_of
@@ -62,7 +63,8 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     try:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
-        normal, similar = (with_approximations(in_normal_form(text), only_always=only) for only in (True, False))
+        normal = with_approximations(in_normal_form(text), only_always=True)
+        similar = with_approximations(in_normal_form(text), is_understood=cache(_is_understood_alone))
         partly = with_approximations(in_normal_form(text), in_part=in_part)
         attempts = (
             (normal, _EXACT), (similar, _EXACT), (normal, _LEAVING_OUT), (similar, _LEAVING_OUT), (similar, _MISSING),
@@ -94,33 +96,56 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
 
 
 def _parsed(text: str, given_text: str, leaving: int = _EXACT) -> MotionPlan:
-    """The plan of one wording of a sentence; `leaving`: what of it may be left out or read roughly, which is said."""
+    """The plan of one wording of a sentence; `leaving`: what of it may be left out or read roughly, which is said.
+
+    Raises InputError in the words of the sentence as it was given.
+    """
     text, notes = correct_spelling(text)
     words = words_of(text)
-    _check_turning_jumps(text, words)
+    clauses = {clause.number: clause.text for clause in split_clauses(words)}
+    try:
+        return _planned(words, notes, given_text, leaving)
+    except InputError as error:
+        raise InputError(in_own_words(str(error), given_text, clauses)) from None
+
+
+def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int) -> MotionPlan:
+    _check_turning_jumps(given_text, words)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
-        raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
+        raise InputError(not_known(given_text.strip()))
     sequence = _in_sequence(parsed_clauses, leaving)
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
+        taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
+        if step.lower == "put_down" and taken[-1:] == ["reach"]:  # what was taken from a table goes back there
+            sequence[number] = replace(step, lower="stand", upper="reach")
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(sequence))
-    note_what_is_not_shown(given_text, every_clause, steps, records, notes)
+    note_what_is_not_shown(given_text, every_clause, steps, records)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     room = room_of(given_text)
     if room:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leaving and all(step.lower == "stand" and not step.upper for step in steps):
-        raise InputError(not_known(text.strip()))
-    clauses, notes = in_the_given_words(given_text, steps, records, notes, roughly=bool(leaving))
+        raise InputError(not_known(given_text.strip()))
+    steps, clauses, said = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
     return MotionPlan(
-        text=given_text, steps=tuple(steps), notes=tuple(notes), clauses=tuple(clauses),
+        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *said])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
+
+
+def _is_understood_alone(part: str) -> bool:
+    """Whether a part of a sentence is done as it is, so that nothing in it needs to be shown as something else."""
+    try:
+        plan = _parsed(part, part) if part else None
+    except InputError:
+        return False
+    return plan is not None and all(clause.status == DONE for clause in plan.clauses)
 
 
 def _parsed_clauses(
@@ -138,7 +163,6 @@ def _parsed_clauses(
         rough = read_roughly(deepcopy(clause)) if missed is not None and leaving == _ROUGH else None
         if missed is not None and rough is None:
             records[clause.number] = ClauseRecord(clause.text, NOT_DONE, "no activity in it is known")
-            notes.append(f"{clause.text!r} is not done: no activity in it is known")
             continue
         parsed = rough or (parse_with_less(clause, is_first=not found) if leaving else parse_clause(clause))
         missed = None
@@ -414,7 +438,8 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
             return True  # one hand stays up; `overlay` refuses it
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             return one.lower == "sit" or before.form == parsed.form
-        return compatible and before.form == parsed.form == "ing" and not (one.count and one.moves)
+        paces = any(step.count and step.moves for step in (one, other))
+        return compatible and before.form == parsed.form == "ing" and not paces
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
 
 

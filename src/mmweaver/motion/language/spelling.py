@@ -54,7 +54,7 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
         notes.append(f"{word!r} is read as {better!r}")
         return better
 
-    return re.sub(r"[A-Za-z]+", replace_word, text), notes
+    return re.sub(r"(?<![A-Za-z_])[A-Za-z]+(?![A-Za-z_])", replace_word, text), notes
 
 
 @lru_cache(maxsize=4096)

@@ -13,7 +13,7 @@ NEAR = 0.3  # least cosine similarity of character n-grams for a suggestion
 
 def not_known(clause_text: str, word: str = "") -> str:
     """One line: what was not understood, the nearest known activity, and how many more there are."""
-    which = f" ({word.replace('_', ' ')!r})" if word else ""
+    which = f" because of {word.replace('_', ' ')!r}" if word else ""
     found = nearest(clause_text)
     guess = f"did you mean {found[0][1]!r}? " if found and found[0][0] > NEAR else ""
     first = [activity.name for activity in list(BY_KEY.values())[:2]]

@@ -156,6 +156,8 @@ def _limits(step: Step) -> tuple[float, float]:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
     doing = BY_KEY[step.upper or step.lower]
+    if step.upper and BY_KEY[step.lower].once and step.posture != "feet":  # "sits down reading"
+        doing = BY_KEY[step.lower]
     if step.count and doing.counted_s:
         least, natural, edges = doing.counted_s
         slower = 1.25 if step.speed < 0 else 1.0
@@ -167,7 +169,11 @@ def _limits(step: Step) -> tuple[float, float]:
 def _circle_limits(step: Step) -> tuple[float, float]:
     """Least and natural duration of going round in a circle, as often as the sentence says, in seconds."""
     rounds = max(abs(step.arc_deg) / 360, 1.0)
-    speed_mps = {"jog": 1.6, "walk": 1.1, "crawl": 0.35}.get(step.lower, 0.7) * (0.7, 1.0, 1.3)[step.speed + 1]
+    speed_mps = {"jog": 1.6, "walk": 1.1, "crawl": 0.35, "hop": 0.5, "hop_one_leg": 0.5}.get(step.lower, 0.7) * (
+        0.7,
+        1.0,
+        1.3,
+    )[step.speed + 1]
     return rounds * 2 * math.pi * 0.4 / (1.25 * speed_mps) + 0.3, rounds * 2 * math.pi * 0.7 / speed_mps + 0.6
 
 

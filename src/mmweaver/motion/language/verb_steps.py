@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import HOPPING, Step
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
 
@@ -15,6 +15,7 @@ THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weigh
 SIDES = {"left": 1.0, "right": -1.0}
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 AIMED = ("point", "look_around")
+_HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl")
 
 
@@ -55,10 +56,15 @@ def _lifts_a_thing(following: list[Word]) -> bool:
 
 def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
     """'Walks three times' counts no paces; in a circle it counts the rounds."""
-    if step.lower not in GAITS or not step.count or not texts & {*TIMES, "times"} or texts & {"step", "steps"}:
+    if (
+        step.lower not in (*GAITS, *HOPPING)
+        or not step.count
+        or not texts & {*TIMES, "times"}
+        or texts & {"step", "steps"}
+    ):
         return step
     if step.direction != "circle":
-        return replace(step, count=0)
+        return replace(step, count=0) if step.lower in GAITS else step
     side = 1.0 if step.arc_deg >= 0 else -1.0
     return replace(step, count=0, arc_deg=side * 360.0 * step.count, style=step.style if step.arc_deg else "either")
 
@@ -177,12 +183,16 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
 def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
     """On the spot, somewhere, or on one leg."""
     texts = {word.text for word in words}
+    on_one_leg = bool(texts & ON_ONE_LEG)
+    if step.direction == "circle" and (on_one_leg or step.lower == "hop"):
+        return replace(step, lower="hop_one_leg" if on_one_leg else "hop")
     if step.turn_deg or step.arc_deg or step.direction in ("circle", "around", "pacing"):
         raise InputError(f"{step.clause!r}: jumping with a turn is not known; say 'jumps, then turns'")
-    if texts & ON_ONE_LEG:
-        if step.direction not in ("", "spot"):
-            raise InputError(f"{step.clause!r}: hopping on one leg is done on the spot only; leave the direction out")
-        return replace(step, lower="hop_one_leg", direction="", facing=facing_of(words))
+    if on_one_leg:
+        direction = "" if step.direction == "spot" else step.direction
+        if direction and step.direction not in _HOPPED:
+            raise InputError(f"{step.clause!r}: that way of hopping on one leg is not known; say another direction")
+        return replace(step, lower="hop_one_leg", direction=direction, facing="" if direction else facing_of(words))
     if "sideways" in texts and step.direction in ("", "spot"):
         return replace(step, lower="leap", direction="right")
     if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):

@@ -13,6 +13,7 @@ from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, DistanceField, distance_field, interior, thinned
 from mmweaver.motion.planning.occluded_geometry import (
     below_tops,
+    between_low_points,
     extended_to_floor,
     table_legs,
     table_tops,
@@ -27,10 +28,14 @@ _SEAT_SQUARE_M = 0.4  # seats in one square share the points around them
 _SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower are not the seat itself
 _TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may have been taken for a backrest
 _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
-_FOOT_M = 0.24  # height of a foot
+_SHIN_M = 0.45  # height of foot and shin of somebody who sits
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
+_SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no mattress
 _MOST_POINTS = 34_000
-_LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables are solid: points are added at these depths below
+_LOW_M, _LOW_DOWN_M = (
+    0.64,
+    (0.05, 0.1, 0.15, 0.2, 0.25),
+)  # beds and low tables are solid: points are added at these depths below
 _WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
 _THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
 # The part of the room that is tabulated: what lies farther is out of any radar's window that the floor map covers.
@@ -96,22 +101,53 @@ class CollisionMap:
         """Distance to measured points, and to what must lie just behind and below them."""
         points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
-        low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
+        low = self._low_m
         below = [points - np.array([0.0, 0.0, _THICK_M])]
         below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
-        solid = np.concatenate([points, behind, self._tops_m, *below])
+        solid = np.concatenate([points, behind, self._tops_m, low, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
         reaching_down = extended_to_floor(np.concatenate([points, behind]), self.scene.floor_z_m)
         field = self._field(np.concatenate([solid, reaching_down, table_legs(self.scene)]))
-        # Low furniture is filled with points, so the nearest one is near even deep inside: a foot there is within.
+        # Low furniture is filled with points, so the nearest one is near even deep inside: a shin there is within.
         within = interior(field)
-        within[..., int(_FOOT_M / CELL_M) :] = False
+        within[..., int(_SHIN_M / CELL_M) :] = False
         return replace(field, distance_m=np.where(within, np.float32(0.0), field.distance_m))
 
     @cached_property
+    def _low_m(self) -> Float[Array, "point 3"]:
+        """Points of low furniture, those between rows of pixels included."""
+        points = self._measured_m
+        low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
+        return np.concatenate([low, between_low_points(self.scene, low)])
+
+    @cached_property
+    def _low_tops_m(self) -> Float[Array, "y x"]:
+        """Height above the floor of low furniture in cells of a floor plan, 0 where there is none."""
+        heights = np.zeros((int((_AWAY_M[1] - _AWAY_M[0]) / CELL_M), int(2 * _SIDE_M / CELL_M)))
+        column, row = np.floor((self._low_m[:, :2].T + np.array([[_SIDE_M], [-_AWAY_M[0]]])) / CELL_M).astype(int)
+        inside = (row >= 0) & (row < heights.shape[0]) & (column >= 0) & (column < heights.shape[1])
+        above = self._low_m[:, 2] - self.scene.floor_z_m
+        np.maximum.at(heights, (row[inside], column[inside]), above[inside])
+        return heights
+
+    def has_room_for_shins(self, knees_m: Float[Array, "2"], feet_m: Float[Array, "2"], seat_height_m: float) -> bool:
+        """Whether what a seat belongs to ends before a sitter's shins, from the knees to the feet, (x, y) in metres.
+
+        In the middle of a bed it goes on there.
+        """
+        line = knees_m + np.linspace(0, 1, 4)[:, None] * (feet_m - knees_m)
+        around = np.array([(a, b) for a in (-0.06, 0.0, 0.06) for b in (-0.06, 0.0, 0.06)])
+        places = (line[:, None] + around).reshape(-1, 2)
+        column, row = np.floor((places.T + np.array([[_SIDE_M], [-_AWAY_M[0]]])) / CELL_M).astype(int)
+        rows, columns = self._low_tops_m.shape
+        height = self._low_tops_m[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+        is_surface = (height > _SHIN_TOP_M) & (height < seat_height_m + _LOW_DOWN_M[1])
+        return bool(is_surface.mean() < _MOST_OF_SHINS)
+
+    @cached_property
     def _standing(self) -> DistanceField:
-        """The same with the space below table tops, which is closed to everybody who does not sit there."""
-        below = self._field(below_tops(self.scene, self._tops_m))
+        """The same with the space below tables and other furniture, which is closed to who does not sit there."""
+        below = self._field(below_tops(self.scene, np.concatenate([self._tops_m, self._low_m])))
         return replace(below, distance_m=np.minimum(below.distance_m, self._solid.distance_m))
 
     def _field(self, points_m: Float[Array, "point 3"]) -> DistanceField:

@@ -29,6 +29,7 @@ _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further pl
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
 _ENOUGH_SEATED_M = 0.02  # of attempt 2 for who sits: depths are of the seen surface, a shin in a bed's side has few
+_KEPT_M = 0.02  # the first placement is taken if it keeps so much to everything
 _WORTH_M = 0.003  # estimates are no better than that: what promises less is not animated
 _SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
@@ -120,7 +121,7 @@ class _Ranking:
         placements = sorted(placements, key=lambda placement: placement.invents_seat)  # stools last
         if best is None:
             best = self._animated(placements[0])
-            if best.cost_m <= 0:
+            if best.cost_m <= -_KEPT_M:
                 return best
             placements = placements[1:]
         animations = MOST_ANIMATED
@@ -134,7 +135,7 @@ class _Ranking:
                 animations -= 1
                 tested = self._animated(estimate.placement)
             best = tested if tested.cost_m < best.cost_m or tested.is_clear else best
-            if tested.cost_m <= 0:
+            if tested.cost_m <= -_KEPT_M:
                 break
         return best
 

@@ -28,6 +28,7 @@ _THIN_M, _LONG_M = 0.12, 0.55  # how thick a top is at most, and how long at lea
 _CELL_M, _REACH_M = 0.05, 5.0  # grid in which tops and legs are looked for, and its half side
 _LEG_M, _LEG_THICK_M = (0.3, 0.55), 0.04  # a leg is seen below and above these heights, where a seat is not
 _GAP = 13  # cells: chairs in front of a table occlude its top so wide at most
+_LOW_TOPS_M, _LOW_GAP = (0.2, 0.65), 7  # heights of beds and seats, and between the rows of pixels on them, in cells
 _SEEN_BY_RIM_M, _TOP_DEPTH_M, _SPACING_M = 0.1, 0.8, 0.03  # a top so little below the camera shows only its rim
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # a measurement so far behind a point (noise grows with depth) passed it by
 _OCCLUDING_M = 0.15  # a measurement so far in front of a point occludes it; nearer, it may be the body itself
@@ -90,14 +91,30 @@ def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
     return np.concatenate([tops, unseen, _behind_rims(scene, tops)])
 
 
-def _between(cells: np.ndarray) -> np.ndarray:
-    """The gaps of at most `_GAP` cells between occupied cells, (y, x)."""
+def between_low_points(scene: Scene, points: Points) -> Float[np.ndarray, "between 3"]:
+    """Points between measured ones of one level: rows of pixels are far apart on a bed that is seen at a flat angle."""
+    side = int(2 * _REACH_M / _CELL_M)
+    cell, inside = _cells(points, side)
+    height = points[:, 2] - scene.floor_z_m
+    found = [np.zeros((0, 3))]
+    for level in np.arange(*_LOW_TOPS_M, _CELL_M):
+        cells = np.zeros((side, side), bool)
+        cells[tuple(cell[inside & (np.abs(height - level) <= _CELL_M)].T)] = True
+        row, column = np.nonzero(_between(cells, _LOW_GAP))
+        middle = np.stack([column, row], axis=-1) * _CELL_M + 0.5 * _CELL_M - _REACH_M
+        found.append(np.column_stack([middle, np.full(len(middle), level + scene.floor_z_m)]))
+    between = np.concatenate(found)
+    return between[~_seen_through(scene, between)]
+
+
+def _between(cells: np.ndarray, gap: int = _GAP) -> np.ndarray:
+    """The gaps of less than `gap` cells between occupied cells, (y, x)."""
     from scipy import ndimage
 
     if not cells.any():
         return cells
-    wide = ndimage.maximum_filter(cells, _GAP, mode="constant")
-    return ndimage.minimum_filter(wide, _GAP, mode="constant", cval=1) & ~cells
+    wide = ndimage.maximum_filter(cells, gap, mode="constant")
+    return ndimage.minimum_filter(wide, gap, mode="constant", cval=1) & ~cells
 
 
 def _long_patches(cells: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from mmweaver.core.records import Scene, Seat
 from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behind_feet_m
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
+from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -108,9 +109,15 @@ def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
     for seat in floor.scene.seats:
         sitting = _sitting(seat, floor, body)
         usable = LOWEST_M <= sitting.height_m <= HIGHEST_M
-        if usable and bool(floor.sees(sitting.seat_m)):
+        if usable and bool(floor.sees(sitting.seat_m)) and _has_room_for_shins(sitting, floor.scene):
             found.append(sitting)
     return found
+
+
+def _has_room_for_shins(sitting: Sitting, scene: Scene) -> bool:
+    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    knees_m = sitting.seat_m + (sitting.knees_m + _KNEE_M) * ahead
+    return CollisionMap.of(scene).has_room_for_shins(knees_m, sitting.feet_m, sitting.height_m)
 
 
 def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:

@@ -6,11 +6,13 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import HOPPING, Step
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
-SLOWEST_MPS = {"walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15}
+SLOWEST_MPS = {
+    "walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15, "hop": 0.25, "hop_one_leg": 0.25,
+}  # fmt: skip
 RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
@@ -41,6 +43,8 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
         low, high = ((0.2, 0.25), (0.28, 0.45), (0.5, 0.7))[step.speed + 1]
     elif step.lower in ("limp", "stagger"):
         low, high = ((0.45, 0.6), (0.6, 0.9), (0.9, 1.1))[step.speed + 1]
+    elif step.lower in HOPPING:
+        low, high = ((0.25, 0.35), (0.4, 0.6), (0.6, 0.75))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
     return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0) * step.pace
@@ -138,7 +142,9 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     """
     begin = face_along(trajectory, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
-    ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9, ramp_s=_ramp_s(step))
+    goes_on = step.lower not in HOPPING  # who hops begins and ends on the spot
+    last = last and end >= step.end_s - 1e-9 and goes_on
+    ramps = ramps_of(end - begin, first=first and goes_on, last=last, ramp_s=_ramp_s(step))
     effective = end - begin - sum(ramps) / 2
     speed = preferred_speed_mps(step, trajectory.rng)
     wanted = speed * effective
@@ -242,7 +248,8 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
     chosen = first and not trajectory.heading_is_given
     direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
-    ramps = ramps_of(step.end_s - begin, first=first, last=last)
+    goes_on = step.lower not in HOPPING  # who hops begins and ends on the spot
+    ramps = ramps_of(step.end_s - begin, first=first and goes_on, last=last and goes_on)
     speed = min(preferred_speed_mps(step, rng), 1.6 if step.lower == "jog" else 1.1)
     within_m = speed * (step.end_s - begin - sum(ramps) / 2)
     widest_m, narrowest_m = CIRCLE_RADII_M[0], CIRCLE_RADII_M[-1]

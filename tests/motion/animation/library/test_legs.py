@@ -50,3 +50,19 @@ def test_stepping_up_lifts_the_body_by_a_stair_and_returns():
     plan = parse("she walks up the stairs")
     assert plan.steps[0].lower == "stairs"
     assert "stairs are shown as" in plan.clauses[0].how
+
+
+@pytest.mark.parametrize(
+    "text", ["a child hops on one leg in a circle", "a person hops forward five times on the right leg"]
+)
+def test_hops_carry_the_body_and_the_foot_stays_where_it_lands(text: str) -> None:
+    motion = act_out(text, seed=1)
+    joints_m, feet = motion.pose.joints_m, [joint("left_ankle"), joint("right_ankle")]
+    gone_m = np.hypot(*np.diff(joints_m[::12, 0, :2], axis=0).T).sum()
+    assert gone_m > 1.2
+    hops_with = feet[int(np.argmin(joints_m[60:-60, feet, 2].mean(axis=0)))]
+    foot = joints_m[:, hops_with]
+    speed_mps = np.hypot(*(np.diff(foot[:, :2], axis=0) * 120).T)
+    on_floor = foot[1:, 2] < foot[:, 2].min() + 0.005
+    assert np.median(speed_mps[on_floor]) < 0.1
+    assert np.linalg.norm(np.diff(joints_m, n=2, axis=0) * 120**2, axis=-1).max() < 90.0

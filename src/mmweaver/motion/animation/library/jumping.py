@@ -118,6 +118,7 @@ def bounce(controls: Controls, context: StepContext, *, one_leg: bool) -> None:
     count = context.step.count or max(1, round((context.duration_s - 0.45) * rate))
     period = float(np.clip((context.duration_s - 0.45) / count, 0.4, 0.62)) if context.step.count else 1 / rate
     high = float(context.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
+    high = 0.06 + 0.5 * high if context.moves else high  # flights that carry the body over the floor are longer
     ground = period - Hop(off_s=0.0, rise_m=high).flight_s
     first = context.start_s + 0.3
     hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
@@ -125,9 +126,29 @@ def bounce(controls: Controls, context: StepContext, *, one_leg: bool) -> None:
     dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
     dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
     hop_all(controls, context, hops, dips, ready_m=-0.04, heels=0.8)
+    if context.moves:
+        _go_along(controls, context, hops)
     # Hops are never quite vertical: the trunk swings to and fro with each.
     turn = 2 * np.pi * (context.time_s - first) / period + context.rng.uniform(0, 2 * np.pi)
     shift_pelvis(controls, float(context.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
+
+
+def _go_along(controls: Controls, context: StepContext, hops: list[Hop]) -> None:
+    """Feet go along the step's way in flight, an equal part with each hop; the pelvis evenly from first to last."""
+    time_s, (move,) = context.time_s, context.moves
+    before_s = np.array([context.start_s - 0.001])
+    start_m, heading_rad = context.path.position_m(before_s)[0], float(context.path.facing_rad(before_s)[0])
+    begin_s, whole_s = hops[0].off_s - LAUNCH_S, hops[-1].land_s - hops[0].off_s + LAUNCH_S + CATCH_S
+    even = travel(np.clip((time_s - begin_s) / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
+    in_flight = np.mean([rise((time_s - hop.off_s) / hop.flight_s) for hop in hops], axis=0)
+    facing_rad, stands_rad = (heading_rad + move.curvature_per_m * move.length_m * part for part in (even, in_flight))
+    stands_m = start_m + move.shift_after_m(move.length_m * in_flight)
+    was_m, was_rad = context.path.position_m(time_s), context.path.facing_rad(time_s)
+    controls.pelvis_m[:, :2] += start_m + move.shift_after_m(move.length_m * even) - was_m
+    controls.heading_rad[:] += facing_rad - was_rad
+    stands = home_feet(context.body, stands_m, stands_rad) - home_feet(context.body, was_m, was_rad)
+    controls.foot_m[:, :, :2] += stands[:, :, :2]
+    controls.foot_rad[:, :, 0] += (stands_rad - was_rad)[:, None]
 
 
 def leaping(context: StepContext) -> Controls:
