@@ -14,7 +14,9 @@ from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.static_paths import Propagation
 from mmweaver.paths.unresolved_clutter import (
+    ASIDE_M,
     AT_M,
+    AZIMUTH_RAD,
     LEVELS_DB,
     NEAREST_M,
     SQUARE_METRES_A_METRE,
@@ -38,6 +40,18 @@ def test_as_much_comes_back_from_every_metre_as_was_recorded():
     assert np.mean(profiles, axis=0) == pytest.approx(stated, rel=0.25)
     levels_db = 10 * np.log10([room_level(seed) for seed in range(100)])
     assert LEVELS_DB[0] <= levels_db.min() < 1 < 11 < levels_db.max() <= LEVELS_DB[1]
+
+
+def test_as_much_comes_back_from_the_sides_as_from_ahead_but_not_from_beyond_five_metres():
+    power, across = np.zeros(4), np.linspace(0, np.sin(AZIMUTH_RAD), 5)
+    for seed in range(8):
+        paths = unresolved_clutter(AWR1843, seed)
+        place_m, each = paths.departure_vertex_m.numpy(), np.abs(paths.amplitude.numpy()) ** 2 / room_level(seed)
+        assert np.abs(place_m[:, 0]).max() < ASIDE_M
+        near = np.linalg.norm(place_m, axis=1) < ASIDE_M
+        sine = np.abs(np.sin(np.arctan2(place_m[near, 0], place_m[near, 1])))
+        power += np.histogram(sine, across, weights=each[near])[0]
+    assert power == pytest.approx(np.full(4, power.mean()), rel=0.3)
 
 
 def test_amplitudes_are_spikier_than_a_gaussian_sum():

@@ -2,7 +2,7 @@
 
 Many weak patches in all directions and at all ranges, several a range-angle cell; their cross sections are gamma
 distributed about a mean, so that amplitudes are K distributed. Level and density are those of recordings; see
-decisions 226 and 267. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
+decisions 226, 267 and 287. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
 """
 
 import zlib
@@ -25,7 +25,8 @@ FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
 NEAREST_M = 1.0
 PATCHES_A_METRE = 300
 SHAPE = 0.5  # of the gamma distribution; smaller is spikier
-AZIMUTH_RAD, ELEVATION_RAD = np.radians(62.0), np.radians(40.0)
+# From the sides as much is received as from ahead (1 to 6 m, to 75 degrees, within 5 dB), 5 m aside at most.
+AZIMUTH_RAD, ASIDE_M, ELEVATION_RAD = np.radians(75.0), 5.0, np.radians(40.0)
 
 
 def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
@@ -33,14 +34,14 @@ def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     rng = stream(micro_seed, "room", "unresolved clutter")
     count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))
     range_m = np.sort(rng.uniform(NEAREST_M, max(config.max_range_m, NEAREST_M), count))
-    azimuth, elevation = (
-        rng.uniform(-AZIMUTH_RAD, AZIMUTH_RAD, count),
-        rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count),
-    )
+    widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, NEAREST_M))
+    azimuth = np.arcsin(widest * rng.uniform(-1, 1, count))
+    elevation = rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count)
     towards = np.stack(
         [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], axis=1
     )
-    gain = pattern(towards, config) ** 2
+    ahead = np.stack([np.zeros(count), np.cos(elevation), np.sin(elevation)], axis=1)
+    gain = pattern(ahead, config) ** 2
     texture = rng.gamma(SHAPE, 1 / SHAPE, count)
     mean_m2 = (
         room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
