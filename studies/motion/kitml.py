@@ -11,7 +11,8 @@ understood ones are annotated by hand, once. Right: every movement that the sent
 its side, direction, hand or foot where one is given. Said: some of it is shown otherwise or not, and the clause
 says so. Wrong: the same, without a word. The verdicts are in results/kitml/judgements.json with the readings they were
 given for and evaluate the grammar of that day; how many of today's readings have no verdict is counted. Seven earlier
-samples (judgements_first.json and so on) are unchanged and evaluate earlier grammars. docs/motion.md says what else
+samples (judgements_first.json and so on) are unchanged and evaluate earlier grammars; judgements_seen_since.json has
+verdicts of today's readings of the last 300 that differ, which is no blind evaluation. docs/motion.md says what else
 limits the figures.
 """
 
@@ -117,7 +118,11 @@ def uniform_draw(checking: list[Sentence]) -> list[str]:
 
 
 def result_row(
-    sentences: list[Sentence], judgements: Judgements, before: dict[str, Judgements], digest: str
+    sentences: list[Sentence],
+    judgements: Judgements,
+    before: dict[str, Judgements],
+    digest: str,
+    since: Judgements | None = None,
 ) -> dict[str, Any]:
     """Shares over all sentences and each half, and the shares of wrong ones by hand annotation."""
     readings = understood(sentences)
@@ -162,6 +167,7 @@ def result_row(
             "wrong by hand without a word, of those the annotated grammar understood",
         ),
         "said": share(verdicts["said"], len(judgements), "shown otherwise or in part, which the clause's record says"),
+        **_seen_since(judgements, since or {}, {name: readings[name] for name in names}),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
     return {
@@ -173,6 +179,23 @@ def result_row(
         "activities_named": dict(activities.most_common()),
         "metrics": metrics,
     }
+
+
+def _seen_since(judgements: Judgements, since: Judgements, readings: dict[str, str]) -> dict[str, Any]:
+    """The share of wrong ones by today's grammar, of the draw that has been read since; those without a verdict count.
+
+    A verdict holds for the reading that it was given for, whenever that was.
+    """
+    verdicts = Counter(
+        next(
+            (one["verdict"] for one in (since.get(name), judgements.get(name)) if one and one["reading"] == reading),
+            "none",
+        )
+        for name, reading in readings.items()
+    )
+    bad = verdicts["wrong"] + verdicts["none"]
+    what = "the same draw by today's grammar, all of it read since: wrong, or without a verdict; no measure of others"
+    return {"wrong_seen_since": share(bad, len(readings), what)} if since else {}
 
 
 def share(part: int, whole: int, definition: str) -> dict[str, Any]:
@@ -197,7 +220,8 @@ def measure(run: StudyRun, folder: Path) -> Path:
     """Writes results/kitml/reading.json from the hand annotations in results/kitml/judgements.json."""
     path = folder / "kitml_annotations.json"
     judgements, before = _judgements(run.out, "judgements"), _before(run.out)
-    row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())
+    digest, since = hashlib.sha256(path.read_bytes()).hexdigest(), _judgements(run.out, "judgements_seen_since")
+    row = result_row(sentences_of(path), judgements, before, digest, since)
     unknown = {"seconds": "see the manifest"}
     return run.write("kitml", "reading", config={"drawn": DRAWN}, rows=complete_rows([row], unknown=unknown))
 

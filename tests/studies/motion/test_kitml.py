@@ -60,3 +60,12 @@ def test_a_reading_in_a_row():
     assert (
         reading_of(parse("walks 4 steps forward, then kicks with the left foot")) == "walk forwards x4 | kick left foot"
     )
+
+
+def test_verdicts_of_today_hold_for_the_reading_they_were_given_for():
+    old = {name: {"reading": name, "verdict": "right", "why": ""} for name in "ab"}
+    since = {"b": {"reading": "other", "verdict": "wrong", "why": ""}}
+    today = {"a": "a", "b": "other", "c": "new"}
+    shares = kitml._seen_since(old, since, today)
+    assert shares["wrong_seen_since"]["value"] == pytest.approx(2 / 3, abs=1e-3)  # b is wrong, c has no verdict
+    assert kitml._seen_since(old, {}, today) == {}

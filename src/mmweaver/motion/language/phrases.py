@@ -142,7 +142,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))?", " while arms_out "),
     (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:raised|lifted|held up) (?:to (?:the|both|his|her|their) sides?|"
      r"sideways|horizontally)\b", " while arms_out "),
-    (rf"\b(?:rises|rise|rising|rose) (?=(?:up )?{_OWN}(?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b)", " raises "),
+    (rf"\b(?:rises|rise|rising|rose) (?:to (?=hands? up))?(?=(?:up )?{_OWN}(?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b)", " raises "),
     (r"\bdrunk (?=person|man|woman|human|guy|people|way|manner)|\b(?:seems? |looks? |is |being |like )drunk(?:en)?\b", " drunken "),
     (r"\bstretch(?:es|ing|ed)? (?:out )?(?:himself|herself|itself|his body|her body|his back|her back|the body)\b",
      " stretches "),
