@@ -1,7 +1,7 @@
 """How well does a network trained on generated people alone recover poses of a real person from points?
 
     python -m studies run zero_shot_pose --recordings MARS/subject1 --split validate --sequences FOLDER \\
-        --models weights/pose_mars.safetensors
+        --models weights/pose_mars
     python -m studies run zero_shot_pose --recordings MARS/subject1 --split test --sequences FOLDER --runs FOLDER
 
 The task is examples/tasks/mars_poses.toml, the recordings are those of subject 1 of MARS; what is chosen is chosen on

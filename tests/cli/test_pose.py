@@ -8,6 +8,7 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.recognition import train_pose
+from mmweaver.recognition.pose_estimator import load_estimator
 from tests.recognition.test_mars_data import write_split
 from tests.training.moving_arm import moving_arm
 
@@ -32,6 +33,8 @@ def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: py
     columns = (cloud.frame, cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps)
     points = str(tmp_path / "points.csv")
     np.savetxt(points, np.stack(columns, axis=1), delimiter=",", header="Frame,X,Y,Z,Doppler", comments="")
+    assert sorted(path.name for path in model.glob("w*")) == ["weights.safetensors", "weights_2.safetensors"]
+    assert len(load_estimator(model).networks) == 2
     assert main(["pose", str(model), "--points", points, "--out", str(tmp_path / "poses"), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["frames"] == summary["frames_with_points"] == 20

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
+from mmweaver.recognition.labelled_training import fewest_recordings, generated_worth, own_trees
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
 from mmweaver.recognition.tree_ensemble import joined_trees, read_trees, write_trees
@@ -24,22 +24,34 @@ def made() -> TrainingWindows:
     )  # fmt: skip
 
 
-def test_more_recordings_grow_more_trees_alone(made: TrainingWindows):
-    features, labels = np.tile([[1.0], [0.0]], (10, 1)), np.tile([0, 1], 10)
-    sizes = []
+@pytest.mark.parametrize(("known", "sizes"), [(1.0, [8, 17, 28]), (0.0, [23, 28, 29])])
+def test_more_recordings_grow_more_trees_alone_and_more_where_what_was_generated_fails(
+    made: TrainingWindows, known: float, sizes: list[int]
+):
+    labels = np.tile([0, 1], 10)
+    features = np.abs(labels - (1.0 - known))[:, None]
+    found = []
     for fewest in (1, 4, 36):
         own, others = own_trees(made, features, labels, fewest, OPTIONS)
         assert own is not None
         assert len(own.root) + others.trees == OPTIONS.trees
-        sizes.append(len(own.root))
-        assert own.probabilities(np.array([[1.0]])).argmax() == 0
-    assert sizes == [6, 15, 27]
+        found.append(len(own.root))
+        assert own.probabilities(np.array([[1.0]])).argmax() == known
+    assert found == sizes
     assert own_trees(made, features, labels, 0, OPTIONS) == (None, OPTIONS)
 
 
+def test_generated_people_are_worth_what_they_recognise():
+    labels = np.array([0, 0, 1, 1])
+    votes = np.array([[0.9, 0.1], [0.6, 0.4], [0.7, 0.3], [0.2, 0.8]])
+    assert generated_worth(votes, labels) == pytest.approx(1.5)
+    assert generated_worth(votes[:, ::-1], labels) == pytest.approx(0.3)
+    assert generated_worth(np.eye(2)[labels], labels) == pytest.approx(3.0)
+
+
 def test_joined_trees_vote_as_both_do_and_are_read_back(made: TrainingWindows, tmp_path):
-    features, labels = np.tile([[1.0], [0.0]], (10, 1)), np.tile([0, 1], 10)
-    own, others = own_trees(made, features, labels, 4, OPTIONS)
+    features, labels = np.tile([[0.0], [1.0]], (10, 1)), np.tile([0, 1], 10)
+    own, others = own_trees(made, features, labels, 3, OPTIONS)
     assert own is not None
     mixed = trees_of(with_recorded(made, features, labels, 0.1), others)
     both = joined_trees(mixed, own)

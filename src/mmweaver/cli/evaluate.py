@@ -9,7 +9,7 @@ from typing import Any
 from mmweaver.cli.recognise_text import accuracy_lines, confusion_lines, score_lines
 from mmweaver.core.errors import InputError
 
-FROZEN_POSE = "pose_mars.safetensors"
+FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
 
 EXAMPLES = """examples:

@@ -42,11 +42,12 @@ def train_on_task(
 
     sequences = SEQUENCES if arguments.sequences is None else arguments.sequences
     training = PoseTraining(sequences=sequences, recipe=PoseRecipe(**given))
-    file, trainer = train_pose_of_task(
+    files, trainers = train_pose_of_task(
         arguments.task, arguments.out, training, listener=listener, compute=place, **options
     )
     return {
-        "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
+        "weights": ", ".join(map(str, files)), "steps": trainers[0].step,
+        "validation_loss": sum(one.best.value for one in trainers) / len(trainers),
         "evaluated_on": "generated people held out",
     }  # fmt: skip
 

@@ -4,8 +4,9 @@ estimator = load_estimator("model/")
 pose = estimator.estimate(cloud, num_frames)  # a PoseSequence, one pose a frame
 """
 
+import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,17 +17,18 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.point_frames import PointFrames, point_frames
-from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard
+from mmweaver.models.weights import WeightsCard
 from mmweaver.recognition.recorded_columns import RecordedColumns
 from mmweaver.recognition.task_file import RecordingSettings
 
 if TYPE_CHECKING:
     from mmweaver.models.pose_network import PoseNetwork
 
-STEPS_A_WINDOW = 4  # windows overlap by three quarters, and their poses are averaged
+STEPS_A_WINDOW = 8  # windows overlap by seven eighths, and their poses are averaged
+EVENED_S = 0.1  # standard deviation of the Gaussian that joints are smoothed with over time
 AT_ONCE = 64
 CROWN_OVER_HEAD_M = 0.11
-MIRROR = np.array([-1.0, 1.0, 1.0])
+ALL_WEIGHTS = "weights*.safetensors"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +55,9 @@ class PoseEstimator:
         return np.mean([network.mean_m.numpy() for network in self.networks], axis=0)
 
     def joints_m(self, frames: PointFrames) -> Float[np.ndarray, "frame 22 3"]:
-        """Joints of every frame: the weighted mean over the windows that hold it, those in its middle first."""
+        """Joints of every frame: the weighted mean over the windows that hold it, those in its middle first, evened."""
+        from scipy.ndimage import gaussian_filter1d
+
         length, num_frames = self.settings.window_frames, len(frames.values)
         if num_frames < length:
             raise InputError(f"{num_frames} frames are fewer than a window of {length}; give a longer recording")
@@ -67,7 +71,7 @@ class PoseEstimator:
             ):
                 total[start : start + length] += weight[:, None, None] * joints
                 weights[start : start + length] += weight
-        return total / weights[:, None, None]
+        return gaussian_filter1d(total / weights[:, None, None], EVENED_S * self.settings.frame_rate_hz, axis=0)
 
     def _windows(self, windows: Sequence[PointFrames]) -> Float[np.ndarray, "window frame 22 3"]:
         import torch
@@ -76,26 +80,40 @@ class PoseEstimator:
 
         nothing = np.zeros((self.settings.window_frames, NUM_JOINTS, 3))
         found = []
-        for mirror in (MIRROR, np.ones(3)):  # a person in a mirror has the mirrored pose: the mean of both is better
-            seen = [replace(one, values=one.values * np.array([*mirror, 1.0, 1.0], np.float32)) for one in windows]
+        # in a mirror people have the mirrored pose, backwards in time the same one: the mean of all is better
+        for side, time in itertools.product((-1, 1), (-1, 1)):
+            seen = [
+                PointFrames(
+                    values=one.values[::time] * np.array([side, 1, 1, time, 1], np.float32),
+                    is_there=one.is_there[::time],
+                )
+                for one in windows
+            ]
             batch = batch_of([(window, nothing) for window in seen])
             with torch.inference_mode():
                 poses = [network(batch.values, batch.is_there, batch.middle_m) for network in self.networks]
-            joints_m = np.mean([(joints + pelvis[:, :, None]).numpy() for joints, pelvis in poses], axis=0) * mirror
-            found.append(joints_m[:, :, MIRRORED] if mirror is MIRROR else joints_m)
+            joints_m = np.mean([(joints + pelvis[:, :, None]).numpy() for joints, pelvis in poses], axis=0)
+            joints_m = joints_m[:, ::time] * np.array([side, 1.0, 1.0])
+            found.append(joints_m[:, :, MIRRORED] if side < 0 else joints_m)
         return np.mean(found, axis=0)
 
 
 def load_estimator(place: Path | str) -> PoseEstimator:
-    """Reads a weights file of recipe `pose`, or the folder of `mmweaver train pose`. Raises InputError."""
+    """Reads a weights file of recipe `pose`, or all networks in the folder of `mmweaver train pose`.
+
+    Raises InputError.
+    """
     from mmweaver.models.pose_network import load_pose
 
     place = Path(place)
-    file = place / WEIGHTS_FILE if place.is_dir() else place
-    if not file.is_file():
+    files = sorted(place.glob(ALL_WEIGHTS)) if place.is_dir() else [place]
+    if not files or not files[0].is_file():
         raise InputError(f"{place} holds no weights; mmweaver train pose TASK.toml --out {place} makes them")
-    network, card = load_pose(file)
-    return PoseEstimator(networks=[network], settings=_settings(card, file))
+    loaded = [(file, *load_pose(file)) for file in files]
+    settings = [_settings(card, file) for file, _, card in loaded]
+    if any(one != settings[0] for one in settings):
+        raise InputError(f"{place} holds networks for different recordings; give one of its files")
+    return PoseEstimator(networks=[network for _, network, _ in loaded], settings=settings[0])
 
 
 def _settings(card: WeightsCard, file: Path) -> RecordingSettings:

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,7 @@ class PoseTraining:
     """How a pose network is trained; the same for every task."""
 
     sequences: int = SEQUENCES  # people who do each activity
+    networks: int = 2  # trained one after the other on the same people; their poses are averaged
     recipe: PoseRecipe = PoseRecipe()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
@@ -89,8 +90,9 @@ def split_people(recordings: Sequence[PointRecording], window_frames: int) -> tu
 def train_pose_of_task(
     task_file: Path | str, out: Path | str, training: PoseTraining | None = None, *,
     tell: Callable[[int, int], object] | None = None, listener: Listener | None = None, **options: Any,
-) -> tuple[Path, Trainer]:  # fmt: skip
-    """Trains a pose network on people who carry out the sentences of a task; writes `out`/weights.safetensors.
+) -> tuple[list[Path], list[Trainer]]:  # fmt: skip
+    """Trains pose networks on people who carry out the sentences of a task; writes `out`/weights.safetensors, weights_2
+    and so on.
 
     Sequences stay in `out`/sequences, so a run may be interrupted. `tell` hears how many sequences are done, `listener`
     of each step. Raises InputError.
@@ -99,11 +101,19 @@ def train_pose_of_task(
     recipe = training.recipe
     made = generated_frames(task, training.sequences, recipe.seed, out / SEQUENCE_FOLDER, tell)
     trained, unseen = split_people(made, task.recordings.window_frames)
-    trainer = train_pose(trained, unseen, out, recipe, listener=listener, **options)
-    return write_pose_weights(out / WEIGHTS_FILE, task, trainer), trainer
+    files, trainers = [], []
+    for number in range(1, training.networks + 1):
+        first, own = number == 1, replace(recipe, seed=recipe.seed + number - 1)
+        trainer = train_pose(
+            trained, unseen, out if first else out / f"network_{number}", own, listener=listener, **options
+        )
+        name = WEIGHTS_FILE if first else WEIGHTS_FILE.replace(".", f"_{number}.")
+        files.append(write_pose_weights(out / name, task, trainer, recipe.seed))
+        trainers.append(trainer)
+    return files, trainers
 
 
-def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer) -> Path:
+def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer, people_seed: int) -> Path:
     """Writes the best network with what one must know to apply it."""
     columns = task.recordings.columns
     settings = asdict(trainer.recipe) | {
@@ -111,7 +121,7 @@ def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer) -> P
         "columns": None if columns is None else list(columns.names),
         "activities": {label: list(said) for label, said in task.activities.items()},
     }  # fmt: skip
-    recipe = SequenceRecipe.of(task, POSE_PRIOR, trainer.recipe.seed)
+    recipe = SequenceRecipe.of(task, POSE_PRIOR, people_seed)
     card = WeightsCard(
         recipe=trainer.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(recipe.as_json().encode()).hexdigest(),
         radar=task.radar.name, steps=trainer.step, seed=trainer.recipe.seed, validation_loss=trainer.best.value,
