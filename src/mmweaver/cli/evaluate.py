@@ -65,12 +65,14 @@ def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
 def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
     """Scores of a pose network, by default of the frozen one."""
     from mmweaver.core.repository_files import repository_file
+    from mmweaver.models.weights import WEIGHTS_FILE
     from mmweaver.recognition.pose_estimator import load_estimator
     from mmweaver.recognition.score_poses import score_poses
 
-    model = arguments.model or repository_file(
-        FROZEN_POSE, "the frozen pose network", "train one with mmweaver train pose and give it by --model"
-    )
+    model = arguments.model
+    if model is None:
+        otherwise = "train some with mmweaver train pose and give them by --model"
+        model = repository_file(f"{FROZEN_POSE}/{WEIGHTS_FILE}", "the folder of frozen pose networks", otherwise).parent
     scores = score_poses(load_estimator(model), arguments.recordings, arguments.split or "test")
     return {"task": arguments.task, "model": model.name, **scores}
 
