@@ -270,6 +270,7 @@ KITML = MetricTable(
         ("wrong_seventh_sample", "wrong by hand, seventh sample (faults mended since)"),
         ("wrong", "wrong by hand without a word, understood ones of the last 300 (frozen grammar; mended since)"),
         ("said", "shown otherwise or in part, which is said, of the same"),
+        ("wrong_seen_since", "wrong by today's grammar, of the same 300, all read since (not blind)"),
     ),
 )  # fmt: skip
 UNREAD = {
