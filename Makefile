@@ -46,6 +46,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/inr_decode.py
 	$(BIN)/python benchmarks/scatterer_decode.py
+	$(BIN)/python benchmarks/mmw_encode.py
 	$(BIN)/python benchmarks/weaver.py
 	$(BIN)/python benchmarks/stream.py
 	$(BIN)/python benchmarks/studio.py

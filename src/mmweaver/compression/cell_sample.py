@@ -10,6 +10,9 @@ from mmweaver.compression.residual_stream import OPEN_BITS, PRICE, ROUNDING, app
 
 Array = np.ndarray
 NUM_STRONG, NUM_WEAK = 1536, 2560  # sampled cells: the strongest, and some of the others
+STEPS_AN_OCTAVE = 4  # for which estimates are made
+ON_GRID = 1e-6
+LEAST = 1e-30
 SHORTER = 0.8  # coded bits in estimated ones
 
 
@@ -37,19 +40,19 @@ class CellSample:
     magnitude: Array  # (cell, number) float32: of real and imaginary parts of all beams
     is_active: Array  # (cell,)
     weight: Array  # (cell,): how many cells each stands for
-    front_bytes: int = 0
+    front_bytes: int | float = 0
     front_values: int = 0
     front_step: float = 1.0
     largest: Array = field(init=False)  # (cell,) magnitude
     energy: Array = field(init=False)  # (cell,)
-    _known: dict[tuple[float, int], Estimate] = field(default_factory=dict, repr=False)
+    _known: dict[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "largest", self.magnitude.max(axis=1, initial=0))
         object.__setattr__(self, "energy", np.square(self.magnitude).sum(axis=1))
 
     @classmethod
-    def of(cls, coefficients: Array, is_active: Array, front_bytes: int = 0, **front: Any) -> "CellSample":
+    def of(cls, coefficients: Array, is_active: Array, front_bytes: int | float = 0, **front: Any) -> "CellSample":
         """A sample of coefficients (beam, time, range, index); all of the strongest cells are in it."""
         flat, active = coefficients.reshape(len(coefficients), -1), is_active.reshape(-1)
         chosen, weight = np.arange(flat.shape[1]), np.ones(flat.shape[1])
@@ -74,12 +77,27 @@ class CellSample:
         return self.front_bytes + self.front_values / 8 * math.log2(self.front_step / step)
 
     def at(self, step: float, coarser: int) -> Estimate:
-        """The estimate for a step; cells that are not active have `coarser` times that."""
-        if (step, coarser) not in self._known:
-            self._known[step, coarser] = self._estimated(step, coarser)
-        return self._known[step, coarser]
+        """The estimate for a step; cells that are not active have `coarser` times that.
 
-    def _estimated(self, step: float, coarser: int) -> Estimate:
+        Searches ask for many steps near each other, so it is interpolated between steps of a fixed grid.
+        """
+        place = math.log2(step) * STEPS_AN_OCTAVE
+        below = math.floor(place + ON_GRID)
+        share = max(place - below, 0.0)
+        first = self._at_node(below, coarser)
+        second = first if share < ON_GRID else self._at_node(below + 1, coarser)
+        cells, active_error, all_error = (
+            one ** (1 - share) * two**share for one, two in zip(first, second, strict=True)
+        )
+        return Estimate(num_bytes=max(self.front_at(step) + cells, 1.0), active_error=active_error, all_error=all_error)
+
+    def _at_node(self, node: int, coarser: int) -> tuple[float, float, float]:
+        if (node, coarser) not in self._known:
+            self._known[node, coarser] = self._estimated(2.0 ** (node / STEPS_AN_OCTAVE), coarser)
+        return self._known[node, coarser]
+
+    def _estimated(self, step: float, coarser: int) -> tuple[float, float, float]:
+        """Bytes of the cells, and the errors in active cells and in all; all above zero."""
         own_step = np.where(self.is_active, step, step * (coarser or 1)).astype(self.magnitude.dtype)
         may_open = (self.largest >= (1 - ROUNDING) * own_step) & (self.is_active | (coarser > 0))
         cells = np.flatnonzero(may_open)  # at most steps few of all
@@ -92,8 +110,5 @@ class CellSample:
         error = self.energy * self.weight
         rest = np.square(rest).sum(axis=1) * own[:, 0].astype(np.float64) ** 2
         error[cells] = np.where(is_open, rest * weight, error[cells])
-        num_bits = SHORTER * float(np.sum(bits * is_open * weight))
-        return Estimate(
-            num_bytes=max(self.front_at(step) + num_bits / 8, 1.0), active_error=float(error[self.is_active].sum()),
-            all_error=float(error.sum()),
-        )  # fmt: skip
+        num_bytes = SHORTER / 8 * float(np.sum(bits * is_open * weight))
+        return num_bytes + LEAST, float(error[self.is_active].sum()) + LEAST, float(error.sum()) + LEAST

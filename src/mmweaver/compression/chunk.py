@@ -13,9 +13,10 @@ import torch
 from torch import Tensor
 
 from mmweaver.compression.cell_choice import active_cells
-from mmweaver.compression.cell_sample import CellSample, Estimate
+from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
+from mmweaver.compression.coded_chunk import ChunkDraft, ChunkMode, CodedChunk
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
@@ -23,7 +24,14 @@ from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.moving_cells import code_moving, decoded_moving, moving_cells, pack_steps, unpack_steps
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
-from mmweaver.compression.residual_stream import PRICE, QuantizedCells, cell_energy, code_cells, quantized
+from mmweaver.compression.residual_stream import (
+    PRICE,
+    QuantizedCells,
+    cell_energy,
+    code_cells,
+    estimated_cell_bits,
+    quantized,
+)
 from mmweaver.compression.transforms import beams_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -41,44 +49,11 @@ LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
+NEAR_STEP = 0.3  # difference of log(step) within which bytes of layers follow from the number of their values
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
 MOST_VALUES, MOST_CELLS = 2**21, 2**26
-
-
-@dataclass(frozen=True, kw_only=True)
-class ChunkMode:
-    """How a chunk is coded; each is one of the choices that the encoder compares by rate and distortion."""
-
-    transform: TransformChoice = field(default_factory=TransformChoice)
-    with_points: bool = False
-    with_rank: bool = False
-    noise_step: float = 0.0  # of the noise layer, where there is one
-    finer: int = 1  # the step over that of moving cells
-
-    def name(self) -> str:
-        """For people."""
-        parts = ["scatterers"] * self.with_points + ["low rank"] * self.with_rank
-        parts += ["noise"] * bool(self.noise_step)
-        return " + ".join([*parts, self.transform.name()])
-
-
-@dataclass(frozen=True, kw_only=True)
-class CodedChunk:
-    """A chunk's bytes, and the energy of its error in units of the squared peak: active cells, and all."""
-
-    data: bytes
-    active_error: float
-    all_error: float
-    step: float
-    mode: ChunkMode
-    sample: CellSample
-
-    def cost(self, coarser: int) -> float:
-        """Lagrangian cost in the units of the error: cells without signal count less."""
-        own = Estimate(num_bytes=len(self.data), active_error=self.active_error, all_error=self.all_error)
-        return own.cost(self.step, coarser)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,33 +97,6 @@ class DecodedChunk:
         return finite(self.frames.cube_values(working * np.float32(self.peak)))
 
 
-@dataclass(frozen=True, kw_only=True)
-class ChunkDraft:
-    """A chunk whose cells are still to be coded. `front`: bytes before the stream, but for prefix and transform.
-
-    `num_values`: real numbers coded in layers.
-    """
-
-    step: float
-    stream: Encoder
-    flags: int
-    front: bytes
-    near: np.ndarray
-    rank: int
-    num_values: int
-    transform: ChunkTransform
-    coefficients: np.ndarray
-    is_active: np.ndarray
-    energy: np.ndarray  # of the coefficients (time, range, index)
-
-    def sample(self) -> CellSample:
-        """Some cells, for estimates."""
-        before = PREFIX.size + len(self.front) + len(self.transform.packed) + len(self.stream.to_bytes())
-        return CellSample.of(
-            self.coefficients, self.is_active, before, front_values=self.num_values, front_step=self.step
-        )
-
-
 @dataclass(kw_only=True)
 class ChunkEncoder:
     """Encodes frames at any step. `target`: working frames (frame, range, doppler, antenna) over `peak`.
@@ -165,7 +113,9 @@ class ChunkEncoder:
     _coefficients: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)
     _samples: dict[TransformChoice, CellSample] = field(default_factory=dict)
     _refined_points: tuple[int, Points] | None = None
-    _noise: tuple[ChunkMode, NoiseLayer] | None = None
+    _coded_layers: tuple[float, int, int] | None = None  # step, number of values and bytes of layers coded before
+    _noise: tuple[ChunkMode, bool, NoiseLayer] | None = None
+    _quiet: dict[ChunkMode, np.ndarray] = field(default_factory=dict)
     _noise_sample: CellSample | None = None
     _components: Components | None = None
 
@@ -179,20 +129,26 @@ class ChunkEncoder:
             layers = replace(layers, calibration=torch.ones_like(layers.calibration))
         self.layers = replace(layers, calibration=_quantize_gains(layers.calibration))
 
-    def encode(self, step: float, mode: ChunkMode, coarser: int, price: float = PRICE) -> CodedChunk:
+    def encode(
+        self, step: float, mode: ChunkMode, coarser: int, price: float = PRICE, *, only_size: bool = False
+    ) -> CodedChunk:
         """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak.
 
-        `price`: see `quantized`.
+        `price`: see `quantized`. `only_size`: its size is estimated, and nothing coded that takes long.
         """
-        draft = self.draft(step, mode, coarser)
-        sample = draft.sample()
+        draft = self.draft(step, mode, coarser, only_size=only_size)
         step, stream, flags, front = draft.step, draft.stream, draft.flags, draft.front
+        cell_bytes = 0.0
         cells = quantized(draft.coefficients, step, coarser, draft.is_active, price, draft.energy)
         is_open = cells.classes > 0
         if is_open.any():
             flags += HAS_CELLS
             front += draft.transform.packed
-            code_cells(stream, cells.levels, cells.classes, draft.near, draft.transform.correlated, coarser)
+            correlated = draft.transform.correlated
+            if only_size:
+                cell_bytes = estimated_cell_bits(cells.levels, cells.classes, draft.near, correlated, coarser) / 8
+            else:
+                code_cells(stream, cells.levels, cells.classes, draft.near, correlated, coarser)
         is_active, lost = draft.is_active, draft.energy.astype(np.float64)
         if draft.transform.choice.range_dct or mode.finer > 1:  # errors are those of the cells of the frames
             rest = draft.transform.inverse(draft.coefficients - cells.values(step, coarser))
@@ -205,18 +161,20 @@ class ChunkEncoder:
             self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
             pack_steps(coarser or 1, mode.finer), draft.rank, flags,
         )  # fmt: skip
+        data = prefix + front + stream.to_bytes()
         return CodedChunk(
-            data=prefix + front + stream.to_bytes(), active_error=float(lost[is_active].sum()),
-            all_error=float(lost.sum()), step=step, mode=mode, sample=sample,
+            data=b"" if only_size else data, num_bytes=len(data) + draft.uncoded_bytes + cell_bytes,
+            active_error=float(lost[is_active].sum()), all_error=float(lost.sum()), step=step, mode=mode, draft=draft,
         )  # fmt: skip
 
-    def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
-        """The chunk with its layers coded, and its cells not."""
+    def draft(self, step: float, mode: ChunkMode, coarser: int, *, only_size: bool = False) -> ChunkDraft:
+        """The chunk with its layers coded, and its cells not; with `only_size` no noise layer is coded either."""
         step = float(np.float32(step))
         stream, flags, front, num_values = Encoder(), IS_NEW, b"", 0
+        uncoded_bytes = noise_bytes = 0.0
         target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
         if mode.with_points and self.layers is not None:
-            target, near, more, front, num_values = self._points(stream, step)
+            target, near, more, front, num_values, uncoded_bytes = self._points(stream, step, only_size=only_size)
             flags += more
         noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
         factors = self._factors(step, noise_power) if mode.with_rank else None
@@ -226,14 +184,19 @@ class ChunkEncoder:
             num_values += factors.num_values
             target = (target - factors.values(step, target.shape)).astype(target.dtype)
         if mode.noise_step:
-            noise = self._noise_layer(mode, target)
+            noise = self._noise_layer(mode, target, only_size=only_size)
             flags += HAS_NOISE
             front += noise.packed
+            noise_bytes = noise.num_bytes
+            uncoded_bytes += noise_bytes - len(noise.packed)
             target = target - noise.values
         transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
         return ChunkDraft(
-            step=step, stream=stream, flags=flags, front=front, near=near, rank=0 if factors is None else factors.rank,
-            num_values=num_values, transform=transform, coefficients=coefficients,
+            step=step, stream=stream, flags=flags, front=front, uncoded_bytes=uncoded_bytes,
+            noise_bytes=noise_bytes,
+            front_bytes=PREFIX.size + len(front) + len(transform.packed) + len(stream.to_bytes()) + uncoded_bytes,
+            near=near, rank=0 if factors is None else factors.rank, num_values=num_values, transform=transform,
+            coefficients=coefficients,
             is_active=transform.spread(self.is_active), energy=cell_energy(coefficients),
         )  # fmt: skip
 
@@ -255,16 +218,20 @@ class ChunkEncoder:
     def noise_sample(self) -> CellSample:
         """Some coefficients of the noise layer, for estimates."""
         if self._noise_sample is None:
-            coefficients = to_noise(without_signal(self.target, self.is_active), self.beams)
+            quiet = np.where(self.is_active[..., None], np.complex64(0), self.target)  # holes matter little here
+            coefficients = to_noise(quiet, self.beams)
             self._noise_sample = CellSample.of(coefficients, np.ones(coefficients.shape[1:], bool))
         return self._noise_sample
 
-    def _noise_layer(self, mode: ChunkMode, target: np.ndarray) -> NoiseLayer:
+    def _noise_layer(self, mode: ChunkMode, target: np.ndarray, *, only_size: bool) -> NoiseLayer:
         """The noise after the layers of a mode; coded once, for layers change little with the step."""
-        if self._noise is None or self._noise[0] != mode:
-            quiet = without_signal(target, self.is_active)
-            self._noise = mode, NoiseLayer.of(quiet, mode.noise_step, self.beams)
-        return self._noise[1]
+        if self._noise is None or self._noise[:2] != (mode, only_size):
+            layers = replace(mode, noise_step=0.0)
+            if layers not in self._quiet:
+                self._quiet[layers] = without_signal(target, self.is_active)
+            layer = NoiseLayer.of(self._quiet[layers], mode.noise_step, self.beams, only_size=only_size)
+            self._noise = mode, only_size, layer
+        return self._noise[2]
 
     def _factors(self, step: float, noise_power: float) -> RankFactors | None:
         if self._components is None:
@@ -280,29 +247,44 @@ class ChunkEncoder:
             self._coefficients[choice] = found
         return found
 
-    def _points(self, stream: BitStream, step: float) -> tuple[np.ndarray, np.ndarray, int, bytes, int]:
-        """Codes static layer and scatterers; returns what remains, nearness, flags, the packed gains, and the number
-        of values."""
+    def _points(
+        self, stream: Encoder, step: float, *, only_size: bool
+    ) -> tuple[np.ndarray, np.ndarray, int, bytes, int, float]:
+        """Codes static layer and scatterers; returns what remains, nearness, flags, the packed gains, the number of
+        values, and the bytes of layers that were not coded, since those of a step near it are known."""
         assert self.layers is not None
         window = self.frames.fit_window()
         layers = self.layers
         with torch.inference_mode():
             static = self._static_levels(layers, window, step)
             layers = replace(layers, static=_static_of(static, window, self.beams, step))
-            if static.any():
-                _code_static(stream, static)
             steps = PointSteps.of(step, window.response, window.axes)
             points = self._refined(layers, window, steps)
             coded = quantize(points, steps, window.axes, window.response.num_directions, LEAST_SIZE)
-            if len(coded):
-                _point_coder(self.frames, window, steps).code(stream, coded)
             layers = replace(layers, points=_dequantize(coded, window, steps))
             target = self.target - rendered(layers, window.response, window.axes).numpy()
+        num_values = int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response)
+        uncoded_bytes = self._layer_bytes(step, num_values) if only_size else None
+        if uncoded_bytes is None:
+            if static.any():
+                _code_static(stream, static)
+            if len(coded):
+                _point_coder(self.frames, window, steps).code(stream, coded)
+            self._coded_layers = step, num_values, len(stream.to_bytes())
         has_gains = bool((layers.calibration != 1).any())
         flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains
         near = nearness(coded, self.target.shape[:3])
-        num_values = int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response)
-        return target, near, flags, _pack_gains(layers.calibration) if has_gains else b"", num_values
+        front = _pack_gains(layers.calibration) if has_gains else b""
+        return target, near, flags, front, num_values, uncoded_bytes or 0.0
+
+    def _layer_bytes(self, step: float, num_values: int) -> float | None:
+        """Bytes of layers, from those at a step near it; None where there are none."""
+        if self._coded_layers is None:
+            return None
+        near_step, before, num_bytes = self._coded_layers
+        if not before or abs(math.log(step / near_step)) > NEAR_STEP:
+            return None
+        return num_bytes * num_values / before + num_values / 8 * math.log2(near_step / step)
 
     def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
         values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)

@@ -13,6 +13,7 @@ import numpy as np
 Integers = np.ndarray  # (n,) int64
 Probability = np.ndarray  # (n,) float64
 
+VERSION = 5  # of the .mmw format that is written
 MIN_PROBABILITY = 2.0**-14
 MOST_OCTAVES = 30
 LARGEST_UNIFORM = 2**23
@@ -27,7 +28,7 @@ class BitStream(ABC):
     `version`: of the .mmw format whose models of levels and classes are used (`level_coder`, `class_map`).
     """
 
-    version = 5
+    version = VERSION
 
     @abstractmethod
     def bits(self, probability: Probability, values: Integers) -> Integers:
@@ -104,7 +105,7 @@ class Encoder(BitStream):
 class Decoder(BitStream):
     """A BitStream that decodes the bytes of an Encoder."""
 
-    def __init__(self, data: bytes, *, version: int = 5) -> None:
+    def __init__(self, data: bytes, *, version: int = VERSION) -> None:
         model, queue = _constriction()
         self.version = version
 

@@ -74,14 +74,13 @@ class LevelCoder:
         self.shape, self.correlated = shape, correlated
         middle = np.append(SIZE_BOUNDS, 2 * SIZE_BOUNDS[-1]) / 8 * LARGER + LEAST_SCALE
         known_or_not = np.append(middle, 1.0)
-        self.levels = SignedModel(
-            [
-                np.repeat(middle, NUM_TRENDS),
-                np.repeat(known_or_not, NUM_REAL * NUM_TRENDS),
-                np.repeat(known_or_not, NUM_WIDE * NUM_TRENDS),
-                np.ones(shape[0] * shape[3] * NUM_TRENDS),
-            ]
-        )
+        self.scales = [
+            np.repeat(middle, NUM_TRENDS),
+            np.repeat(known_or_not, NUM_REAL * NUM_TRENDS),
+            np.repeat(known_or_not, NUM_WIDE * NUM_TRENDS),
+            np.ones(shape[0] * shape[3] * NUM_TRENDS),
+        ]
+        self.levels = SignedModel(self.scales)
 
     def code(self, stream: BitStream, levels: Integers, factor: Integers) -> None:
         """Encodes `levels` (part, beam, cell) of the open cells, or fills them in when decoding.
@@ -91,16 +90,16 @@ class LevelCoder:
         beams, num = levels.shape[1:]
         if not num:
             return
-        lattices = LATTICES_IN.get(stream.version) or _lattices(num, beams)
+        lattices = LATTICES_IN.get(stream.version) or lattices_of(num, beams)
         margins = [lattices[0] if size > 1 or stream.version == 3 else 0 for size in self.shape[1:]]
-        places = _Places(factor, margins)
-        groups = list(self._groups(places, lattices, has_all=stream.version == 3))
-        neighbours = [places.of(places.at, offset) for offset in _axes(margins)]
+        places = CellPlaces(factor, margins)
+        groups = list(self.groups(places, lattices, has_all=stream.version == 3))
+        neighbours = [places.of(places.at, offset) for offset in neighbour_axes(margins)]
         factors = factor[factor > 0][:, None]
         batches, before, first = Batches(stream), np.zeros(num + 1, np.int64), 0
-        while first < beams:
-            at_once = 1 if stream.version in LATTICES_IN else min(max(first, 1), -(-VALUES_AT_ONCE // num))
-            some = levels[:, first : first + at_once]
+        passes = range(1, beams + 1) if stream.version in LATTICES_IN else self.passes(beams, num)
+        for last in passes:
+            some = levels[:, first:last]
             planes = np.zeros((2, num + 1, some.shape[1]), np.int64)
             planes[:, :-1] = some.swapaxes(1, 2) * factors
             size = np.zeros(planes.shape[1:], np.int64)
@@ -114,8 +113,16 @@ class LevelCoder:
                 before = (beam + before) // 2 if first else beam
                 first += 1
 
-    def _groups(self, places: "_Places", lattices: tuple[int, ...], *, has_all: bool) -> Iterator[PhaseGroup]:
-        """`has_all`: with the neighbours along axes of one cell, which count as zeros."""
+    @staticmethod
+    def passes(beams: int, num_open: int) -> Iterator[int]:
+        """The beams that are known after each pass."""
+        last = 0
+        while last < beams:
+            last = min(beams, last + min(max(last, 1), -(-VALUES_AT_ONCE // num_open)))
+            yield last
+
+    def groups(self, places: "CellPlaces", lattices: tuple[int, ...], *, has_all: bool) -> Iterator[PhaseGroup]:
+        """The phases of the lattices. `has_all`: with the neighbours along axes of one cell, which count as zeros."""
         single = [num == 1 and not has_all for num in self.shape[1:]]
         for stride in lattices:
             for phase in PHASES if stride == lattices[0] else PHASES[1:]:
@@ -154,7 +161,7 @@ class LevelCoder:
         place = ((first + np.arange(planes.shape[2])) * self.shape[3] + group.column[:, None]).ravel()
         real: Integers | None = None
         for plane in planes:
-            trend = _trend(plane, group)
+            trend = trend_of(plane, group)
             trend = None if trend is None else (trend // factor).ravel()
             wanted = plane[cells] // factor
             values = [
@@ -205,7 +212,7 @@ class LevelCoder:
         return shift, 0 if stream.version == 3 else shift
 
 
-class _Places:
+class CellPlaces:
     """Open cells (cell,) of an array (time, range, doppler), and how they are found from their neighbours."""
 
     def __init__(self, factor: Integers, margins: Sequence[int]):
@@ -230,7 +237,7 @@ class _Places:
         return index[0] * self.strides[0] + index[1] * self.strides[1] + index[2] * self.strides[2]
 
 
-def _trend(plane: Integers, group: PhaseGroup) -> Integers | None:
+def trend_of(plane: Integers, group: PhaseGroup) -> Integers | None:
     """Level (cell, beam) predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
     near = [plane[cells] for cells in (*group.rows, *group.columns)]
     if not near:
@@ -240,11 +247,11 @@ def _trend(plane: Integers, group: PhaseGroup) -> Integers | None:
     return 4 * sum(near) - 2 * sum(plane[cells] for cells in group.corners)
 
 
-def _lattices(num_open: int, num_beams: int) -> tuple[int, ...]:
+def lattices_of(num_open: int, num_beams: int) -> tuple[int, ...]:
     return next(strides for least, strides in LATTICES if num_open >= least or num_beams <= FEW_BEAMS)
 
 
-def _axes(margins: Sequence[int]) -> list[tuple[int, ...]]:
+def neighbour_axes(margins: Sequence[int]) -> list[tuple[int, ...]]:
     """Offsets to both sides along the axes of several cells."""
     axes = [axis for axis, margin in enumerate(margins) if margin]
     return [tuple(side * (axis == other) for other in range(3)) for axis in axes for side in (-1, 1)]

@@ -19,18 +19,21 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from mmweaver.compression.entropy import VERSION
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 from mmweaver.core.safe_files.safe_text import parse_json
 
-MAGIC, VERSION = b"MMWV", 5
+MAGIC = b"MMWV"
 MAX_CHUNK_BYTES = 64 * 2**20  # of a decoded chunk, unless a single frame is larger
 MAX_CHUNKS, MAX_FRAMES = 100_000, 1_000_000
 MAX_RATIO = 20_000  # decoded bytes a byte of a file: 256 bytes of 20 frames of an AWR1843 are 15,000
 MAX_TIME_S = 1e15
-READABLE = (1, 2, 3, 4, 5)  # 2 may hold residuals with a map of open cells; 3 has records, 4 and 5 other models
+READABLE = tuple(
+    range(1, VERSION + 1)
+)  # 2 may hold residuals with a map of open cells; 3 has records, 4 and 5 other models
 LISTED = (1, 2)  # versions whose header lists the chunks
 PREFIX = struct.Struct("<4sBH")
 CHECK = struct.Struct("<I")

@@ -7,8 +7,9 @@ import numpy as np
 import torch
 
 from mmweaver.compression.cell_sample import CellSample
-from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
+from mmweaver.compression.chunk import ChunkEncoder
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
+from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.moving_cells import FINER_STEPS, moving_cells
 from mmweaver.compression.residual_stream import PRICE, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
@@ -24,8 +25,7 @@ CLEAR = 0.995  # of the cost without layers: what layers must have, for estimate
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
 FREE_MODES = ("transforms", "scatterers", "low rank", "noise layer", "DCT of ranges")
-# what is not tried: the fit takes most of the time, and a file with all cells alike tells what error they may have
-EFFORTS = {"full": (), "fast": ("scatterers", "trial of all cells alike")}
+EFFORTS = {"full": (), "fast": ("scatterers",)}  # what is not tried: the fit takes most of the time
 
 
 class ModeChooser:
@@ -40,16 +40,18 @@ class ModeChooser:
         self.mode: ChunkMode | None = None
         self.sample: CellSample | None = None  # of the mode decided on, at the step of the decision
 
-    def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> CodedChunk:
+    def encode(
+        self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
+    ) -> CodedChunk:
         """The chunk at a step, in the mode decided on; with a noise layer where it has a step.
 
-        `price`: see `quantized`.
+        `price`, `only_size`: see `ChunkEncoder.encode`.
         """
         if self.mode is None:
             self.decide(step, coarser)
         assert self.mode is not None
         mode = replace(self.mode, noise_step=noise_step, finer=1) if noise_step else self.mode
-        return self.encoder.encode(step, mode, coarser, price)
+        return self.encoder.encode(step, mode, coarser, price, only_size=only_size)
 
     def decide_transform(self, step: float, coarser: int) -> None:
         """Decides on the transform of `plain`, the best mode without any layer."""
@@ -102,9 +104,11 @@ class ModeChooser:
         sides = sorted((frames * num_range, doppler * antennas))
         if "low rank" not in self.without and sides[0] > 1 and sides[0] ** 2 * sides[1] <= MOST_MATRIX:
             modes.append(ChunkMode(transform=self.plain.transform, with_rank=True))
-        if "scatterers" not in self.without and encoder.frames.can_have_points:
+        # of one antenna, a scatterer has about as many numbers as the cells that it fills
+        if "scatterers" not in self.without and encoder.frames.can_have_points and antennas > 1:
             if encoder.layers is None:
-                layers = _fit(encoder, encoder.sample(self.plain.transform).at(step, coarser).num_bytes)
+                usual = choices_of(encoder.target.shape)[0]  # the step is one at which it has the bytes of the chunk
+                layers = _fit(encoder, encoder.sample(usual).at(step, coarser).num_bytes)
                 if not bool(layers.static.isfinite().all() & layers.points.amplitude.isfinite().all()):
                     return modes  # nearly empty cubes have no noise to compare scatterers with
                 encoder.with_layers(layers)

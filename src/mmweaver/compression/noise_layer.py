@@ -12,7 +12,7 @@ from jaxtyping import Bool, Complex
 from scipy import fft
 
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.residual_stream import QuantizedCells, code_plain_cells, quantized
+from mmweaver.compression.residual_stream import QuantizedCells, code_plain_cells, estimated_cell_bits, quantized
 
 Array = np.ndarray
 MOST_HOLES = 0.25  # share of active cells up to which they are filled
@@ -22,26 +22,37 @@ HEADER = struct.Struct("<IfBB")  # bytes of the stream, step, centroids
 
 @dataclass(frozen=True, kw_only=True)
 class NoiseLayer:
-    """`packed`, and the `values` (frame, range, doppler, antenna) that a decoder has."""
+    """`packed`, and the `values` (frame, range, doppler, antenna) that a decoder has.
+
+    Where only its size was asked for, `packed` is empty, and `num_bytes` within some percent of what it would be.
+    """
 
     packed: bytes
+    num_bytes: float
     values: Complex[Array, "frame range doppler antenna"]
 
     @classmethod
     def of(
-        cls, quiet: Complex[Array, "frame range doppler antenna"], step: float, beams: Complex[Array, "beam antenna"]
+        cls,
+        quiet: Complex[Array, "frame range doppler antenna"],
+        step: float,
+        beams: Complex[Array, "beam antenna"],
+        *,
+        only_size: bool = False,
     ) -> "NoiseLayer":
         """The layer of values without signal, see `without_signal`."""
         step = float(np.float32(step))
         coefficients = to_noise(quiet, beams)
         cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
-        stream = Encoder()
+        stream, values = Encoder(), from_noise(cells.values(step, 1), beams)
+        if only_size:
+            near = np.zeros_like(cells.classes)
+            bits = estimated_cell_bits(cells.levels, cells.classes, near, (False, False), 1)
+            return cls(packed=b"", num_bytes=HEADER.size + bits / 8, values=values)
         code_plain_cells(stream, cells.levels, cells.classes)
         data = stream.to_bytes()
-        return cls(
-            packed=HEADER.pack(len(data), step, *cells.centroids) + data,
-            values=from_noise(cells.values(step, 1), beams),
-        )
+        packed = HEADER.pack(len(data), step, *cells.centroids) + data
+        return cls(packed=packed, num_bytes=float(len(packed)), values=values)
 
     @classmethod
     def unpack(
@@ -60,7 +71,7 @@ class NoiseLayer:
         classes = np.zeros(shape[:3], np.int64)
         levels = code_plain_cells(Decoder(data[HEADER.size : last], version=version), None, classes, shape[3])
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
-        return cls(packed=data[:last], values=from_noise(cells.values(step, 1), beams))
+        return cls(packed=data[:last], num_bytes=float(last), values=from_noise(cells.values(step, 1), beams))
 
 
 def without_signal(

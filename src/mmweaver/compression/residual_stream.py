@@ -6,8 +6,9 @@ import numpy as np
 from jaxtyping import Complex, Float, Int
 
 from mmweaver.compression.class_map import CLOSED, COARSE, FINE, ClassMapCoder
-from mmweaver.compression.entropy import BitStream
+from mmweaver.compression.entropy import BitStream, Encoder
 from mmweaver.compression.level_coder import LevelCoder
+from mmweaver.compression.level_size import estimated_bits
 
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion
@@ -102,6 +103,18 @@ def code_cells(
     factor = np.where(classes == FINE, 1, coarser) * (classes > CLOSED)
     LevelCoder((levels.shape[1], *classes.shape), correlated).code(stream, levels, factor)
     return levels
+
+
+def estimated_cell_bits(
+    levels: Array, classes: Array, near: Array, correlated: tuple[bool, bool], coarser: int
+) -> float:
+    """About the bits of what `code_cells` would code; only the classes are."""
+    stream = Encoder()
+    ClassMapCoder(classes.shape[2]).code(stream, classes, near)
+    factor = np.where(classes == FINE, 1, coarser) * (classes > CLOSED)
+    coder = LevelCoder((levels.shape[1], *classes.shape), correlated)
+    weights = approximate_bits(np.abs(levels)).sum(axis=(0, 2))
+    return 8 * len(stream.to_bytes()) + estimated_bits(coder, levels, factor, weights)
 
 
 def code_plain_cells(stream: BitStream, levels: Array | None, classes: Array, num_beams: int = 0) -> Array:

@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from mmweaver.compression.cell_sample import CellSample
-from mmweaver.compression.chunk import ChunkEncoder, CodedChunk
+from mmweaver.compression.chunk import ChunkEncoder
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import MOST_DOPPLER
+from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.mode_choice import ModeChooser
 from mmweaver.compression.residual_stream import PRICE
 from mmweaver.core.records import RadarCube
@@ -51,7 +52,7 @@ class SegmentEncoder:
             costs = []
             for parts in (split(len(sample), SHORT_CHUNK), [range(len(sample))]):
                 choosers = [self._chooser(part, (*self.without, "scatterers", "low rank")) for part in parts]
-                coded = [chooser.encode(step, self.coarser) for chooser in choosers]
+                coded = [chooser.encode(step, self.coarser, only_size=True) for chooser in choosers]
                 costs.append(sum(one.cost(self.coarser) for one in coded))
             short = short if costs[0] <= costs[1] else long
         self.parts = short
@@ -73,6 +74,11 @@ class SegmentEncoder:
         """Steps below it have levels that cannot be coded."""
         return self.coarsest_step / LARGEST_LEVEL
 
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The finest and the coarsest step."""
+        return self.finest_step, self.coarsest_step
+
     def decide(self, step: float, coarser: int | None = None) -> bool:
         """Decides on the mode of each chunk near a step; whether any is another one than before."""
         before = [chooser.mode for chooser in self._choosers]
@@ -80,40 +86,53 @@ class SegmentEncoder:
             chooser.decide(step, self.coarser if coarser is None else coarser)
         return before != [chooser.mode for chooser in self._choosers]
 
-    @property
-    def has_rank(self) -> bool:
-        """Whether any chunk is coded as a matrix of low rank."""
-        return any(chooser.mode is not None and chooser.mode.with_rank for chooser in self._choosers)
+    def modes(self) -> list[ChunkMode | None]:
+        """The modes decided on."""
+        return [chooser.mode for chooser in self._choosers]
 
-    def leave_out_rank(self) -> None:
-        """From now on no chunk is."""
+    def take_modes(self, modes: Sequence[ChunkMode | None]) -> None:
+        """Takes modes instead of those decided on."""
+        for chooser, mode in zip(self._choosers, modes, strict=True):
+            chooser.mode = mode
+
+    def leave_out(self, mode: str) -> None:
+        """From now on one of FREE_MODES is not decided on."""
         for chooser in self._choosers:
-            chooser.without = (*chooser.without, "low rank")
+            chooser.without = (*chooser.without, mode)
 
-    def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> list[CodedChunk]:
-        """All chunks at a step, in the modes decided on; with a noise layer where it has a step."""
-        return [chooser.encode(step, coarser, noise_step, price) for chooser in self._choosers]
+    def encode(
+        self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
+    ) -> list[CodedChunk]:
+        """All chunks at a step, in the modes decided on; with a noise layer where it has a step.
+
+        `only_size`: see `ChunkEncoder.encode`.
+        """
+        return [chooser.encode(step, coarser, noise_step, price, only_size=only_size) for chooser in self._choosers]
 
     def noise_samples(self) -> list[CellSample]:
         """Samples of the noise layers."""
         return [chooser.encoder.noise_sample() for chooser in self._choosers]
 
-    def encode_plain(self, step: float) -> list[CodedChunk]:
-        """All chunks without layers, all cells alike."""
-        return [chooser.encoder.encode(step, chooser.plain, 1) for chooser in self._choosers]
+    def plain_modes(self) -> list[ChunkMode]:
+        """The modes without layers."""
+        return [chooser.plain for chooser in self._choosers]
 
-    def encode_over_range(self, step: float) -> list[CodedChunk]:
-        """All chunks without layers, all cells alike, after a DCT of the ranges."""
-        return [chooser.encoder.encode(step, chooser.over_range, 1) for chooser in self._choosers]
+    def modes_over_range(self) -> list[ChunkMode]:
+        """These with a DCT of the ranges."""
+        return [chooser.over_range for chooser in self._choosers]
 
     def samples_over_range(self) -> list[CellSample]:
-        """Samples of these."""
+        """Samples of the chunks in these."""
         return [chooser.encoder.sample(chooser.over_range.transform) for chooser in self._choosers]
 
     @property
     def active_share(self) -> float:
         """Share of the cells that are active."""
         return float(np.mean([chooser.encoder.is_active.mean() for chooser in self._choosers]))
+
+    def mode_samples(self) -> list[CellSample]:
+        """Samples of the transforms of the modes, without layers."""
+        return [chooser.encoder.sample(chooser.mode.transform) for chooser in self._choosers if chooser.mode]
 
     def samples(self) -> list[CellSample]:
         """Samples of the chunks without layers."""

@@ -119,7 +119,7 @@ class SignedModel:
 
     def __init__(self, scales: list[np.ndarray]):
         """`scales` (context,) of each table: the magnitude to expect."""
-        self.symbols = MixedModel([_prior(scale) for scale in scales])
+        self.symbols = MixedModel([prior_of(scale) for scale in scales])
         self.escapes = MixedModel([np.ones((1, MOST_BITS))])
 
     def code(
@@ -160,9 +160,24 @@ class SignedModel:
         return (size - 1) * (1 - 2 * negative)
 
 
-def _prior(scale: np.ndarray) -> np.ndarray:
+def prior_of(scale: np.ndarray) -> np.ndarray:
+    """Distribution (context, symbol) of numbers of a magnitude (context,) to expect, not normalised."""
     distance = np.abs(np.arange(SIZE) - HALF)
     relative = 1 + distance / scale[:, None]
     prior = 1.0 / (relative * relative * relative)
     prior[:, ESCAPE] = 0.003
     return prior
+
+
+def adaptive_bits(counts: np.ndarray, prior: np.ndarray) -> float:
+    """Length of the adaptive codes of so many symbols (context, symbol) with initial distributions.
+
+    It depends on the counts alone, not on the order of the symbols.
+    """
+    from scipy.special import gammaln
+
+    seen = counts.any(axis=1)
+    counts, start = counts[seen], prior[seen]
+    start = PRIOR * start / start.sum(axis=1, keepdims=True)
+    total = gammaln(counts.sum(axis=1) + PRIOR) - gammaln(PRIOR)
+    return float((total.sum() - (gammaln(counts + start) - gammaln(start)).sum()) / np.log(2))

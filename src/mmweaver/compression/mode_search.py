@@ -1,0 +1,226 @@
+"""Which modes, coarse steps and noise layer a file of a size has (encoder side).
+
+All is decided by counted chunks, whose errors are exact and whose sizes are estimated to some percent: see
+`ChunkEncoder.encode`. What they would be with exactly the bytes allowed follows from a sample of their cells.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from mmweaver.compression.cell_sample import CellSample
+from mmweaver.compression.coded_chunk import ChunkMode
+from mmweaver.compression.segment import SegmentEncoder
+from mmweaver.compression.step_search import COUNT_AIM, LEAST_ERROR, Found, Plan, step_of_error, step_of_size, sum_at
+
+DECISIONS = 2
+SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
+# difference of log(bytes) up to which counted chunks tell the errors of those with the bytes allowed; most counts
+CLOSE, CLOSE_WITH_RANK, COUNTS = 0.2, 0.02, 4
+EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
+SPARE = 1.25  # times the bytes: an even coder by the estimate has no less error than a real one of fewer bytes
+CLOSE_ERROR = 1.01  # times the error allowed that is as good
+OVER_RANGE_LOSES = 1.7  # times the error estimated: cells are predicted by neighbours, which no estimate knows
+CLEARLY_FINER = 0.9  # steps that a noise layer must have where there need not be one
+NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
+MOST_SHARE = 0.9  # of the bytes that the noise may have
+NOISE_STEPS, NOISE_TRIALS = 12, 7
+NOISE_COUNTS, SAME_NOISE = 2, 0.05  # counts of a noise layer; share of the signal's bytes that an estimate may mistake
+CLEARLY_BETTER = 0.8  # of the product of errors: with this advantage by estimates, no file without layers is counted
+
+# layers that a file is counted without, too: a sample of the cells may mistake what they are worth
+LAYERS: dict[str, Callable[[ChunkMode], bool]] = {
+    "low rank": lambda mode: mode.with_rank,
+    "scatterers": lambda mode: mode.with_points,
+}
+
+
+def best_plan(segment: SegmentEncoder, num_bytes: int) -> Plan:
+    """The best of the files with all layers that pay by estimates, and of those without each of them."""
+    best = _plan(segment, num_bytes)
+    for layer, has_layer in LAYERS.items():
+        if not any(has_layer(chunk.mode) for chunk in best.found.coded):
+            continue
+        if layer == "scatterers" and _is_clear(segment, num_bytes):
+            continue
+        segment.leave_out(layer)
+        best = min(best, _plan(segment, num_bytes), key=lambda plan: plan.badness)
+    return best
+
+
+def _is_clear(segment: SegmentEncoder, num_bytes: int) -> bool:
+    """Whether the modes decided on are better than those without layers by so much that no count is needed."""
+    badness = []
+    for samples in (segment.decided_samples(), segment.samples()):
+        step = step_of_size(samples, num_bytes, segment.coarser, segment.bounds)
+        errors = sum_at(samples, step, segment.coarser)
+        badness.append(errors.active_error * errors.all_error)
+    return badness[0] < CLEARLY_BETTER * badness[1]
+
+
+def _first(segment: SegmentEncoder, num_bytes: int) -> Found:
+    """The chunks in the modes that cost least by estimates, counted at about the step that they need."""
+    step = step_of_size(segment.samples(), num_bytes, segment.coarser, segment.bounds)
+    for _ in range(DECISIONS):
+        decided_at = step
+        segment.decide(step)
+        step = step_of_size(segment.decided_samples(), COUNT_AIM * num_bytes, segment.coarser, segment.bounds)
+        if abs(math.log(step / decided_at)) < SAME_MODE:
+            break
+    return _counted(segment, num_bytes, step, segment.coarser)
+
+
+def _plan(segment: SegmentEncoder, num_bytes: int) -> Plan:
+    """The file with all layers that pay by estimates."""
+    first = _first(segment, num_bytes)
+    if segment.coarser == 1:
+        return Plan.of(first, num_bytes, segment.bounds)
+    plan = _evened(segment, num_bytes, first)
+    return plan if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, plan)
+
+
+def _counted(segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, noise_step: float = 0.0) -> Found:
+    """Counted chunks at a step, or at one at which their size is closer to that allowed.
+
+    With low rank much closer: rank and size jump with the step, which no estimate knows.
+    """
+    for _ in range(COUNTS):
+        chunks = segment.encode(step, coarser, noise_step, only_size=True)
+        one = Found(coded=chunks, step=step, coarser=coarser, noise_step=noise_step)
+        close = CLOSE_WITH_RANK if any(chunk.mode.with_rank for chunk in chunks) else CLOSE
+        if abs(math.log(one.num_bytes / num_bytes)) < close:
+            break
+        step = one.step_of_size(num_bytes, segment.bounds)
+    return one
+
+
+def _evened(segment: SegmentEncoder, num_bytes: int, first: Found) -> Plan:
+    """The chunks whose error over all cells is about that of an even coder, with the finest step.
+
+    Where those of the mode counted `first` have more, either cells without signal have less coarse steps, or a noise
+    layer holds them.
+    """
+    bounds, samples = segment.bounds, first.samples
+    own = Plan.of(first, num_bytes, bounds)
+    step = step_of_size(segment.samples(), SPARE * num_bytes / first.bytes_factor, 1, bounds)
+    if own.all_error <= sum_at(segment.samples(), step, 1).all_error:
+        return _with_noise(segment, num_bytes, own.all_error, first, CLEARLY_FINER * own.step) or own
+    even = _in_modes(segment, segment.plain_modes(), num_bytes)
+    allowed = even.all_error * 10 ** (EVEN_DB / 10)
+    if own.all_error <= allowed:
+        return _with_noise(segment, num_bytes, own.all_error, first, CLEARLY_FINER * own.step) or own
+    error_factor = first.all_error / sum_at(samples, first.step, first.coarser).all_error
+    for coarser in (3, 2, 1):
+        share = math.log(coarser) / math.log(segment.coarser)
+        factor = first.bytes_factor**share * even.found.bytes_factor ** (1 - share)
+        step = step_of_size(samples, num_bytes / factor, coarser, bounds)
+        if coarser == 1 or error_factor * sum_at(samples, step, coarser).all_error <= allowed:
+            break
+    noisy = _with_noise(segment, num_bytes, allowed, first, step)
+    if noisy is not None:
+        return noisy
+    while coarser > 1:
+        plan = Plan.of(_counted(segment, num_bytes, step, coarser), num_bytes, bounds)
+        if plan.all_error <= allowed * CLOSE_ERROR:
+            return plan
+        coarser -= 1
+    if segment.decide(step, 1):  # modes were chosen for cells without signal that count less
+        size = COUNT_AIM * num_bytes / even.found.bytes_factor
+        step = step_of_size(segment.decided_samples(), size, 1, bounds)
+    return Plan.of(_counted(segment, num_bytes, step, 1), num_bytes, bounds)
+
+
+def _in_modes(segment: SegmentEncoder, modes: list[ChunkMode], num_bytes: int) -> Plan:
+    """The chunks in given modes, all cells alike."""
+    before = segment.modes()
+    segment.take_modes(modes)
+    step = step_of_size(segment.mode_samples(), num_bytes, 1, segment.bounds)
+    plan = Plan.of(_counted(segment, num_bytes, step, 1), num_bytes, segment.bounds)
+    segment.take_modes(before)
+    return plan
+
+
+def _with_noise(
+    segment: SegmentEncoder, num_bytes: int, allowed: float, first: Found, coarsest_step: float
+) -> Plan | None:
+    """The chunks with a noise layer and no more error than allowed; None where they need a step coarser than that."""
+    if "noise layer" in segment.without:
+        return None
+    factors = _Factors(signal_bytes=first.bytes_factor)
+    noise_step, step = _noise_steps(segment, num_bytes, allowed, first, factors)
+    for _ in range(NOISE_COUNTS):
+        if not noise_step or step >= coarsest_step:
+            return None
+        trial = _counted(segment, num_bytes, step, 0, noise_step)
+        signal, noise = sum_at(first.samples, trial.step, 0), sum_at(segment.noise_samples(), noise_step, 1)
+        noise_bytes = sum(chunk.draft.noise_bytes for chunk in trial.coded)
+        factors = _Factors(
+            signal_bytes=(trial.num_bytes - noise_bytes) / signal.num_bytes, noise_bytes=noise_bytes / noise.num_bytes,
+            error=trial.all_error / noise.all_error,
+        )  # fmt: skip
+        noise_step, step = _noise_steps(segment, num_bytes, allowed, first, factors)
+        if not noise_step:
+            return None
+        # bytes of the noise that an estimate mistakes are the signal's
+        if abs(math.log(noise_step / trial.noise_step)) * noise_bytes < SAME_NOISE * (num_bytes - noise_bytes):
+            break
+    if step >= coarsest_step:
+        return None
+    left = sum_at(segment.noise_samples(), noise_step, 1).all_error
+    plan = Plan.at(trial, step, noise_step, left / noise.all_error)
+    return plan if plan.all_error <= allowed * CLOSE_ERROR else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Factors:
+    """Bytes of the signal and of the noise layer, and the error that this leaves, in estimated ones."""
+
+    signal_bytes: float
+    noise_bytes: float = 1.0
+    error: float = 1.0
+
+
+def _noise_steps(
+    segment: SegmentEncoder, num_bytes: int, allowed: float, first: Found, factors: _Factors
+) -> tuple[float, float]:
+    """Steps of a noise layer that leaves the error allowed, and of the signal; 0 where there is no room for one.
+
+    The noise has more bytes where the signal's step would be finer than 1 / NOISE_STEPS of its own.
+    """
+    noise, bounds = segment.noise_samples(), segment.bounds
+
+    def signal_step(noise_step: float) -> float:
+        left = num_bytes - factors.noise_bytes * sum_at(noise, noise_step, 1).num_bytes
+        return step_of_size(first.samples, max(left, 1) / factors.signal_bytes, 0, bounds)
+
+    enough = step_of_error(noise, NOISE_SHARE * allowed / factors.error, bounds, _all_error)
+    if factors.noise_bytes * sum_at(noise, enough, 1).num_bytes > MOST_SHARE * num_bytes:
+        return 0.0, 0.0
+    noise_step, step = enough, signal_step(enough)
+    low = math.log(step_of_size(noise, MOST_SHARE * num_bytes / factors.noise_bytes, 1, bounds))
+    high = math.log(enough)
+    for _ in range(NOISE_TRIALS):
+        middle = math.exp((low + high) / 2)
+        one = signal_step(middle)
+        if middle > NOISE_STEPS * one:
+            noise_step, step, high = middle, one, math.log(middle)
+        else:
+            low = math.log(middle)
+    return noise_step, step
+
+
+def _all_error(sample: CellSample, step: float) -> float:
+    return sample.at(step, 1).all_error
+
+
+def _over_range(segment: SegmentEncoder, num_bytes: int, plan: Plan) -> Plan:
+    """The chunks after a DCT of the ranges, all cells alike, where that is better in active cells and over all."""
+    errors = []
+    for samples in (segment.samples(), segment.samples_over_range()):
+        step = step_of_size(samples, num_bytes, 1, segment.bounds)
+        errors.append(sum_at(samples, step, 1).all_error)
+    by_cell = plan.active_error / segment.active_share, plan.all_error
+    if OVER_RANGE_LOSES * errors[1] / max(errors[0], LEAST_ERROR) * max(by_cell) > min(by_cell):
+        return plan
+    other = _in_modes(segment, segment.modes_over_range(), num_bytes)
+    return other if other.all_error < plan.all_error and other.active_error < plan.active_error else plan
