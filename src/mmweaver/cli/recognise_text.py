@@ -33,10 +33,8 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
         text.append(f"  on generated people who were held out: {expected['balanced_accuracy']:.3f}")
     text += confusion_lines(scores)
     far = scores["distance"]
-    text.append(
-        f"  from generated windows: {far['features_far']:.0%} of {far['features']} features are far off,"
-        f" {far['windows_outside']:.0%} of windows are unlike any"
-    )
+    compared = f"{far['features_far']:.0%} of {far['features']} features are far off, " if far["features"] else ""
+    text.append(f"  from generated windows: {compared}{far['windows_outside']:.0%} of windows are unlike any")
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

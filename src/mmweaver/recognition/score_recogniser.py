@@ -67,9 +67,10 @@ def warning(found: dict[str, Any]) -> str | None:
     if found["features_far"] > MOST_FAR or found["windows_outside"] > MOST_OUTSIDE:
         largest = ", ".join(found["largest"][:3])
         named = f" (most of all {largest})" if largest else ""
+        features = f"{found['features_far']:.0%} of the features are far off{named} and " if found["features"] else ""
         return (
-            f"the recordings lie outside what was generated: {found['features_far']:.0%} of the features are far off"
-            f"{named} and {found['windows_outside']:.0%} of the windows are unlike any; check radar,"
+            f"the recordings lie outside what was generated: {features}"
+            f"{found['windows_outside']:.0%} of the windows are unlike any; check radar,"
             " mount and sentences, or name the recordings as `unlabelled`; expect less than the score on generated"
             " people says"
         )
