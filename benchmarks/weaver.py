@@ -1,4 +1,4 @@
-"""Photo and sentence -> cube: the network beside physics, in one run, in the same room with the same motion.
+"""Photo and sentence -> cube: the network and physics, in one run, in the same room with the same motion.
 
 Both are warm: the room is prepared or encoded once and kept, as it is in use. Needs weights of `mmweaver train`.
 Writes results/benchmark/weaver.json in the project's results schema and prints the same as a table.
@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -20,7 +21,7 @@ import torch
 from measuring import RESULTS, report
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PoseSequence
+from mmweaver.core.records import PoseSequence, RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.generate import Weaver
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
@@ -28,7 +29,7 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import FIRST_ORDER, Propagation
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
 NUM_FRAMES, ROUNDS = 20, 15
@@ -66,9 +67,14 @@ def costs(weights: Path, *, with_physics: bool) -> dict[str, float]:
         "weaver_encode_room": lambda: LearnedRoom(network, scene, config),
     }
     if with_physics:
-        simulator = Simulator(scene, config, propagation=AS_PUBLISHED)
-        steps["physics_motion_to_cube"] = lambda: radar_cube(simulator.run(pose, num_frames=NUM_FRAMES, seed=0).adc)
+        for name, propagation in (("physics", Propagation(clutter=True)), ("first_order", FIRST_ORDER)):
+            simulator = Simulator(scene, config, propagation=propagation)
+            steps[f"{name}_motion_to_cube"] = partial(_simulated, simulator, pose)
     return least(steps)
+
+
+def _simulated(simulator: Simulator, pose: PoseSequence) -> RadarCube:
+    return radar_cube(simulator.run(pose, num_frames=NUM_FRAMES, seed=0).adc)
 
 
 def peak_memory_gb(weights: Path) -> float:
