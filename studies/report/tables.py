@@ -100,7 +100,6 @@ CODEC_SECONDS = PivotTable(
 PHYSICS = MatrixTable(
     sources=("benchmark/physics",), corner="what", prefixes=(("measured", ""),),
     lines=(
-        ("help_wall_s", "`mmweaver --help`, wall", "{metric:.2f} s"),
         ("command_wall_s", "`mmweaver generate --demo`, imports and pictures included, wall", "{metric:.1f} s"),
         ("command_peak_memory_gb", "its peak memory", "{metric:.2f} GB"),
         ("physics_command_wall_s", "the same with `--method physics`", "{metric:.1f} s"),
