@@ -325,11 +325,6 @@ def finite(values: np.ndarray) -> np.ndarray:
     return values
 
 
-def frames_of_chunk(data: bytes) -> int:
-    """Number of frames of a chunk, of its first bytes."""
-    return PREFIX.unpack_from(data)[0]
-
-
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
     coarser, finer, version = unpack_steps(coarse, is_version_3=not flags & IS_NEW)

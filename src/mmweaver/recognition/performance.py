@@ -4,7 +4,7 @@ Tempo, amplitude and sway belong to the person, and vary less between what one p
 same person stands in the same place before the same radar for every activity, so that none of these tells the label.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -258,11 +258,6 @@ def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence
             [np.repeat(joints_m[:1], len(before), axis=0), joints_m, np.repeat(joints_m[-1:], len(after), axis=0)]
         ),
     )
-
-
-def prior_values(prior: PerformancePrior) -> dict[str, object]:
-    """The prior as JSON."""
-    return {one.name: getattr(prior, one.name) for one in fields(prior)}
 
 
 def pelvis_distance_m(pose: PoseSequence) -> np.ndarray:

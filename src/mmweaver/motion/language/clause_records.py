@@ -20,6 +20,9 @@ _WAYS = {
     **{side: f" to the {side}" for side in _ONE}, "towards": " towards the radar", "pacing": " to and fro",
     "circle": " in a circle", "spot": " on the spot",
 }  # fmt: skip
+_WORSE = (DONE, APPROXIMATED, NOT_DONE)
+_LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_STEM = 4
 
 
 def note_what_is_not_shown(
@@ -92,11 +95,6 @@ def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
     for number, text in clauses.items():
         message = message.replace(repr(text), repr(own_words[number] or given_text.strip()))
     return message
-
-
-_WORSE = (DONE, APPROXIMATED, NOT_DONE)
-_LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
-_STEM = 4
 
 
 def _without_repeats(hows: list[str]) -> list[str]:

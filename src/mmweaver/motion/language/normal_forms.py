@@ -6,7 +6,6 @@ from collections.abc import Callable
 _OWN = r"(?:(?:his|her|its|their|the|both|a|an|one|my) )*"
 _SIDE = r"(?:left|right)"
 _CLOCK = r"(?:(?:counter|anti)[- ]?)?clock[- ]?wise"
-_WALK = r"(?:walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging)"
 _HOLDING = r"drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?"
 _MOTION = r"(?:motions?|movements?|gestures?|moves?|exercises?)"
 

@@ -89,14 +89,9 @@ class ClauseRecord:
         """What became of it, as it is said to the user."""
         if self.status == NOT_DONE:
             return f"{self.clause!r} is not done: {self.how}"
-        own = self.how.startswith(repr(self.clause))
-        return (
-            self.how
-            if own
-            else f"{self.clause!r} {self.how}"
-            if self.how.startswith("is ")
-            else f"in {self.clause!r}, {self.how}"
-        )
+        if self.how.startswith(repr(self.clause)):
+            return self.how
+        return f"{self.clause!r} {self.how}" if self.how.startswith("is ") else f"in {self.clause!r}, {self.how}"
 
     def lowered_to(self, status: str, how: str) -> "ClauseRecord":
         """The record with a worse status, or the same one with one more reason."""

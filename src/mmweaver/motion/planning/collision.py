@@ -32,10 +32,8 @@ _SHIN_M = 0.45  # height of foot and shin of somebody who sits
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
 _SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no mattress
 _MOST_POINTS = 34_000
-_LOW_M, _LOW_DOWN_M = (
-    0.64,
-    (0.05, 0.1, 0.15, 0.2, 0.25),
-)  # beds and low tables are solid: points are added at these depths below
+_LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
+_LOW_DOWN_M = (0.05, 0.1, 0.15, 0.2, 0.25)
 _WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
 _THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
 # The part of the room that is tabulated: what lies farther is out of any radar's window that the floor map covers.
