@@ -41,7 +41,7 @@ from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.receiver import IDEAL, Receiver
 from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
-from mmweaver.paths.static_paths import PreparedRoom, scattered_paths
+from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, scattered_paths
 from mmweaver.paths.visibility import Visibility
 
 NUM_FRAMES, STATIC_PATHS, FACES, OCCLUDED, MOVING_PATHS = 20, 8300, 5, 400, 900
@@ -60,7 +60,9 @@ def synthetic_room(rng: np.random.Generator) -> PreparedRoom:
             material="plasterboard",
         )  # fmt: skip
         reflectors.append(SpecularReflector(plane=plane, offset_m=-3.5))
-    return PreparedRoom(AWR1843, reflectors, scattered_paths(place, amplitude, Interaction.DIFFUSE, AWR1843))
+    return PreparedRoom(
+        AWR1843, reflectors, scattered_paths(place, amplitude, Interaction.DIFFUSE, AWR1843), FIRST_ORDER
+    )
 
 
 def synthetic_motion(rng: np.random.Generator, clock: FrameClock) -> TracedMotion:

@@ -27,6 +27,7 @@ from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
 from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.static_paths import FIRST_ORDER
 from mmweaver.paths.static_paths_store import room_of
 from mmweaver.paths.visibility import Visibility
 from mmweaver.verification import verify
@@ -111,7 +112,7 @@ def _write_geometry(folder: Path, config: RadarConfig) -> None:
         "face": np.broadcast_to(np.eye(4, 3), (2, 4, 3)).copy(),
         "face_half_m": np.ones((2, 2)),
     }  # fmt: skip
-    room = room_of(arrays, [["wall", "plaster"], ["floor", "wood"]], config)
+    room = room_of(arrays, [["wall", "plaster"], ["floor", "wood"]], config, FIRST_ORDER)
     nodes = len(FrameClock(config).node_s)
     joints_m = rng.normal(size=(2, 22, 3)).astype("f4")
     seen = Visibility(

@@ -32,7 +32,9 @@ def simulator() -> Simulator:
 
 
 def _replayed(simulator: Simulator, device: str, impairments: Impairments, realization: int = 0) -> np.ndarray:
-    room = room_of(room_arrays(simulator.room), json.loads(json.dumps(room_words(simulator.room))), AWR1843)
+    room = room_of(
+        room_arrays(simulator.room), json.loads(json.dumps(room_words(simulator.room))), AWR1843, AS_PUBLISHED
+    )
     joints, seen = simulator.trace(POSE, num_frames=FRAMES, seed=SEED)
     sizes = {"points": seen.skin.shape[1], "faces": seen.over_faces.shape[1], "ghosts": seen.over_faces.shape[2]}
     seen = Visibility.unpacked(seen.packed(), **sizes, static_paths=seen.occluded.shape[1])
@@ -96,13 +98,13 @@ import numpy as np
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.resynthesis import TracedMotion, Resynthesis
 from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.static_paths import PreparedRoom
+from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom
 from mmweaver.paths.visibility import Visibility
 from tests.rooms import STANDING_M
 
 vertex = np.ones((1, 3))
 paths = StaticPaths.of(np.ones(1, complex), np.full((1, 3, 4), 4.0), vertex, vertex, Interaction.DIFFUSE)
-room = PreparedRoom(AWR1843, [], paths)
+room = PreparedRoom(AWR1843, [], paths, AS_PUBLISHED)
 seen = Visibility(skin=np.ones((2, 800), bool), over_faces=np.zeros((2, 0, 200), bool), occluded=np.zeros((2, 1), bool))
 joints = np.array(list(STANDING_M.values()), float) + np.array([0.0, 2.0, -1.0])
 joints = np.broadcast_to(joints, (2, 3, 22, 3))

@@ -15,7 +15,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 
-PLAN_VERSION = 2
+PLAN_VERSION = 3  # 2: signals of first order, one reflection coefficient a wall, no clutter
 RADAR_FILE = "radar.json"  # the radar with its range window, in the root of a data set
 # The activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {

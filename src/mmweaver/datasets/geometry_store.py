@@ -9,7 +9,7 @@ No ray caster is needed to read it. Reference: decision 93.
 """
 
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -26,7 +26,7 @@ from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import STATIC_KINDS, Interaction
-from mmweaver.paths.static_paths import PreparedRoom
+from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom, Propagation
 from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
 from mmweaver.paths.visibility import Visibility
 
@@ -44,7 +44,7 @@ ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
 def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[TracedSequence, ...]) -> None:
     """Puts all of it below a room's Zarr group."""
     below = group.create_group(GEOMETRY)
-    below.attrs.update({"skin": skin_mark()})
+    below.attrs.update({"skin": skin_mark(), "propagation": asdict(geometry.room.propagation)})
     if sequences:
         axes = ("sequence", "frame", "node", "joint", "axis")
         _put(below, "node_joints_m", np.stack([sequence.node_joints_m for sequence in sequences]), axes)
@@ -162,7 +162,21 @@ class StoredGeometry:
             words = group.attr("faces", list)
             group.check_shape("mirrored_way_m", (self.config.num_tx, self.config.num_rx), ("tx", "rx"))
             _check_room(group, arrays, words)
-            return room_of(arrays, words, self.config)
+            return room_of(arrays, words, self.config, self._propagation)
+
+    @property
+    def _propagation(self) -> Propagation:
+        """Which paths the rooms have; sets of before this was kept do not say."""
+        known = {one.name: type(one.default) for one in fields(Propagation)}
+        if "propagation" not in self._arrays.attrs:
+            return AS_PUBLISHED
+        kept = self._arrays.attr("propagation", dict)
+        if {name: type(value) for name, value in kept.items()} != known:
+            raise InputError(
+                f"{self.files.folder} is damaged, or of another version of mmweaver: its propagation is {kept!r}; make"
+                " it again"
+            )
+        return Propagation(**kept)
 
 
 def _check_room(group: ZarrFolder, arrays: dict[str, np.ndarray], words: list[Any]) -> None:

@@ -15,7 +15,7 @@ from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.radar_equation import pattern_towards_db
-from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom, RayTracedRoom
+from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -57,16 +57,15 @@ class SceneTensors(TensorRecord):
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
         camera = resized(grid.intrinsics, IMAGE_COLUMNS, IMAGE_ROWS)
         view = np.ix_(rows, columns)
-        points = _points(room or RayTracedRoom(scene, config, propagation=AS_PUBLISHED), scene)
-        planes = _planes(scene, config)
+        room = room or RayTracedRoom(scene, config, propagation=FIRST_ORDER)
         return cls(
             image=_tensor(_image(grid, scene, view)),
             depth_m=_tensor(np.nan_to_num(grid.depth_m[view])),
-            **points,
+            **_points(room, scene),
             camera_from_radar=_tensor(scene.radar_from_camera.T),
             camera_m=_tensor(scene.radar_pose.seen(np.zeros(3))),
             camera=_tensor(np.array([camera.fx, camera.fy, camera.cx, camera.cy])),
-            **planes,
+            **_planes(scene, room),
         )  # fmt: skip
 
 
@@ -92,9 +91,10 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
 
 def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
     """The strongest static paths of the photographed room, each as a scatterer where it appears."""
-    config, level = room.config, room.paths.amplitude.abs().numpy()
+    config, first = room.config, room.of_first_order
+    level = first.amplitude.abs().numpy()
     order = np.argsort(-level)[:NUM_POINTS]
-    paths = room.paths[torch.from_numpy(order)]
+    paths = first[torch.from_numpy(order)]
     distance = np.maximum(paths.length_m.mean(dim=(1, 2)).numpy() / 2, 0.1)
     towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m).numpy()
     loss_db = pattern_towards_db(_tensor(towards[:, [0, 2]]), config).numpy()
@@ -121,7 +121,7 @@ def _padded(values: np.ndarray, count: int) -> np.ndarray:
     return np.concatenate([values, np.zeros((NUM_POINTS - count, *values.shape[1:]))])
 
 
-def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
+def _planes(scene: Scene, room: PreparedRoom) -> dict[str, Tensor]:
     """The floor and the largest faces, the largest first; rows of zeros where there are fewer."""
     faces = sorted(scene.planes, key=lambda plane: (plane.kind != "floor", -math.prod(plane.half_size_m)))[:NUM_PLANES]
     centre, axes = np.zeros((NUM_PLANES, 3)), np.tile(np.eye(3), (NUM_PLANES, 1, 1))
@@ -131,8 +131,11 @@ def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
         centre[index], half[index] = plane.centre_m, plane.half_size_m
         axes[index] = np.stack([plane.axis_u, plane.axis_v, plane.normal])
         features[index] = _plane_features(plane)
-        reflector = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
-        reflection[index] = np.abs(reflector.coefficient(REFLECTION_COS, config.centre_frequency_hz)) ** 2
+        reflector = SpecularReflector(
+            plane=plane, offset_m=float(plane.normal @ plane.centre_m), is_rough=room.propagation.fine_roughness
+        )
+        each = [reflector.coefficient(REFLECTION_COS, one) for one in room.frequencies_hz]
+        reflection[index] = np.mean(np.abs(each) ** 2, axis=0)
     return {
         "plane_centre_m": _tensor(centre),
         "plane_axes": _tensor(axes),

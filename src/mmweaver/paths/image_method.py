@@ -128,8 +128,11 @@ def specular_reflectors(
             facing.append(face)
     facing.sort(key=lambda face: -face.area_m2)
     faces = facing[:MAX_REFLECTORS]
-    if not hidden:
-        return faces
+    return with_faces_before(faces) if hidden else faces
+
+
+def with_faces_before(faces: list[SpecularReflector]) -> list[SpecularReflector]:
+    """Faces, each hidden where another one lies right before it."""
     return [replace(face, before=tuple(one for one in faces if one.is_before(face))) for face in faces]
 
 

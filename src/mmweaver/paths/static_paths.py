@@ -41,10 +41,11 @@ class Propagation:
     hidden_faces: bool = True  # whether a face right before another, as a locker's door or a window, takes its place
 
 
-# What the network is given of a room: of the orders that it has learned.
-FIRST_ORDER = Propagation(bounces=1, slab_echoes=1, through_walls=False, fine_roughness=False, hidden_faces=False)
-# What the network has learned from, and what studies published before there was a second order were computed with.
-AS_PUBLISHED = replace(FIRST_ORDER, straight_edges=False)
+FIRST_ORDER = Propagation(bounces=1)  # what the network learns, and what data sets with geometry keep
+# What studies published before there was a second order were computed with, and data sets kept.
+AS_PUBLISHED = replace(
+    FIRST_ORDER, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False, hidden_faces=False
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,16 +101,27 @@ class PreparedRoom:
     """
 
     def __init__(
-        self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths,
-        propagation: Propagation | None = None,
+        self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths, propagation: Propagation
     ):  # fmt: skip
-        self.config, self.reflectors, self.paths = config, reflectors, paths
-        self.propagation = propagation or AS_PUBLISHED
+        self.config, self.reflectors, self.paths, self.propagation = config, reflectors, paths, propagation
 
     @cached_property
     def counts(self) -> dict[Interaction, int]:
-        """How many static paths are of which kind."""
+        """How many static paths of first order are of which kind."""
         return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
+
+    @property
+    def of_first_order(self) -> StaticPaths:
+        """The static paths of STATIC_KINDS, in their order."""
+        return self.paths[: sum(self.counts.values())]
+
+    @property
+    def frequencies_hz(self) -> np.ndarray:
+        """Those over which the power is averaged that faces and edges throw back."""
+        centre_hz, reach_hz = self.config.centre_frequency_hz, 0.4 * self.config.bandwidth_hz  # the window's weight
+        if self.propagation.slab_echoes == 1:
+            return np.array([centre_hz])
+        return np.linspace(centre_hz - reach_hz, centre_hz + reach_hz, 9)
 
     @cached_property
     def vertex_directions(self) -> tuple[np.ndarray, np.ndarray]:
@@ -197,21 +209,9 @@ class RayTracedRoom(PreparedRoom):
         share = np.zeros(len(wall.cos))
         for index, of, polarisation in wall.kinds(len(scene.material_names)):
             material = MATERIALS[scene.material_names[index]]
-            each = [
-                transmission(material, wall.cos[of], one, polarisation=polarisation) for one in self._frequencies_hz
-            ]
+            each = [transmission(material, wall.cos[of], one, polarisation=polarisation) for one in self.frequencies_hz]
             share[of] = np.mean(np.abs(each) ** 2, axis=0)
         return share
-
-    @property
-    def _frequencies_hz(self) -> np.ndarray:
-        """Those at which rough faces and edges are taken."""
-        centre_hz, reach_hz = self.config.centre_frequency_hz, 0.4 * self.config.bandwidth_hz  # the window's weight
-        return (
-            np.linspace(centre_hz - reach_hz, centre_hz + reach_hz, 9)
-            if self.propagation.slab_echoes > 1
-            else (np.array([centre_hz]))
-        )
 
     def _diffuse_share(self, scene: Scene, struck: "_Struck") -> np.ndarray:
         """Power of each patch that is not reflected as by a mirror: |S Gamma|^2 (effective roughness), or more."""
@@ -221,7 +221,7 @@ class RayTracedRoom(PreparedRoom):
             part = material.scattering**2
             if self.propagation.fine_roughness:
                 part = part + (1 - part) * material.fine_loss(struck.cos[of], self.config.centre_frequency_hz)
-            share[of] = part * mean_reflectivity(material, struck.cos[of], self._frequencies_hz, polarisation)
+            share[of] = part * mean_reflectivity(material, struck.cos[of], self.frequencies_hz, polarisation)
         return share
 
     def _specular(self) -> StaticPaths:
@@ -258,7 +258,7 @@ class RayTracedRoom(PreparedRoom):
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
         reflectivity = np.array(
             [
-                mean_reflectivity(MATERIALS[name], np.float64(1.0), self._frequencies_hz, "te")
+                mean_reflectivity(MATERIALS[name], np.float64(1.0), self.frequencies_hz, "te")
                 for name in scene.material_names
             ]
         )

@@ -12,9 +12,9 @@ import torch
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Plane
 from mmweaver.core.seeding import stream
-from mmweaver.paths.image_method import SpecularReflector
+from mmweaver.paths.image_method import SpecularReflector, with_faces_before
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
-from mmweaver.paths.static_paths import PreparedRoom, scattered_paths
+from mmweaver.paths.static_paths import PreparedRoom, Propagation, scattered_paths
 
 VECTORS = ("centre_m", "normal", "axis_u", "axis_v")
 
@@ -39,8 +39,10 @@ def room_words(room: PreparedRoom) -> list[list[str]]:
     return [[reflector.plane.kind, reflector.plane.material] for reflector in room.reflectors]
 
 
-def room_of(arrays: dict[str, np.ndarray], words: list[list[str]], config: RadarConfig) -> PreparedRoom:
-    """The room again, for the radar that it was prepared for."""
+def room_of(
+    arrays: dict[str, np.ndarray], words: list[list[str]], config: RadarConfig, propagation: Propagation
+) -> PreparedRoom:
+    """The room again, for the radar that it was prepared for, with its paths of first order."""
     place_m, amplitude = arrays["place_m"].astype(float), arrays["amplitude"].astype(float) @ np.array([1, 1j])
     parts, first = [], 0
     for kind, count in zip(STATIC_KINDS, arrays["count"], strict=True):
@@ -57,8 +59,11 @@ def room_of(arrays: dict[str, np.ndarray], words: list[list[str]], config: Radar
             kind=kind, material=material, half_size_m=(float(half[0]), float(half[1])),
             **dict(zip(VECTORS, vectors, strict=True)),
         )  # fmt: skip
-        reflectors.append(SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m)))
-    return PreparedRoom(config, reflectors, StaticPaths.cat(parts))
+        offset_m = float(plane.normal @ plane.centre_m)
+        reflectors.append(SpecularReflector(plane=plane, offset_m=offset_m, is_rough=propagation.fine_roughness))
+    if propagation.hidden_faces:
+        reflectors = with_faces_before(reflectors)
+    return PreparedRoom(config, reflectors, StaticPaths.cat(parts), propagation)
 
 
 def with_new_phases(room: PreparedRoom, seed: int) -> PreparedRoom:
