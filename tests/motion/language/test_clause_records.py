@@ -90,3 +90,15 @@ def test_a_part_that_is_understood_is_not_replaced_where_another_is_not():
 )
 def test_everyday_sentences(text: str, steps: list[tuple[str, str]]) -> None:
     assert [(step.lower, step.upper) for step in parse(text, in_part=True).steps] == steps
+
+
+def test_a_clause_is_the_part_between_two_links() -> None:
+    clauses = parse("a person does a right front lunge, then a left front lunge").clauses
+    assert [clause.clause for clause in clauses] == ["a person does a right front lunge", "a left front lunge"]
+    clauses = parse("a person paces back and forth while talking on the phone").clauses
+    assert [clause.clause for clause in clauses] == ["a person paces back and forth", "talking on the phone"]
+
+
+def test_where_and_how_long_need_no_other_words() -> None:
+    plan = parse("a woman walks to the window, fiddles the knob for three seconds and walks back", in_part=True)
+    assert plan.clauses[0].how == plan.clauses[-1].how == ""

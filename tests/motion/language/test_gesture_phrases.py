@@ -5,12 +5,17 @@ import pytest
 from mmweaver.motion.language.sentence import parse
 
 INSTRUCTIONS = {
+    "the right arm hangs straight, is lifted straight up and stays above the head": "raise_hold",
+    "the right arm is straight up, falls straight down and stays down": "lower_arm",
+    "a person holds the right hand before the chest, palm forward, and stretches it forward": "push_hand",
+    "both arms hang, both are lifted straight up and stay above the head": "raise_hold",
+    "a person draws one large clockwise circle before the body with the straight right arm": "draw_circle",
+    "a person covers the mouth with the right hand and yawns": "yawn",
     "a person lifts the right arm straight up and keeps it above the head": "raise_hold",
     "a person lets the right arm fall straight down": "lower_arm",
     "the right arm falls straight down and stays down": "lower_arm",
     "a person pushes the right palm forward from the chest": "push_hand",
     "the right hand returns to the chest": "pull_hand",
-    "a person draws one large clockwise circle before the body with the straight right arm": "draw_circle",
     "the straight right arm draws a large Z before the body": "draw_z",
     "a person claps three times before the chest": "clap",
     "a person raises the right hand from the elbow and lowers it twice": "knock_elbow",
@@ -63,3 +68,17 @@ def test_counts_and_hands_held_up_belong_to_the_exercise():
 def test_raising_and_lowering_is_still_a_raised_hand():
     (step,) = parse("a person raises the left hand").steps
     assert (step.upper, step.hand) == ("raise", "left")
+
+
+def test_a_limb_that_was_named_goes_on():
+    steps = parse("a person stretches the right arm straight forward, then the hand returns to the chest").steps
+    assert [(step.upper, step.hand) for step in steps] == [("arms_out", "right"), ("pull_hand", "right")]
+    (step,) = parse("a person raises the right hand from the elbow and down, twice without pause").steps
+    assert (step.upper, step.count) == ("knock_elbow", 2)
+
+
+def test_arm_and_leg_of_two_sides_are_no_exercise_of_one():
+    (step,) = parse("a person lifts the left arm and the right leg").steps
+    assert (step.lower, step.foot, step.upper, step.hand) == ("raise_leg", "right", "raise", "left")
+    steps = parse("a person does side lunges to the left and to the right").steps
+    assert [step.foot for step in steps] == ["left", "right"]

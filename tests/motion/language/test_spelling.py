@@ -17,3 +17,8 @@ def test_other_words_stay_as_they_are():
 def test_forms_of_other_verbs_are_no_slips():
     for word in ("talking", "cooking", "climbing", "wishing", "stirring", "swinging", "slides"):
         assert corrected_word(word) == ""
+
+
+def test_forms_of_words_in_phrases_are_no_slips():
+    for word in ("combing", "extension", "folded", "crosses"):
+        assert corrected_word(word) == ""

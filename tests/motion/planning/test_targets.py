@@ -9,6 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.placement import place
 from mmweaver.motion.planning.targets import without_targets
@@ -60,3 +61,18 @@ def test_without_a_photo_the_way_leads_anywhere_and_says_so():
     note = "for 'walks to the door': without a photo there is no door; the walk leads where there is room"
     assert plan.notes == (note,)
     assert without_targets(plan) == plan
+
+
+@pytest.mark.parametrize(
+    "text", ["a person points at the door", "a person faces the door", "a person waves to the door"]
+)
+def test_who_points_at_a_landmark_faces_it(text: str):
+    plan = plan_motion(text)
+    scene = dataclasses.replace(room(), landmarks=(DOOR,))
+    path = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)[0].path
+    end_s = np.array([plan.duration_s])
+    x, y = DOOR.position_m[:2] - path.position_m(end_s)[0]
+    assert np.angle(np.exp(1j * (path.facing_rad(end_s)[0] - np.arctan2(y, x)))) == pytest.approx(0, abs=0.2)
+    with pytest.raises(InputError, match="no door was found"):
+        place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)
+    assert any("no door to face" in note for note in without_targets(plan).notes)

@@ -27,6 +27,7 @@ _SMALL = words_in(
     """
 )
 _CONNECTIVES = words_in(", . ; : and then while before after until")
+_PAIRS = {("back", "forth"), ("up", "down"), ("to", "fro"), ("left", "right"), ("in", "out")}
 _LINKS = _CONNECTIVES | words_in("afterwards next finally")
 _UNDERFOOT = "walk jog sidestep limp stagger crawl leap stumble"
 _ON_FEET = words_in(_UNDERFOOT)
@@ -65,7 +66,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         f"""
         stand_up get_up kneel_up sit_up raise_leg jump leap hop hop_one_leg stairs pick_up stretch jumping_jacks carry
         stand sit march push_ups one_leg knock_elbow draw_circle draw_z reach jacket_off wave {_LIFTED} {_UNDERFOOT}
-        arm_circles breathe yawn kick look_around
+        arm_circles breathe yawn kick look_around lower_arm
         """,
     ),
     (
@@ -180,9 +181,12 @@ def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
     """
     found = list(_TOKEN.finditer(text.lower()))
     tokens = [one[0] for one in found]
-    for i in range(1, len(tokens)):  # "for a while" links nothing
-        tokens[i] = "_" if tokens[i - 1 : i + 1] == ["a", "while"] else tokens[i]
-    numbers, _ = _clause_of_each(tokens, records)
+    for i in range(1, len(tokens)):  # "for a while" and "back and forth" link nothing
+        pair = tuple(tokens[i - 1 : i + 2 : 2])
+        tokens[i] = (
+            "_" if tokens[i - 1 : i + 1] == ["a", "while"] or (tokens[i] == "and" and pair in _PAIRS) else tokens[i]
+        )
+    numbers = _of_whole_parts(tokens, records) or _clause_of_each(tokens, records)[0]
     words = {}
     for number in records:
         runs = [[*run] for own, run in groupby(range(len(tokens)), key=numbers.__getitem__) if own == number]
@@ -195,6 +199,18 @@ def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
             said += [text[found[run[0]].start() : found[run[-1]].end()]] if run else []
         words[number] = " ... ".join(said)
     return words
+
+
+def _of_whole_parts(tokens: list[str], records: dict[int, ClauseRecord]) -> list[int]:
+    """The number of the clause of each token where the sentence has as many parts between links as clauses; else []."""
+    numbers, part, is_open = [], -1, False
+    for token in tokens:
+        if token in _LINKS:
+            is_open = False
+        elif not is_open:
+            part, is_open = part + 1, True
+        numbers.append(max(part, 0))
+    return [sorted(records)[number] for number in numbers] if part + 1 == len(records) else []
 
 
 def _wholly_rewritten(
@@ -330,7 +346,8 @@ _ALIKE = tuple(
         "lie lie_down lie_on_seat recline get_up fall", "lunge side_lunge", "stand stand_up get_up kneel_up one_leg",
         "raise raise_hold arms_out arm_extension hands_up stretch limb_extension raise_leg knock_elbow pick_up",
         "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",
-        "wipe brush_teeth sweep stir", "turn twist", "kick raise_leg", "read text type", "throw punch", "carry walk",
+        "wipe brush_teeth sweep stir", "fall lower_arm", "stretch push_hand", "turn twist", "kick raise_leg",
+        "read text type", "throw punch", "carry walk",
     )
 )  # fmt: skip
 

@@ -37,8 +37,8 @@ from mmweaver.motion.language.lexicon import (
     TIMES,
 )
 from mmweaver.motion.language.modifiers import modifiers
+from mmweaver.motion.language.places import AIM, Place, place_of
 from mmweaver.motion.language.places import MARK as PLACE
-from mmweaver.motion.language.places import Place, place_of
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import GAITS, LEGS, facing_of, step_of, target_of
@@ -122,7 +122,7 @@ class ParsedClause:
         lower = "sidestep" if aside else last.lower
         self.steps.append(
             replace(last, lower=lower, direction=about.direction, count=count, speed=about.speed or last.speed,
-                    distance_m=about.distance_m, clauses=(*last.clauses, more.number))
+                    distance_m=about.distance_m, seconds=about.seconds, clauses=(*last.clauses, more.number))
         )  # fmt: skip
         self.forms.append("s")
 
@@ -139,7 +139,8 @@ class ParsedClause:
             other_way = {"direction": about.direction}
         else:
             return False
-        self.steps.append(replace(last, **other_way, count=about.count or last.count, clauses=(*last.clauses, number)))
+        self.steps.append(replace(last, **other_way, count=about.count or last.count, speed=about.speed or last.speed,
+                                  seconds=about.seconds, clauses=(*last.clauses, number)))  # fmt: skip
         self.forms.append("s")
         return True
 
@@ -344,7 +345,7 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return False
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
-    if _is_plain_noun(word, before, after_a_verb=bool(found)):
+    if _is_plain_noun(word, _before_adjectives(words, i) if found else before, after_a_verb=bool(found)):
         return True
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
@@ -354,6 +355,14 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
     # "walks a walk", not "walks to the left, turns around walk back"
     return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
+
+
+def _before_adjectives(words: list[Word], i: int) -> str:
+    """The word before word `i`, or before an adjective of it that follows an article: "a" of 'a heavy box'."""
+    at = i - 1
+    if at > 0 and words[at - 1].text in ("a", "an", "the", *OWN) and not (words[at].is_verb or words[at].text in OWN):
+        at -= 1
+    return words[at].text if at >= 0 else ""
 
 
 def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
@@ -366,7 +375,7 @@ def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
     return (
         (word.lemma == "seat" and word.form != "past")
         or (owned and word.lemma in ("phone", "text", "comb"))
-        or (word.form == "base" and word.lemma in ("box", "cook") and (owned or before in ("this", "that")))
+        or (word.form == "base" and word.lemma == "box" and (owned or before in ("this", "that")))
     )
 
 
@@ -470,7 +479,7 @@ def is_known(word: Word) -> bool:
         or text in TARGETS
         or text in PEOPLE
         or text in LEGS
-        or text.startswith(("arc", "deg", "from_", "on_", "fraction_", "rounds_"))
+        or text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_"))
         or text in ("onback", "onbelly", "highkick", "frontlunge", "reach_high")
         or text.replace(".", "").isdigit()
         or len(text) == 1

@@ -8,7 +8,7 @@ from mmweaver.motion.language.accounts import as_given, unaccounted
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
-from mmweaver.motion.language.lexicon import PRONOUNS
+from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.words import word_of
@@ -29,6 +29,8 @@ def note_what_is_not_shown(
     given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
 ) -> None:
     """Records what of each clause its steps do not show; sizes are looked for in the sentence: phrases lose them."""
+
+    steps = [part for step in steps for part in step.each]
 
     def say(number: int, how: str) -> None:
         if how not in records[number].how and records[number].status != NOT_DONE:
@@ -67,9 +69,11 @@ def in_the_given_words(
     for number in given:
         parts = [record for other, record in sorted(records.items()) if of_given[other] == number]
         words, status = own_words[number] or given_text.strip(), max((part.status for part in parts), key=_WORSE.index)
-        shown = ", then ".join(dict.fromkeys(_doing(s) for s in steps if number in {of_given[n] for n in s.clauses}))
+        every = [part for step in steps for part in step.each]
+        own = [step for step in every if number in {of_given[n] for n in step.clauses}]
+        shown = ", then ".join(dict.fromkeys(map(_doing, own)))
         hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
-        if roughly and status == DONE and shown and not _says(words, shown):
+        if roughly and status == DONE and shown and not _says(words, shown, own):
             status = APPROXIMATED
         if status == APPROXIMATED:
             is_said = any("shown as" in how or "no movement" in how for how in hows)
@@ -84,7 +88,8 @@ def in_the_given_words(
 def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
     numbers = tuple(dict.fromkeys(index[number] for number in step.clauses))
     words = ", ".join(clauses[number].clause for number in numbers) or step.clause
-    return replace(step, clauses=numbers, clause=words)
+    beside = None if step.beside is None else _in_own_words(step.beside, index, clauses)
+    return replace(step, clauses=numbers, clause=words, beside=beside)
 
 
 def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
@@ -124,12 +129,24 @@ def _stems(text: str) -> set[str]:
     return {word_of(word).lemma[:_STEM] for word in re.findall("[a-z0-9]+", text.lower())}
 
 
-def _says(words: str, shown: str) -> bool:
-    """Whether the words of a clause are those of what it is shown as: 'she kneels down', 'kneeling down'."""
-    return _stems(words) - {*_NO_WORDS} <= _stems(shown)
+def _says(words: str, shown: str, own: Sequence[Step]) -> bool:
+    """Whether the words of a clause are those of what it is shown as: 'she kneels down', 'kneeling down'.
+
+    Where it is done, how often and for how long, as its steps have it, need no other words.
+    """
+    kept = {word for word, kind in TARGETS.items() if any(kind in _where(step) for step in own)}
+    kept |= {word for word in SEATS if any(step.seat == word for step in own)}
+    if any(step.count or step.seconds for step in own):
+        kept |= {*NUMBERS, *TIMES, "times", "seconds"}
+    return _stems(words) - _NO_WORDS - _stems(" ".join(kept)) <= _stems(shown)
 
 
-_NO_WORDS = _stems(" ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their")))
+def _where(step: Step) -> tuple[str, ...]:
+    """The Landmark.kinds that a step goes to, is done at or faces."""
+    return step.target, step.facing, *(() if step.place is None else step.place.words.split())
+
+
+_NO_WORDS = _stems(" ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on")))
 
 
 def _doing(step: Step) -> str:
@@ -143,6 +160,7 @@ def _doing(step: Step) -> str:
     )
     limb = " with both hands" if step.hand == "both" and step.upper else limb
     way = _WAYS.get(step.direction, "") if step.moves or step.lower in _AIMED else ""
+    way = f" to the {step.target}" if step.moves and step.target else way
     if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
         way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
     upper = BY_KEY[step.upper].name if step.upper else ""

@@ -25,7 +25,7 @@ _WITH_ARMS = words_in(
 
 
 # Activities in which one hand or foot is not distinguished from the other.
-_WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms hips shrug stretch hands_up breathe")
+_WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms shrug stretch hands_up breathe")
 _TO_A_SIDE = words_in("sidestep side_lunge limb_extension lean arms_out arm_extension")
 _WITH_ONE_FOOT = words_in(
     """

@@ -36,9 +36,9 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(left|right) front(?:al)?[- ]lunges?\b|\bfront(?:al)?[- ]lunges? (?:with (?:the )?)?(left|right)(?: leg)?\b",
      r" frontlunge lunges \1\2_leg "),
     (r"\bfront(?:al)?[- ]lunges?\b", " frontlunge lunges "),
-    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) arm and {_OWN}(?:same |left |right )?leg"
+    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) arm and {_OWN}(?:same |\1 )?leg"
      r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
-    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) leg and {_OWN}(?:same |left |right )?arm"
+    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) leg and {_OWN}(?:same |\1 )?arm"
      r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
     (r"\b(left|right) limb extensions?\b", r" limb_extension \1_leg "),
     (r"\b(left|right|both) upper[- ]limbs? extensions?\b", r" arm_extension \1 arm "),
@@ -50,9 +50,12 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     # Gestures of one arm; the arm may be what acts: "the right arm falls straight down"
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:is lifted|is raised|rises|goes) straight up"
      r"(?:,? (?:and )?stays (?:up|there|above the head))?\b", r" raise_and_hold \1 \2 "),
+    (r"\bboth (arms|hands) (?:are lifted|are raised|rise|go) straight up(?:,? (?:and )?stay (?:up|there|above the head))?\b",
+     r" raise_and_hold both \1 "),
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:falls|sinks|drops|goes) (?:straight )?down"
      r"(?:,? (?:and )?stays down)?\b", r" lower_arm \1 \2 "),
-    (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) (?:is (?:stretched|pushed) )(?:straight )?(?:forwards?|ahead)\b",
+    (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) (?:is (?:stretched|pushed) )(?:straight )?(?:forwards?|ahead)\b"
+     r"(?:,? (?:and )?(?:the (?:left |right )?(?:arm|hand) |it )?stays straight\b)?",
      r" push_hand \1 hand "),
     (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) (?:returns|comes back|goes back) to (?:the|his|her) chest\b",
      r" pull_hand \1 hand "),
@@ -73,8 +76,10 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:draw(?:s|ing)?|writes?|makes?|traces?|paints?) (?:an? |the |one )?(?:large |big |letter )*[\"']?z[\"']?"
      rf"(?: in the air| before (?:the|his|her) body| in front of (?:the|his|her) body)*(?: with {_OWN}{_SIDE}(?:arm|hand))?(?!\w)",
      r" draw_letter_z \1 hand "),
-    (rf"\bcovers? {_OWN}mouth(?: with {_OWN}{_SIDE}hand)?\b", r" yawns \1 hand "),
-    (rf"\b(?:rais(?:es|ing)|lifts?) {_OWN}{_SIDE}(?:hand|forearm) from {_OWN}elbow(?: and (?:lowers|puts) it(?: down)?)?\b",
+    (rf"\bcovers? {_OWN}mouth(?: with {_OWN}{_SIDE}hand)?(?:,? (?:and|while) yawn(?:s|ing))?\b", r" yawns \1 hand "),
+    (rf"\byawn(?:s|ing)(?:,| and| while)+ cover(?:s|ing) {_OWN}mouth(?: with {_OWN}{_SIDE}hand)?\b", r" yawns \1 hand "),
+    (rf"\b(?:rais(?:es|ing)|lifts?) {_OWN}{_SIDE}(?:hand|forearm) from {_OWN}elbow"
+     r"(?: and (?:(?:lowers|puts) it(?: down)?|(?:back )?down(?: again)?))?\b",
      r" knock_elbow \1 hand "),
     # Housework and breath
     (r"\b(?:takes?|taking|pulls?|puts?) (?:off )?(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)(?: off)?\b",

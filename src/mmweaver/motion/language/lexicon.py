@@ -222,7 +222,7 @@ FILLERS = words_in(
     anything first about whole complete successive consecutive row close someone's person's man's user's woman's
     arm's drunk drunken tight careful recovery starting ending performing doing object thing things ball box
     book soup pot surface board plate food meal dish bowl handle screen keyboard computer laptop cloth
-    whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane waist breast
+    whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane objects waist breast
     breast-high chest-high hair teeth sink mirror newspaper magazine mail email towards_it it's reading_glasses
     tempo pose posture stance kind sort type_of lot music song hall quick-ish normal-speed relatively tiny huge
     bigger larger smaller greater instrument virtual fridge cupboard lamp shoes toilet bath shower bathroom

@@ -64,8 +64,8 @@ _PARTS = (
         activities=words_in(
             """
             twist lean bend bow hips dance golf cross_arms arms_out carry hands_up push push_hand pull_hand raise
-            pull stretch breathe cough yawn lie lie_down lie_on_seat recline fall get_up push_ups plank crawl stumble
-            raise_leg
+            pull stretch breathe cough yawn clap lie lie_down lie_on_seat recline fall get_up push_ups plank crawl
+            stumble raise_leg
             """
         ),
     ),
@@ -92,7 +92,7 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
     (r"(?:from )?side to side|from one side to the other", _goes_to_and_fro),
     (
         r"(?:to the )?left and (?:to the )?right(?! (?:hand|arm|leg|foot|fist|punch))",
-        lambda step: _goes_to_and_fro(step) or step.hand == "both",
+        lambda step: _goes_to_and_fro(step) or step.hand == "both" or bool(step.foot),
     ),
     (
         r"arms? (?:straight )?(?:up )?out(?:wards?)? (?:away )?(?:to|from)|away from (?:his|her|their|the) sides?",

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, RADAR, SEATS, SPEEDS, TARGETS, TIMES
+from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.words import Word
 
@@ -144,6 +145,8 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
     if text.startswith("fraction_"):
         _, part, whole = text.split("_")
         return replace(about, arc_deg=360.0 * int(part) / max(int(whole), 1))
+    if text.startswith(AIM):
+        return replace(about, facing=text.removeprefix(AIM))
     if text == "from_side":
         return replace(about, style="side")
     if text.startswith(("from_", "on_")) and "pushed" in texts and about.direction in ("", "away"):

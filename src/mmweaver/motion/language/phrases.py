@@ -127,6 +127,10 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      " cross_arms "),
     (r"\b(?:with |puts? |putting |places? |has |having )?(?:his |her |its |their |the |both )*(?:hands|arms)(?: are)? "
      r"(?:on|onto|at|to|in) (?:his |her |its |their |the )*(?:hips?|waist)\b", " hands_on_hips "),
+    (r"\b(?:with |puts? |putting |places? |has |having |holds? |holding |rests? )(?:his |her |its |their |the |one |a )*(left |right )?(?:hand|arm) "
+     r"(?:on|onto|at) (?:his |her |its |their |the )*(?:left |right )?(?:hips?|waist)\b", r" hands_on_hips one \1 hand "),
+    (r"\b(?:holds?|holding|puts?|putting|has|having) (?:a |the |his |her |their )?(?:mobile |cell |smart)?-?(?:phone|telephone)"
+     r" (?:to|at|against|on) (?:his |her |the |their )?(?:left |right )?ear\b", " phone "),
     (r"\bshrug(?:s|ging|ged)?(?: with)?(?: his| her| its| their| the)? shoulders\b", " shrugs "),
     (r"\b(?:in(?:to)? )?(?:an? )?t-? ?poses?\b", " arms_out "),
     (r"\b(?:stretch(?:es|ing|ed)?|hold(?:s|ing)?|spread(?:s|ing)?|extend(?:s|ing|ed)?|rais(?:es|ing|ed?)|lift(?:s|ing)?)"

@@ -28,13 +28,23 @@ _PATTERNS = (
       for relation, words in _RELATIONS.items()),
     (re.compile(rf"\b(?:at |about |some |around )*(?:a distance of )?{_NUMBER}(?P<half> and a half)? ?(?:m|met(?:er|re)s?)"
                 rf" (?:away|off|distant)?(?: ?(?:from|in front of|before|ahead of) (?:the )?(?:{'|'.join(RADAR)}))?{_END}"), "range"),
-    (re.compile(rf"\b(?:on|at|in) the (?P<object>left|right)(?: hand)?(?: side| half| corner| part)?"
+    (re.compile(rf"\b(?:on|at|in) the (?P<object>left|right)(?: hand(?= (?:side|half|corner|part)))?(?: side| half| corner| part)?"
                 rf"(?: of the (?:room|picture|photo|image|scene))?{_END}"), "side"),
     (re.compile(r"\bin the (?:middle|centre|center)(?: of the (?:room|picture|photo|image|scene|floor))?" + _END), "middle"),
     (re.compile(r"\b(?:in the background|(?:in|at) the back(?: of the (?:room|picture|scene))|at the (?:far|other) end(?: of the room)?)" + _END), "far"),
     (re.compile(rf"\b(?:in the foreground|(?:close to|near|next to|right in front of) (?:the )?(?:{'|'.join(RADAR)}))" + _END), "close"),
 )  # fmt: skip
 _ROOM = re.compile(rf"\b(?:in|inside|across|through|around) (?:the|a|his|her|their|an) ({_ROOMS})\b")
+
+
+_AIMED = re.compile(
+    r"\b((?:point|wav|turn|nod|bow|gestur)(?:e?s|e|ing|ed)?\b(?: (?!and\b|then\b|while\b)[a-z]+){0,4}? )(?:at|to|towards?)"
+    rf" (?:the |a |an |his |her |their ){_ADJECTIVES}({_OBJECT})\b"
+)
+_FACED = re.compile(
+    rf"\b(fac(?:es|e|ing)) (?:to |towards? )?(?:the |a |an |his |her |their ){_ADJECTIVES}({_OBJECT})\b"
+)
+AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
 
 
 @dataclass(frozen=True)
@@ -69,7 +79,9 @@ class Place:
 
 
 def mark_places(text: str) -> str:
-    """The sentence, in lower case, with a token for each place."""
+    """The sentence, in lower case, with a token for each place, and for what is faced or pointed at."""
+    for pattern in (_AIMED, _FACED):
+        text = pattern.sub(lambda found: f"{found[1]} {AIM}{TARGETS[found[2]]} ", text)
     for pattern, relation in _PATTERNS:
         text = pattern.sub(lambda found, relation=relation: f" {_token(found, relation)} ", text)
     return text

@@ -15,6 +15,7 @@ class Step:
 
     lower: str = "stand"  # key of a body activity
     upper: str = ""  # key of a hand activity, overlaid
+    beside: "Step | None" = None  # what the other hand does meanwhile: a hand activity, its hand and count
     hand: str = ""  # left | right | both | "" (chosen by the seed)
     foot: str = ""  # left | right | "": the leg that moves
     direction: str = (
@@ -30,7 +31,7 @@ class Step:
     place: Place | None = None  # where it is done, or the walk goes
     distance_m: float = 0.0  # how far a walk goes, where the sentence says so
     route_m: tuple[tuple[float, float], ...] = ()  # the corners (x, y) of a path that is given
-    facing: str = ""  # left | right | towards | away | ""
+    facing: str = ""  # left | right | towards | away | down | a Landmark.kind | ""
     seconds: float = 0.0  # the duration that the sentence gives
     pace: float = 1.0  # the person's tempo, relative to the usual one
     usual_hand: str = ""  # left | right: mostly used where the sentence names none
@@ -53,7 +54,13 @@ class Step:
         upper = BY_KEY[self.upper].name
         if self.upper == "raise":
             upper = {"both": "raising both hands", "": "hand raise"}.get(self.hand, f"{self.hand}-hand raise")
+        upper = upper if self.beside is None else f"{upper} and {self.beside.name}"
         return upper if self.lower == "stand" else f"{lower} and {upper}"
+
+    @property
+    def each(self) -> "tuple[Step, ...]":
+        """The step, and what the other hand does."""
+        return (self,) if self.beside is None else (self, self.beside)
 
     @property
     def moves(self) -> bool:

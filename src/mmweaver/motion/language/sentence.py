@@ -14,7 +14,7 @@ from mmweaver.motion.language.clause_records import in_own_words, in_the_given_w
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.left_out import may_be_missed, parse_with_less, says_more_of
-from mmweaver.motion.language.lexicon import OWN
+from mmweaver.motion.language.lexicon import OWN, RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -24,17 +24,26 @@ from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verbs import RECOVERING
+from mmweaver.motion.language.verbs import RECOVERING, words_in
 from mmweaver.motion.language.words import Word, words_of
 
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
+# Hand activities that leave the other arm free, and those of them that the head goes with.
+ONE_ARMED = words_in(
+    """
+    wave raise arms_out drink eat phone brush_teeth comb wipe write stir knock point hips reach raise_hold lower_arm
+    push_hand pull_hand draw_circle draw_z yawn knock_elbow arm_extension
+    """
+)
+AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
 # How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
 _EXACT, _LEAVING_OUT, _MISSING, _ROUGH = range(4)
 JUMPING = ("jump", "leap", "hop")
+_HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
@@ -167,7 +176,7 @@ def _parsed_clauses(
         parsed = rough or (parse_with_less(clause, is_first=not found) if leaving else parse_clause(clause))
         missed = None
         if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
-            parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
+            parsed.steps, parsed.forms = [_staying(parsed)], ["s"]
         every_clause.append(parsed)
         notes += parsed.notes
         status = APPROXIMATED if parsed.approximations else DONE
@@ -183,6 +192,16 @@ def _parsed_clauses(
     if not_done > sum(bool(parsed.steps) for parsed in every_clause):
         raise InputError(not_known(next(r.clause for r in records.values() if r.status == NOT_DONE)))
     return found, every_clause, records
+
+
+def _staying(parsed: ParsedClause) -> Step:
+    """The step of a clause whose verb moves nothing: 'meditates on the sofa for five seconds' sits there."""
+    about = parsed.about
+    lower = "stand" if not about.seat else "lie_on_seat" if about.seat == "bed" else "sit"
+    return Step(
+        lower=lower, seat=about.seat, place=about.place, seconds=about.seconds, facing=about.facing,
+        clause=parsed.text, clauses=(parsed.number,),
+    )  # fmt: skip
 
 
 def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
@@ -206,6 +225,10 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             found[-1].forms.append("s")
         elif other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
             found[-1].go_on(parsed)
+        elif other is None and _faces_next(found[-1].steps[-1], parsed):
+            facing = parsed.about.facing or "towards"
+            found[-1].steps.append(Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,)))
+            found[-1].forms.append("s")
         elif other is None and _once_more(found[-1].steps[-1], parsed):
             found[-1].steps.append(replace(found[-1].steps[-1], direction=_own_side(parsed), clauses=(parsed.number,)))
             found[-1].forms.append("s")
@@ -239,10 +262,17 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     return None
 
 
+def _faces_next(last: Step, parsed: ParsedClause) -> bool:
+    """Whether a clause without a verb is the next turn to something: 'turns to the window, then to the radar'."""
+    aimed = parsed.about.facing or any(word.text in RADAR for word in parsed.words)
+    return last.lower == "turn" and parsed.link in ("then", "and", "comma") and bool(aimed)
+
+
 def _once_more(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
-    return parsed.link == "then" and on_the_spot and parsed.about.direction in OPPOSITE
+    other_side = parsed.link == "and" and last.direction == OPPOSITE.get(parsed.about.direction)
+    return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
 
 
 def _own_side(parsed: ParsedClause) -> str:
@@ -254,7 +284,9 @@ def _own_side(parsed: ParsedClause) -> str:
 
 def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
-    about, in_turn = parsed.about, parsed.link in ("then", "comma")
+    about = parsed.about
+    aimed = parsed.link == "and" and not (about.hand or about.foot)  # "to the left and to the right"
+    in_turn = parsed.link in ("then", "comma") or aimed
     side = about.hand or about.foot or about.direction
     if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
@@ -368,7 +400,9 @@ def _in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
             in_turn = form == "s" and steps[-1].moves  # "walks forward lifts the arms"
-            together = form == "ing" or (_can_overlay(steps[-1], step) and not in_turn)  # "sits drinking water"
+            together = form == "ing" or (
+                _can_overlay(steps[-1], step, in_two=False) and not in_turn
+            )  # "sits drinking water"
             if together and not (leaving == _ROUGH and not _can_be_joined(steps[-1], step)):
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"
@@ -434,8 +468,8 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         return True
     compatible = _can_overlay(one, other)
     if parsed.link == "and":
-        if one.upper == "raise" and other.upper and {one.hand, other.hand} == {"left", "right"}:
-            return True  # one hand stays up; `overlay` refuses it
+        if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
+            return True  # one hand stays where it is
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             return one.lower == "sit" or before.form == parsed.form
         paces = any(step.count and step.moves for step in (one, other))
@@ -455,20 +489,50 @@ def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
     return parsed.link == "comma" and parsed.form == "ing" and before.form != "ing" and on_the_spot
 
 
-def _can_overlay(one: Step, other: Step) -> bool:
+def _can_overlay(one: Step, other: Step, *, in_two: bool = True) -> bool:
     lowers = [step.lower for step in (one, other) if step.lower != "stand"]
     uppers = [step.upper for step in (one, other) if step.upper]
-    return len(uppers) == 1 and len(lowers) <= 1 and not set(lowers) & ARMS_TAKEN
+    fits = len(uppers) == 1 or (in_two and len(uppers) == 2 and in_two_hands(one, other) is not None)
+    return fits and len(lowers) <= 1 and not set(lowers) & ARMS_TAKEN
+
+
+def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
+    """Two hand activities with a hand each, the one that the head goes with first; None where both need one hand.
+
+    A hand that the sentence leaves open is the other one's opposite, of two the right for the first.
+    """
+    if not {one.upper, other.upper} <= ONE_ARMED or one.beside is not None or other.beside is not None:
+        return None
+    unclear = one.clauses == other.clauses and not (one.hand and other.hand)  # "wiping or stirring with the right hand"
+    if unclear or "both" in (one.hand, other.hand) or (one.hand and one.hand == other.hand):
+        return None
+    hand = one.hand or OPPOSITE.get(other.hand, "right")
+    pair = replace(one, hand=hand), replace(other, hand=OPPOSITE[hand])
+    return pair[::-1] if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
 
 
 def overlay(one: Step, other: Step) -> Step:
-    """Both steps at once: legs of one, arms of the other. Raises InputError where both need the same limbs."""
+    """Both steps at once: legs of one, arms of the other, or an arm of each.
+
+    Raises InputError where both need the same limbs.
+    """
     if {one.lower, other.lower} <= {"stand"} and not (one.upper and other.upper):
         pass
     elif not _can_overlay(one, other):
         raise InputError(
             f"{one.name} and {other.name} cannot be shown at the same time; say 'then' to have one after the other"
         )
+    if one.upper and other.upper:
+        hands = in_two_hands(one, other)
+        assert hands is not None  # as `_can_overlay` found
+        first, second = hands
+        legs = one if one.lower != "stand" else other
+        together = overlay(
+            replace(legs, upper="", hand="", count=legs.count if legs.moves else 0), replace(first, lower="stand")
+        )
+        clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
+        beside = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
+        return replace(together, beside=beside, clause=f"{one.clause}, {other.clause}", clauses=clauses)
     lower = one if one.lower != "stand" or other.lower == "stand" else other
     upper = one if one.upper else other
     return replace(

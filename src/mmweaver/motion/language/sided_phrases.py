@@ -11,8 +11,25 @@ _TRUNK = rf"(?:{_OWN}(?:upper body|torso|trunk|body) )?"
 _GAIT = r"walks?|walking|goes|going|runs?|running|jogs?|jogging|moves|moving|paces|pacing|strolls|strolling"
 _WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
 
+_IN_FRONT = "(?:body|chest|face|head|belly|stomach|eyes|mouth|breast|nose)"
+_PALM = r"(?:,? (?:the |with the )?palm (?:facing )?forwards?)?"
+_STATE = (
+    r"(?:hangs?(?: straight)?(?: down)?(?: (?:at|beside|by) (?:the|his|her) (?:side|body))?|(?:is|are) straight (?:up|down|forwards?|ahead)"
+    rf"|(?:is|are) in front of (?:the|his|her) chest){_PALM}"
+)
+
 # Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
 SIDED_PHRASES: tuple[tuple[str, str], ...] = (
+    (rf"\bbefore ((?:his |her |its |their |the |my )(?:own )?{_IN_FRONT})\b", r"in front of \1"),
+    (r",? without (?:any |an? )?(?:pause|break|rest|stop|pausing|stopping|resting|interruption)s?\b(?: in between)?", " "),
+    # a limb that was named goes on: "stretches the right arm forward, then the hand returns to the chest"
+    (r"\b(left|right) (arm|hand)\b([^.]*?(?:,|;|\band|\bthen) )(?:the|this|that) (arm|hand)(?= [a-z]+s\b)", r"\1 \2\3the \1 \4"),
+    # how a limb is held before it moves: "the right arm hangs straight, is lifted straight up"
+    (rf"\b({_OWN}(?:left|right) (?:arm|hand)|both (?:arms|hands)) {_STATE}(?:(?:,|;|and|then|it|they|both) ?)+"
+     r"(?=(?:is|are|rises?|goes?|falls?|sinks?|drops?|returns?|comes?) )", r"\1 "),
+    (rf"\b(?:holds?|has|puts?|brings?) {_OWN}(left|right) (?:hand|palm) (?:in front of|at|to) (?:the|his|her|their) chest(?:, (?:the )?palm forwards?)?"
+     r"(?:,| and| then)+ (?:stretches|pushes|moves|extends) (?:it|the (?:hand|arm)) (?:straight )?(?:forwards?|out|ahead)\b",
+     r"pushes the \1 hand forward from the chest"),
     (rf"\b((?:turn|spin|rotat|pivot)[a-z]*(?: [a-z]+){{0,3}}?) in an? ({_CLOCK}) (?:direction|motion|manner|fashion|way)\b", r"\1 \2"),
     # the trunk
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b(?! (?:arm|hand|leg|foot|knee|elbow|wrist|hip|shoulder))", r" lean_over \1 "),

@@ -65,7 +65,7 @@ def corrected_word(word: str) -> str:
     ('forwards', '', '')
     """
     known = _known()
-    if len(word) < SHORTEST or word in known or word in OTHER_WORDS or word in _other_forms():
+    if len(word) < SHORTEST or {word, f"{word}s"} & known or word in OTHER_WORDS or word in _other_forms():
         return ""
     near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_edit_apart(word, other)]
     return near[0] if len(near) == 1 else ""
@@ -86,9 +86,13 @@ def _one_edit_apart(one: str, other: str) -> bool:
 def _known() -> frozenset[str]:
     """Every word that the parser knows in some form."""
     known = _forms({*ACTIVITY_OF_LEMMA, *GOING, *LIGHT}) | ALL_WORDS | set(IRREGULAR) | RECOVERING | words_in(_MORE)
-    for pattern, _ in (*GESTURE_PHRASES, *ACTIVITY_PHRASES):
-        known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
-    return frozenset(word for word in known if word.isalpha() and word.islower())
+    return frozenset(word for word in known | _of_patterns() if word.isalpha() and word.islower())
+
+
+def _of_patterns() -> set[str]:
+    """The words, and stems of words, that patterns of phrases are made of."""
+    patterns = " ".join(pattern for pattern, _ in (*GESTURE_PHRASES, *ACTIVITY_PHRASES))
+    return set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", patterns)))
 
 
 def _forms(verbs: Iterable[str]) -> frozenset[str]:
@@ -105,7 +109,7 @@ def _forms(verbs: Iterable[str]) -> frozenset[str]:
 
 @lru_cache(maxsize=1)
 def _other_forms() -> frozenset[str]:
-    return _forms(OTHER_VERBS)
+    return _forms({*OTHER_VERBS, *(word for word in _of_patterns() if len(word) > 2)})
 
 
 def forget_known_words() -> None:

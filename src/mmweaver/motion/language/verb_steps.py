@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
+from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import HOPPING, Step
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
@@ -88,7 +89,7 @@ def _goes_somewhere(step: Step, words: list[Word]) -> bool:
 
 
 def _in_place(step: Step, words: list[Word]) -> Step:
-    facing = facing_of(words)
+    facing = facing_of(words) or step.facing
     if step.upper in AIMED:
         facing = step.facing or (step.direction if step.direction in SIDES else "")
         facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
@@ -159,6 +160,8 @@ def target_of(words: list[Word]) -> str:
 
 def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     word, texts = words[at], {other.text for other in words}
+    if step.facing:
+        return replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
     facing = "towards" if texts & RADAR and step.direction != "away" else ""
     if step.direction == "away" or word.lemma == "face":
         facing = facing or step.direction or "towards"
@@ -264,6 +267,9 @@ def facing_of(words: list[Word]) -> str:
     for i, word in enumerate(words):
         if word.text in ("facing", "faces"):
             texts = {other.text for other in words[i + 1 : i + 4]}
+            aimed = [text for text in texts if text.startswith(AIM)]
+            if aimed:
+                return aimed[0].removeprefix(AIM)
             if texts & RADAR:
                 return "towards"
             return next((side for side in ("left", "right", "away") if side in texts), "")

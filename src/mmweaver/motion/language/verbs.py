@@ -104,9 +104,8 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **_all("sweep mop rake", "", "sweep"),
     **_all("vacuum hoover", "", "vacuum"),
     "jacket_off": ("", "jacket_off"),
-    **_all("cough sneeze", "", "cough"),
+    **_all("cough", "", "cough"),
     "breathe_deeply": ("", "breathe"),
-    "cook": ("", "stir"),
 }  # fmt: skip
 
 # Words that follow a push and only say that the person recovers.

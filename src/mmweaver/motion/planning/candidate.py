@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.records import Scene
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
 from mmweaver.motion.language.plan import MotionPlan, Step
@@ -41,7 +42,13 @@ from mmweaver.motion.planning.seating import (
     usable_seats,
     usual_variation,
 )  # fmt: skip
-from mmweaver.motion.planning.targets import goes_to_target, start_for_target, walk_along, walk_to_target
+from mmweaver.motion.planning.targets import (
+    faced_landmarks,
+    goes_to_target,
+    start_for_target,
+    walk_along,
+    walk_to_target,
+)
 from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
     Trajectory,
@@ -206,7 +213,7 @@ class CandidateSampler:
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
         if first.facing and _turns_the_body(first):
-            facing = _facing_rad(first.facing, spot) + float(self.rng.normal(0, 0.05))
+            facing = _facing_rad(first, spot, self.floor.scene) + float(self.rng.normal(0, 0.05))
         if self.heading_rad is not None:
             facing = self.heading_rad
         return Trajectory(
@@ -327,7 +334,7 @@ class CandidateSampler:
 
 def _turns_the_body(step: Step) -> bool:
     """Whether the body faces where the step says; an arm that points aside and a look leave the body as it is."""
-    return step.upper not in ("point", "look_around") or step.facing == "towards"
+    return step.upper not in ("point", "look_around") or step.facing not in ("left", "right", "down")
 
 
 def _changes_place(step: Step) -> bool:
@@ -387,12 +394,16 @@ def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
     return None
 
 
-def _facing_rad(facing: str, spot: Float[Array, "2"]) -> float:
-    """Heading of a body at `spot` (x, y) that faces left, right, towards or away from the radar."""
-    if facing in ("left", "right"):
-        return np.pi if facing == "left" else 0.0
+def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene) -> float:
+    """Heading of a body at `spot` (x, y) that faces left, right, towards or away from the radar, or a landmark."""
+    if step.facing in ("left", "right"):
+        return np.pi if step.facing == "left" else 0.0
+    aims = [np.asarray(mark.position_m[:2]) - spot for mark in faced_landmarks(step, scene)]
+    if aims:
+        x, y = min(aims, key=lambda aim: float(np.hypot(*aim)))
+        return float(np.arctan2(y, x))
     away = float(np.arctan2(spot[1], spot[0]))
-    return away if facing == "away" else away + np.pi
+    return away if step.facing == "away" else away + np.pi
 
 
 def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
@@ -404,7 +415,7 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
             trajectory.start_heading_rad = trajectory.heading_rad = trajectory.heading_rad + float(
                 trajectory.rng.choice([-1.0, 1.0]) * trajectory.rng.uniform(1.2, 2.2)
             )
-        heading = _facing_rad(step.facing, trajectory.position_m)
+        heading = _facing_rad(step, trajectory.position_m, trajectory.floor.scene)
     else:
         quarter = float(np.pi / 2 + trajectory.rng.normal(0, 0.08))
         about = float(trajectory.rng.choice([-1.0, 1.0]) * (np.pi - abs(trajectory.rng.normal(0, 0.06)) - 0.01))

@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene
+from mmweaver.motion.language.lexicon import TARGETS
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import (
@@ -51,17 +52,38 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
                 f" {what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
                 " right of and ahead of the radar) or a class mask (--classes)"
             )
+        if step.facing in TARGETS and not faced_landmarks(step, scene):
+            raise InputError(
+                f"for {step.clause!r}: no {step.facing} was found in the photo; {what_was_found(scene)}; give its"
+                f" position with --landmark {kinds_of(step.facing)[0]}=X,Y, or say another side to face"
+            )
+
+
+def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
+    """The landmarks that a step's body faces, if it faces one; seats among them."""
+    if step.facing not in TARGETS:
+        return []
+    found = [mark for mark in scene.landmarks if mark.kind in kinds_of(step.facing)]
+    seats = scene.seats if not found and step.facing in SEATS else ()
+    return found + [
+        Landmark(kind="seat", position_m=seat.position_m, approach_m=(0.0, 0.0), facing_rad=0.0) for seat in seats
+    ]
 
 
 def without_targets(plan: MotionPlan) -> MotionPlan:
     """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
     lost = [step for step in plan.steps if _goes_to_landmark(step)]
+    aimed = [step for step in plan.steps if step.facing in TARGETS]
     notes = tuple(
         f"for {step.clause or step.target!r}: without a photo there is no"
         f" {step.target if step.place is None else step.place.landmark}; the walk leads where there is room"
         for step in lost
-    )
-    steps = tuple(replace(step, target="", place=None) if step in lost else step for step in plan.steps)
+    ) + tuple(f"for {step.clause!r}: without a photo there is no {step.facing} to face" for step in aimed)
+    steps = tuple(
+        replace(step, target="" if step in lost else step.target, place=None if step in lost else step.place,
+                facing="" if step in aimed else step.facing)
+        for step in plan.steps
+    )  # fmt: skip
     return replace(plan, steps=steps, notes=plan.notes + notes)
 
 

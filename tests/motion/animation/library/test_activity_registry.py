@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.core.skeleton import BONES
+from mmweaver.core.skeleton import BONES, joint
 from mmweaver.motion.animation.library.activity_registry import GESTURES, POSTURES
 from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, act_out
 from mmweaver.motion.language.activities import BODY, BY_KEY, HANDS
@@ -40,3 +40,15 @@ def test_every_example_is_acted_out_as_a_body_can(activity):
 def test_people_of_two_seeds_differ(text: str):
     one, other = (act_out(text, duration_s=3.0, seed=seed).pose.joints_m for seed in range(2))
     assert not np.allclose(one, other)
+
+
+def test_the_other_hand_does_what_is_beside():
+    """Arm by arm as each activity alone would move it; the head goes with the first."""
+    motion = act_out("a person waves with the right hand while drinking with the left", seed=3, height_m=1.75)
+    alone = act_out("a person drinks with the left hand", duration_s=motion.plan.duration_s, seed=3, height_m=1.75)
+    joints, drinking = motion.pose.joints_m, alone.pose.joints_m
+    height = joints[:, joint("right_wrist"), 2] - joints[:, joint("neck"), 2]
+    assert np.median(height) > 0.0  # a waving hand is up
+    to_head = np.linalg.norm(joints[:, joint("left_wrist")] - joints[:, joint("head")], axis=1)
+    as_alone = np.linalg.norm(drinking[:, joint("left_wrist")] - drinking[:, joint("head")], axis=1)
+    assert to_head.min() == pytest.approx(as_alone.min(), abs=0.04)

@@ -1,11 +1,12 @@
 """The function that animates each activity, by the activity's key in `motion/language/activities.py`."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from mmweaver.core.registry import Registry
-from mmweaver.motion.animation.controls import Controls
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library import (
     arm_gestures,
     bending,
@@ -145,7 +146,26 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
 def perform(context: StepContext) -> Controls:
     """The Controls of one step at all times of its context."""
     with np.errstate(all="raise", under="ignore"):
-        controls = POSTURES[context.step.lower](context)
-        if context.step.upper:
-            controls = GESTURES[context.step.upper](context, controls)
+        posture = POSTURES[context.step.lower](context)
+        if not context.step.upper:
+            return posture
+        controls = GESTURES[context.step.upper](context, posture.copy())
+        return controls if context.step.beside is None else _with_other_arm(context, controls, posture)
+
+
+def _with_other_arm(context: StepContext, controls: Controls, posture: Controls) -> Controls:
+    """The controls with the arm of what the other hand does; head and trunk go with the first activity alone."""
+    step, beside = context.step, context.step.beside
+    assert beside is not None
+    other = replace(
+        beside,
+        lower=step.lower,
+        start_s=step.start_s,
+        end_s=step.end_s,
+        pace=step.pace,
+        speed=beside.speed or step.speed,
+    )
+    alone = GESTURES[beside.upper](replace(context, step=other), posture)
+    side = LEFT if beside.hand == "left" else RIGHT
+    controls.arm_rad[:, side] = alone.arm_rad[:, side]
     return controls

@@ -28,9 +28,9 @@ def pointing(context: StepContext, controls: Controls) -> Controls:
     """An arm stretched towards the given side (the viewer's left or right), ahead if none is given."""
     time_s, rng = context.time_s, context.rng
     side = one_side(context)
-    goal = {"left": np.pi, "right": 0.0, "forwards": None, "": None}.get(context.step.facing or context.step.direction)
+    goal = {"left": np.pi, "right": 0.0}.get(context.step.facing or context.step.direction)
     if goal is None:
-        aside = 0.0 if context.step.facing == "towards" else float(rng.uniform(-0.5, 0.1))
+        aside = 0.0 if context.step.facing else float(rng.uniform(-0.5, 0.1))
     else:  # the angle to the body's left
         left = (goal - float(np.median(controls.heading_rad)) + np.pi) % (2 * np.pi) - np.pi
         if not context.step.hand:
@@ -101,7 +101,7 @@ def crossing_arms(context: StepContext, controls: Controls) -> Controls:
 
 def hands_on_hips(context: StepContext, controls: Controls) -> Controls:
     held, n = _held(context, 0.8), len(context.time_s)
-    for side in (LEFT, RIGHT):
+    for side in sides(context) if context.step.hand else (LEFT, RIGHT):
         hand_to(controls, context.body, side, place(0.035, 0.1, -0.17, n), held, (-0.35, 1.0, -0.1))
     return controls
 
