@@ -28,6 +28,8 @@ from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
 
+# How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
+EXACT, LEAVING_OUT, MISSING, ROUGH = range(4)
 # Words that begin a phrase which says how.
 _OPENING = words_in(
     """

@@ -1,0 +1,203 @@
+"""Which steps of a sentence happen at the same time, and how two become one: a walk of two descriptions, legs of one
+and arms of the other, an arm of each."""
+
+from dataclasses import replace
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.clause_parser import ParsedClause
+from mmweaver.motion.language.left_out import ROUGH
+from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verbs import words_in
+
+# Hand activities that leave the other arm free, and those of them that the head goes with.
+ONE_ARMED = words_in(
+    """
+    wave raise arms_out drink eat phone brush_teeth comb wipe write stir knock point hips reach raise_hold lower_arm
+    push_hand pull_hand draw_circle draw_z yawn knock_elbow arm_extension
+    """
+)
+AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
+ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
+_IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
+_HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
+
+
+def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
+    """Joins clauses that happen at the same time, and puts all others one after the other.
+
+    Where phrases may be left out, two movements that cannot be shown at once follow each other, which is said.
+    """
+    steps: list[Step] = []
+    for i, parsed in enumerate(parsed_clauses):
+        first, rest = parsed.steps[0], parsed.steps[1:]
+        if steps and _goes_together(parsed_clauses[i - 1], parsed):
+            try:
+                before = steps.pop()
+                steps += _joined(before, first)
+                if {before.lower, first.lower} in _IN_TURN and steps[-1] is first:
+                    parsed.lost.append(f"{before.name} and {first.name} are shown one after the other")
+            except InputError:
+                steps.append(before)
+                arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
+                if not leaving or (leaving < ROUGH and steps[-1].posture != first.posture and not arms_alone):
+                    raise
+                steps.append(first)
+                parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
+        else:
+            if steps and _reads_as_at_once(
+                parsed_clauses[i - 1], parsed
+            ):  # "dances, jumping", "is dancing and jumping"
+                parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
+            steps.append(first)
+        for step, form in zip(rest, parsed.forms[1:], strict=True):
+            in_turn = form == "s" and steps[-1].moves  # "walks forward lifts the arms"
+            together = form == "ing" or (
+                _can_overlay(steps[-1], step, in_two=False) and not in_turn
+            )  # "sits drinking water"
+            if together and not (leaving == ROUGH and not _can_be_joined(steps[-1], step)):
+                steps[-1:] = _joined(steps[-1], step)
+            else:  # "walks forward turns around"
+                if together or form == "past":  # "walks with the legs raised"
+                    parsed.lost.append(f"{steps[-1].name} and {step.name} are shown one after the other")
+                steps.append(step)
+    return steps
+
+
+def _merged_walk(one: Step, other: Step) -> list[Step]:
+    """One walk of two descriptions: 'walks to the left, taking five steps'."""
+    if one.direction and other.direction and one.direction != other.direction:
+        raise InputError(
+            f"{one.clause!r} and {other.clause!r} name two directions; say which movement goes where, with 'then'"
+        )
+    more = one if one.direction or one.arc_deg else other
+    return [
+        replace(
+            more, count=one.count or other.count, speed=one.speed or other.speed, upper=one.upper or other.upper,
+            hand=one.hand or other.hand, target=one.target or other.target, clauses=(*one.clauses, *other.clauses),
+        )
+    ]  # fmt: skip
+
+
+def _joined(one: Step, other: Step) -> list[Step]:
+    """Two simultaneous steps as one; a push or a turn during a walk as what that looks like."""
+    if one.lower == other.lower and one.moves and not (one.upper and other.upper):
+        return _merged_walk(one, other)
+    pair = {one.lower, other.lower}
+    if pair in ({"walk", "limp"}, {"walk", "stagger"}) and not (one.upper and other.upper):
+        gait = next(step.lower for step in (one, other) if step.lower != "walk")
+        return _merged_walk(replace(one, lower=gait), replace(other, lower=gait))
+    walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
+    if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
+        onward = replace(walk, direction="forwards" if walk.direction == "forwards" else walk.direction, count=0)
+        return [walk, more, onward]
+    if walk.lower in ("walk", "jog") and more.lower == "turn" and not (one.upper or other.upper or more.facing):
+        angle = {"left": 90.0, "right": -90.0, "around": 180.0}.get(more.direction, more.turn_deg)
+        if (more.direction == "around" and walk.direction) or abs(angle) >= 360.0 or walk.direction == "circle":
+            return [one, other]
+        bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
+        return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
+    if {one.lower, other.lower} == {"turn", "stumble"}:
+        return [one, other]
+    if more.lower == "fall" and walk.moves:  # "falls while walking"
+        return [walk, more]
+    return [overlay(one, other)]
+
+
+def _can_be_joined(one: Step, other: Step) -> bool:
+    try:
+        _joined(one, other)
+    except InputError:
+        return False
+    return True
+
+
+def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
+    one, other = before.steps[-1], parsed.steps[0]
+    if parsed.link == "comma" and parsed.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
+        return True
+    if parsed.link == "while":
+        return True
+    compatible = _can_overlay(one, other)
+    if parsed.link == "and":
+        if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
+            return True  # one hand stays where it is
+        if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
+            return one.lower == "sit" or before.form == parsed.form
+        paces = any(step.count and step.moves for step in (one, other))
+        return compatible and before.form == parsed.form == "ing" and not paces
+    return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
+
+
+def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
+    """Whether a participle after a comma names what is done during the movement before, on the spot."""
+    step = parsed.steps[0]
+    on_the_spot = bool(step.upper) or not (step.moves or step.lower in ("turn", "stand", "stumble", "fall"))
+    if parsed.link == "and":  # "is walking and bending", not "is walking and then bends", "sitting and standing up"
+        ends = (
+            BY_KEY[before.steps[-1].lower].once or BY_KEY[step.lower].once or before.steps[-1].posture != step.posture
+        )
+        return parsed.form == before.form == "ing" and on_the_spot and not (ends or before.steps[-1].count)
+    return parsed.link == "comma" and parsed.form == "ing" and before.form != "ing" and on_the_spot
+
+
+def _can_overlay(one: Step, other: Step, *, in_two: bool = True) -> bool:
+    lowers = [step.lower for step in (one, other) if step.lower != "stand"]
+    uppers = [step.upper for step in (one, other) if step.upper]
+    fits = len(uppers) == 1 or (in_two and len(uppers) == 2 and in_two_hands(one, other) is not None)
+    return fits and len(lowers) <= 1 and not set(lowers) & ARMS_TAKEN
+
+
+def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
+    """Two hand activities with a hand each, the one that the head goes with first; None where both need one hand.
+
+    A hand that the sentence leaves open is the other one's opposite, of two the right for the first.
+    """
+    if not {one.upper, other.upper} <= ONE_ARMED or one.beside is not None or other.beside is not None:
+        return None
+    unclear = one.clauses == other.clauses and not (one.hand and other.hand)  # "wiping or stirring with the right hand"
+    if unclear or "both" in (one.hand, other.hand) or (one.hand and one.hand == other.hand):
+        return None
+    hand = one.hand or OPPOSITE.get(other.hand, "right")
+    pair = replace(one, hand=hand), replace(other, hand=OPPOSITE[hand])
+    return pair[::-1] if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
+
+
+def overlay(one: Step, other: Step) -> Step:
+    """Both steps at once: legs of one, arms of the other, or an arm of each.
+
+    Raises InputError where both need the same limbs.
+    """
+    if {one.lower, other.lower} <= {"stand"} and not (one.upper and other.upper):
+        pass
+    elif not _can_overlay(one, other):
+        raise InputError(
+            f"{one.name} and {other.name} cannot be shown at the same time; say 'then' to have one after the other"
+        )
+    if one.upper and other.upper:
+        hands = in_two_hands(one, other)
+        assert hands is not None  # as `_can_overlay` found
+        first, second = hands
+        legs = one if one.lower != "stand" else other
+        together = overlay(
+            replace(legs, upper="", hand="", count=legs.count if legs.moves else 0), replace(first, lower="stand")
+        )
+        clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
+        beside = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
+        return replace(together, beside=beside, clause=f"{one.clause}, {other.clause}", clauses=clauses)
+    lower = one if one.lower != "stand" or other.lower == "stand" else other
+    upper = one if one.upper else other
+    return replace(
+        lower,
+        upper=upper.upper,
+        hand=upper.hand,
+        count=upper.count or (0 if lower.moves else lower.count),
+        direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
+        speed=lower.speed or upper.speed,
+        seconds=lower.seconds or upper.seconds,
+        facing=lower.facing or upper.facing,
+        place=lower.place or upper.place,
+        clause=f"{one.clause}, {other.clause}",
+        clauses=(*one.clauses, *other.clauses),
+    )

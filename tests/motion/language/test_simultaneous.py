@@ -1,0 +1,40 @@
+"""What happens at the same time: legs of one and arms of the other, or a hand each."""
+
+import pytest
+
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.simultaneous import overlay
+
+
+def test_overlay_takes_legs_of_one_and_arms_of_the_other():
+    walk, wave = parse("walks to the left slowly").steps[0], parse("waves with the left hand twice").steps[0]
+    both = overlay(walk, wave)
+    assert (both.lower, both.upper, both.hand, both.direction, both.count) == ("walk", "wave", "left", "left", 2)
+    assert overlay(wave, walk).name == both.name
+
+
+@pytest.mark.parametrize(
+    ("text", "hands"),
+    [
+        ("waves with the right hand while drinking with the left", {"wave": "right", "drink": "left"}),
+        ("writes with the right hand while talking on the phone", {"write": "right", "phone": "left"}),
+        ("walks, waving while drinking", {"wave": "right", "drink": "left"}),
+        ("puts the left hand on the hip and points ahead with the right hand", {"hips": "left", "point": "right"}),
+    ],
+)
+def test_two_hands_do_two_things_at_once(text: str, hands: dict[str, str]) -> None:
+    (step,) = parse(f"a person {text}", in_part=True).steps
+    assert {part.upper: part.hand for part in step.each} == hands
+    assert all(clause.status == "done" for clause in parse(f"a person {text}", in_part=True).clauses)
+
+
+@pytest.mark.parametrize("text", ["claps while drinking", "waves with the left hand while drinking with the left hand"])
+def test_what_needs_the_same_hand_follows_and_is_said_to(text: str) -> None:
+    plan = parse(text, in_part=True)
+    assert len(plan.steps) == 2
+    assert any("one after the other" in clause.how for clause in plan.clauses)
+
+
+def test_one_hand_after_the_other_stays_so() -> None:
+    steps = parse("a man raises the left arm and then the right arm").steps
+    assert [(step.hand, step.beside) for step in steps] == [("left", None), ("right", None)]
