@@ -188,7 +188,7 @@ def test_without_a_seat_a_stool_is_assumed_and_said():
 
 def test_a_seat_out_of_the_window_is_not_used():
     far = room(seats=(seat(y_m=4.6),))
-    assert any("no seat of the photo can be reached" in s for s in motion("sits", far).assumptions)
+    assert any("no seat of the photo can be used" in s for s in motion("sits", far).assumptions)
 
 
 def test_standing_up_and_walking_off_from_a_sofa():

@@ -5,6 +5,7 @@ import pytest
 
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.approaches import approaches
 from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
@@ -72,3 +73,11 @@ def test_a_given_start_and_heading_are_kept_whatever_is_done(text: str, heading_
 def test_a_seat_that_is_named_faces_where_it_faces():
     found = found_by(sampler("sits on the chair", sofa_room(), heading_rad=2.0))
     assert not any("stool" in note for note in found.notes)
+
+
+def test_who_sits_where_the_usual_ways_collide_takes_a_way_that_is_known_to_fit():
+    scene = sofa_room()
+    known = [way.sitting for way in approaches(FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75))]
+    taken = [found_by(sampler("sits", scene, attempt=1, seed=seed)).seats_m[0] for seed in range(8)]
+    near = [min(np.hypot(*(one.seat_m - np.array(place))) for one in known) < 0.01 for place in taken]
+    assert 1 <= sum(near) < len(near)

@@ -13,7 +13,7 @@ from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap, Place
 from mmweaver.motion.planning.collision_ranking import MARGIN_M, RankedPlacement, least_collision
 from mmweaver.motion.planning.placement import Placement
-from tests.motion.rooms import room
+from tests.motion.rooms import room, seat
 from tests.rooms import standing_person
 
 
@@ -82,6 +82,14 @@ def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
     hidden = least_collision(lambda _again: seats[:1], _moved, _Open(room()))
     assert hidden.trunk_cost_m > 0.03
     assert hidden.notes == ()  # nothing is known to be there
+
+
+def test_a_trunk_behind_the_back_of_a_seat_that_was_found_costs_little():
+    seats = [dataclasses.replace(_placement(1.8), seats_m=((0.0, 3.8),))]
+    assumed, found = (
+        least_collision(lambda _again: seats, _moved, _Open(scene)) for scene in (room(), room(seats=(seat(y_m=3.8),)))
+    )
+    assert 0 < found.trunk_cost_m < 0.5 * assumed.trunk_cost_m
 
 
 class _Open(CollisionMap):

@@ -142,3 +142,9 @@ def test_a_table_s_legs_are_pillars_and_a_seat_under_it_is_none():
     assert len(legs) > 0
     assert np.abs(legs[:, 0] - 0.5).max() < 0.06
     assert len(upright_structures(scene, np.concatenate([top, seat]))) == 0
+
+
+def test_the_whole_rectangle_of_a_top_is_taken_where_it_is_hidden():
+    seen = np.array([[0.0, 2.85, FLOOR_Z_M + 0.7]])
+    assert table_tops(_with_table(1.0), seen)[:, 1].min() < 2.15
+    assert len(table_tops(_with_table(4.5), seen)) <= 1

@@ -76,3 +76,12 @@ def test_who_points_at_a_landmark_faces_it(text: str):
     with pytest.raises(InputError, match="no door was found"):
         place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)
     assert any("no door to face" in note for note in without_targets(plan).notes)
+
+
+def test_who_cannot_walk_there_from_a_seat_gets_up_elsewhere():
+    """The sofa stands right at the table: no walk leads from one to the other."""
+    table = Landmark(kind="table", position_m=np.array([0.0, 2.6, -0.7]), approach_m=(0.0, 2.0), facing_rad=1.5)
+    scene = dataclasses.replace(room(seats=(seat(y_m=2.4),)), landmarks=(table,))
+    plan = plan_motion("a person gets up and walks to the table")
+    placed = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=0, start_m=None)[0]
+    assert any("no seat of the photo can be used" in note for note in placed.assumptions)

@@ -54,3 +54,13 @@ def test_a_stool_is_a_seat(box_room: Callable):
     seats = reconstruct(box_room(boxes=[stool]).photo(width=640, height=480)).seats
     assert len(seats) == 1
     assert seats[0].position_m[:2] == pytest.approx([0.3, 2.1], abs=0.1)
+
+
+def test_a_bench_on_trestles_is_a_seat_and_a_cabinet_of_its_size_is_none(box_room: Callable):
+    plank = ((-0.6, 0.6), (2.2, 2.56), (0.42, 0.46))
+    trestles = [((x, x + 0.05), (2.22, 2.54), (0.0, 0.42)) for x in (-0.5, 0.45)]
+    seats = reconstruct(box_room(boxes=[plank, *trestles]).photo(width=640, height=480)).seats
+    assert len(seats) >= 1
+    assert all(abs(seat.position_m[0]) < 0.6 and 2.15 < seat.position_m[1] < 2.6 for seat in seats)
+    cabinet = ((-0.6, 0.6), (2.2, 2.56), (0.0, 0.46))
+    assert reconstruct(box_room(boxes=[cabinet]).photo(width=640, height=480)).seats == ()

@@ -61,6 +61,8 @@ from mmweaver.motion.planning.trajectory import (
 Array = np.ndarray
 FAVOURITE_COST_PER_M = 0.7
 _SAME_PLACE_M = 0.1
+_SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
+_KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
 _STRAIGHT = ("left", "right", "towards", "away", "")
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
@@ -199,6 +201,8 @@ class CandidateSampler:
                 # Getting up needs room in front of the seat, where a table may stand.
                 free = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
                 usable = free or ([way.sitting for way in self._ways_of(first.seat)] if usable else [])
+            if self.attempt and usable and self.rng.random() < _KNOWN_WAYS:
+                usable = self._sittings_known_to_fit(usable)
             return self._start_seated(usable)
         before_seat = self._seat_to_start_at(seats)
         if before_seat is not None:
@@ -223,6 +227,12 @@ class CandidateSampler:
             heading_rad=facing,
             heading_is_given=self.heading_rad is not None,
         ), None
+
+    def _sittings_known_to_fit(self, seats: list[Sitting]) -> list[Sitting]:
+        """The ways to sit on these seats that are known to keep the body clear; the seats where there are none."""
+        ways = [way.sitting for way in self._approaches]
+        near = [one for one in ways if any(np.hypot(*(one.seat_m - seat.seat_m)) < _SAME_SEAT_M for seat in seats)]
+        return near or seats
 
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
         """The seat in front of which the body stands: of the motion before, or of the room."""

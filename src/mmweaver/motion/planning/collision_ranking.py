@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PoseSequence
+from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_share
@@ -23,8 +23,11 @@ MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
 MOST_TESTED, MOST_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
+# Above a seat that was found there is room for a trunk, though the seat's own back may occlude it.
+_BEHIND_OWN_BACK_M = 0.03
 # A stool that is invented though there is a seat counts as much: a seat is better where the body gets into little.
 _INVENTED_SEAT_M = 0.06
+_ON_SEAT_M = 0.1  # a place to sit so near to a seat is on it
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
@@ -206,7 +209,16 @@ class _Ranking:
         scene = self._obstacles.scene
         trunk = occluded_share(scene, np.stack([body.trunk_m for body in bodies]))
         legs = unseen_share(scene, np.stack([body.legs_m for body in bodies]))
-        return sits * _OCCLUDED_TRUNK_M * trunk, sits * _OCCLUDED_LEGS_M * legs
+        found = np.array([any(_is_found(scene, seat) for seat in each) for each in seats])
+        trunk_m = np.where(found, _BEHIND_OWN_BACK_M, _OCCLUDED_TRUNK_M)
+        return sits * trunk_m * trunk, sits * _OCCLUDED_LEGS_M * legs
+
+
+def _is_found(scene: Scene, seat: tuple[float, float]) -> bool:
+    """Whether a place to sit is on a seat of the room."""
+    return any(
+        np.hypot(*(found.position_m[:2] - np.array(seat))) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats
+    )
 
 
 def _sorted(estimates: Sequence[_Tested]) -> list[_Tested]:

@@ -16,6 +16,7 @@ Result = TypeVar("Result")
 _ON_THE_SPOT = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
 _ANY_WINDOW_M = (0.2, 30.0)
 _MOST_RADARS = 3
+_MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
 ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
     " fills the picture, and may be occluded"
@@ -77,9 +78,11 @@ def on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
 def ways_on(floor: FloorMap) -> dict[str, Any]:
     """Where there would be room: the nearest free place, the range window it needs, and presets that have it.
 
-    Empty where the photo shows no floor at any distance.
+    Empty where the photo shows no floor at any distance, or hardly more than in the window.
     """
     anywhere = FloorMap.of(floor.scene, _ANY_WINDOW_M, floor.height_m, with_assumed=True)
+    if np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
+        return {}
     place = anywhere.nearest_walkable_m(np.zeros(2))
     if place is None:
         return {}

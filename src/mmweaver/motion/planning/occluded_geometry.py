@@ -86,9 +86,18 @@ def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
         middle = np.stack([column, row], axis=-1) * _CELL_M + 0.5 * _CELL_M - _REACH_M
         between.append(np.column_stack([middle, np.full(len(middle), level + scene.floor_z_m)]))
     tops = points[near_top & is_top[cell]]
-    unseen = np.concatenate(between)
+    unseen = np.concatenate([*between, *(_rectangle(scene, plane) for plane in scene.planes)])
     unseen = unseen[_behind_m(scene, unseen) < -_OCCLUDING_M]
     return np.concatenate([tops, unseen, _behind_rims(scene, tops)])
+
+
+def _rectangle(scene: Scene, plane: Plane) -> Points:
+    """Points all over the rectangle of a table's top, which chairs in front of it occlude in part."""
+    height_m = float(plane.centre_m[2]) - scene.floor_z_m
+    if plane.kind != "top" or not _RIM_M[0] < height_m < _RIM_M[1]:
+        return np.zeros((0, 3))
+    u, v = (np.arange(-half, half + 1e-9, _CELL_M)[:, None] for half in plane.half_size_m)
+    return (plane.centre_m + u[:, None] * plane.axis_u + v[None] * plane.axis_v).reshape(-1, 3)
 
 
 def between_low_points(scene: Scene, points: Points) -> Float[np.ndarray, "between 3"]:

@@ -26,6 +26,7 @@ from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
 MOST_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
+LEAVES_SEATS = 2  # the attempt that leaves the room's seats, also made where nothing can be done from any of them
 ENOUGH_SEATED = 14  # of more ways to sit, where the usual ones touch something
 _SMALL_M2, MOST_TRIES_WHERE_SMALL = 0.5, 40  # so little floor is soon searched
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
@@ -120,6 +121,11 @@ def place(
         if others and not _is_clear_of(trajectory, plan, others):
             continue
         trajectories.append(trajectory)
+    if not trajectories and attempt < LEAVES_SEATS and after is None and starts_seated(plan):
+        return place(
+            plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=LEAVES_SEATS, heading_rad=heading_rad,
+            is_varied=is_varied,
+        )  # fmt: skip
     if not trajectories:
         raise NoRoomError(_no_room(plan, floor, start_m))
     order = np.argsort(

@@ -197,7 +197,7 @@ def stool_fits(stool: Sitting, floor: FloorMap, *, is_bed: bool = False) -> bool
 
 def stool_note(stool: Sitting, *, none_at_all: bool, is_bed: bool = False) -> str:
     """What is reported about an assumed stool or bed."""
-    why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be reached"
+    why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be used for this"
     why, what = ("no bed or long couch of the photo can be lain on", "bed") if is_bed else (why, "stool")
     x, y = stool.seat_m
     return f"{why}, a {what} {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"

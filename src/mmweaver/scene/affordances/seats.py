@@ -28,6 +28,9 @@ _BED_HEIGHTS_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
 _MIN_SIZE_M = 0.25  # visible size of a seat
 _STOOL_SIZE_M = (0.30, 0.60)
 _MAX_STOOL_HEIGHT_M = 0.52
+# A bench is a narrow plank through under which one sees: a cabinet's front reaches down, a low table is wider.
+_BENCH_LENGTH_M, _BENCH_WIDTH_M, _BENCH_HEIGHT_M = (0.75, 2.1), (0.2, 0.46), (0.38, 0.52)
+_PLANK_M, _MOST_BELOW = 0.15, 0.5  # what is seen farther below its top is no plank; on so much of its length at most
 _TABLE_SQUARES = np.ones((7, 7), bool)
 
 # Sample places around a sitter, in metres: forward, leftward.
@@ -58,6 +61,11 @@ class _Candidates:
             facing_rad=self.facing_rad[chosen],
             height_m=self.height_m[chosen],
         )
+
+    def cells(self, height_map: HeightMap) -> tuple[Int[Array, " candidate"], Int[Array, " candidate"]]:
+        """Row and column of the square of each place."""
+        row = np.round((self.y_m - height_map.y_m[0]) / CELL_M).astype(int)
+        return row, np.round((self.x_m - height_map.x_m[0]) / CELL_M).astype(int)
 
     def at(self, height_map: HeightMap, offsets: Offsets) -> "_Squares":
         """The squares of the map at the offsets from each place."""
@@ -121,13 +129,18 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & seat_squares.is_clear)
     labelled = bed_squares(height_map) if evidence is None else evidence > 0
     is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
-    on_stool = _on_stool(height_map, is_seat_height, candidates)
+    on_stool, on_bench = (
+        _on_stool(height_map, is_seat_height, candidates),
+        _on_bench(height_map, is_seat_height, candidates),
+    )
     inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
     is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
-    is_whole = (is_contrary.mean(axis=(1, 2)) < _MAX_CONTRARY) | is_flat_stool
+    narrow = is_contrary[:, inner].mean(axis=(1, 2)) < _MAX_CONTRARY  # a bench is no deeper than a stool
+    is_whole = (is_contrary.mean(axis=(1, 2)) < _MAX_CONTRARY) | is_flat_stool | (on_bench & narrow)
     chosen = (is_flat.mean(axis=(1, 2)) > _MIN_FLAT) & is_whole
     candidates, flat_share = candidates.select(chosen), is_flat[chosen].mean(axis=(1, 2))
     is_labelled, on_stool, is_flat_stool = is_labelled[chosen], on_stool[chosen], is_flat_stool[chosen]
+    on_bench = on_bench[chosen]
     if len(candidates.x_m) == 0:
         return ()
     # 2. A backrest stands behind, and legs have room in front: nothing above the seat, except a table top that is high
@@ -142,7 +155,7 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     score = 2 * back_share + (0.5 + 1.5 * is_flat_stool) * flat_share + drop + 0.7 * under_table - 2 * obstructed
     has_back = (back_share >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
     is_stool = on_stool & (obstructed < 0.1)
-    is_bench = is_labelled & (obstructed < 0.35) & (drop + under_table > 0.8)
+    is_bench = (is_labelled | on_bench) & (obstructed < 0.35) & (drop + under_table > 0.8)
     score = np.where(has_back, score + 2, score)
     return _best_seats(height_map, candidates, np.where(has_back | is_stool | is_bench, score, -np.inf))
 
@@ -227,9 +240,35 @@ def _on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates)
         sizes = ((rows.stop - rows.start) * CELL_M, (columns.stop - columns.start) * CELL_M)
         has_size = min(sizes) >= _STOOL_SIZE_M[0] and max(sizes) <= _STOOL_SIZE_M[1]
         is_stool[label] = has_size and np.median(height_map.top_m[labels == label]) <= _MAX_STOOL_HEIGHT_M
-    row = np.round((candidates.y_m - height_map.y_m[0]) / CELL_M).astype(int)
-    column = np.round((candidates.x_m - height_map.x_m[0]) / CELL_M).astype(int)
+    row, column = candidates.cells(height_map)
     return is_stool[labels[row, column]]
+
+
+def _on_bench(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
+    """Whether a candidate is on a plank of a bench's length, width and height, with little below it."""
+    labels, count = label_components(squares)
+    is_bench = np.zeros(count + 1, bool)
+    for label, (rows, columns) in enumerate(bounding_slices(labels), start=1):
+        if max(rows.stop - rows.start, columns.stop - columns.start) * CELL_M >= 0.7 * _BENCH_LENGTH_M[0]:
+            is_bench[label] = _is_bench(height_map, labels == label)
+    row, column = candidates.cells(height_map)
+    return is_bench[labels[row, column]]
+
+
+def _is_bench(height_map: HeightMap, patch: GridMask) -> bool:
+    from scipy import ndimage
+
+    height_m = float(np.median(height_map.top_m[patch]))
+    places_m = np.argwhere(patch) * CELL_M
+    axes = np.linalg.eigh(np.cov(places_m.T))[1]
+    width_m, length_m = np.ptp(places_m @ axes, axis=0) + CELL_M
+    sizes = ((width_m, _BENCH_WIDTH_M), (length_m, _BENCH_LENGTH_M), (height_m, _BENCH_HEIGHT_M))
+    if not all(least < size < most for size, (least, most) in sizes):
+        return False
+    around = np.asarray(ndimage.binary_dilation(patch, np.ones((3, 3), bool)), bool)
+    is_low = around & (height_map.bottom_m < height_m - _PLANK_M)
+    along = [np.unique(np.floor(np.argwhere(mask) @ axes[:, 1])) for mask in (is_low, around)]
+    return len(along[0]) < _MOST_BELOW * len(along[1])
 
 
 def _best_seats(height_map: HeightMap, candidates: _Candidates, score: PerCandidate) -> tuple[Seat, ...]:
