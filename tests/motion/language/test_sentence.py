@@ -265,6 +265,31 @@ def test_case_punctuation_and_fillers_change_nothing():
 def test_each_part_of_a_walk_has_its_own_speed_and_time() -> None:
     first, second = parse("a person walks backwards slowly for four seconds then quickly forwards").steps
     assert (first.speed, first.seconds, second.speed, second.seconds) == (-1, 4.0, 1, 0.0)
+    first, second = parse("walks three metres towards the radar, then two metres back").steps
+    assert (first.distance_m, second.distance_m, second.direction) == (3.0, 2.0, "back")
+    first, second = parse("a person walks to the left for 3 s and to the right for 5 s").steps
+    assert [(step.direction, step.seconds) for step in (first, second)] == [("left", 3.0), ("right", 5.0)]
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("waves for a minute", 60.0), ("waves for two minutes", 120.0), ("half a minute of walking", 30.0)],
+)
+def test_minutes_are_kept(text: str, seconds: float) -> None:
+    assert [step.seconds for step in parse(text).steps] == [seconds]
+
+
+@pytest.mark.parametrize(
+    ("text", "feet"),
+    [("a person does three lunges with each leg", ["left", "right"]), ("both front lunges", ["left", "right"])],
+)
+def test_each_leg_has_its_turn(text: str, feet: list[str]) -> None:
+    assert [step.foot for step in parse(text).steps] == feet
+
+
+def test_who_does_not_move_keeps_the_posture() -> None:
+    assert [step.lower for step in parse("a person does not move").steps] == ["stand"]
+    assert [step.lower for step in parse("a person sits on the sofa and does not move").steps][-1] == "sit"
 
 
 @pytest.mark.parametrize(
@@ -276,6 +301,9 @@ def test_each_part_of_a_walk_has_its_own_speed_and_time() -> None:
         ("is snoring on the couch", [("lie_on_seat", "")]),
         ("meditates on the sofa for five seconds", [("sit", "")]),
         ("sneezes twice", [("stand", "cough")]),
+        ("carries a sleeping child to the bed", [("walk", "carry")]),
+        ("falls asleep in the armchair", [("sit", "")]),
+        ("lifts a chair and puts it next to the table", [("pick_up", ""), ("stand", "reach")]),
         ("pulls a suitcase towards the door", [("walk", "carry")]),
         ("stands on the table", [("stand", "")]),
         ("does the cobra pose", [("lie", "")]),

@@ -88,7 +88,7 @@ class ParsedClause:
             and last.moves
         ):
             back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
-            self.steps.append(replace(back, speed=about.speed or last.speed))
+            self.steps.append(_as_far_as(about, back))
             self.forms.append("s")
             return
         if last.direction and about.direction and last.direction != about.direction:
@@ -139,10 +139,18 @@ class ParsedClause:
             other_way = {"direction": about.direction}
         else:
             return False
-        self.steps.append(replace(last, **other_way, count=about.count or last.count, speed=about.speed or last.speed,
-                                  seconds=about.seconds, clauses=(*last.clauses, number)))  # fmt: skip
+        self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
+
+
+def _as_far_as(about: Step, walk: Step) -> Step:
+    """A walk with the speed and the length of a clause that says more of it; as long as before where it says none."""
+    says_how_far = bool(about.count or about.seconds or about.distance_m)
+    own = about if says_how_far else walk
+    return replace(
+        walk, speed=about.speed or walk.speed, seconds=about.seconds, count=own.count, distance_m=own.distance_m
+    )
 
 
 def parse_clause(clause: Clause) -> ParsedClause:

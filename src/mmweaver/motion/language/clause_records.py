@@ -73,11 +73,15 @@ def in_the_given_words(
         own = [step for step in every if number in {of_given[n] for n in step.clauses}]
         shown = ", then ".join(dict.fromkeys(map(_doing, own)))
         hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
+        if status == NOT_DONE and shown:  # a part of it that patterns have made a clause of
+            status = APPROXIMATED
+            hows = ["a part of it is not done" if how.startswith("no activity") else how for how in hows]
         if roughly and status == DONE and shown and not _says(words, shown, own):
             status = APPROXIMATED
         if status == APPROXIMATED:
             is_said = any("shown as" in how or "no movement" in how for how in hows)
-            hows = _without_repeats([f"is shown as {shown}"] * bool(shown and not is_said) + hows)
+            names_it = bool(shown) and not is_said and not _says(words, shown, own)
+            hows = _without_repeats([f"is shown as {shown}"] * names_it + hows)
         record = ClauseRecord(words, status, "; ".join(hows))
         clauses.append(record)
         notes += [record.sentence] if record.how else []
@@ -146,7 +150,9 @@ def _where(step: Step) -> tuple[str, ...]:
     return step.target, step.facing, *(() if step.place is None else step.place.words.split())
 
 
-_NO_WORDS = _stems(" ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on")))
+_NO_WORDS = _stems(
+    " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do"))
+)
 
 
 def _doing(step: Step) -> str:

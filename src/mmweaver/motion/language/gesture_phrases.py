@@ -26,7 +26,7 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*warrior(?:[- ](?:one|two|1|2|i|ii))?[- ](?:pose|position)\b", " warrior_pose "),
     (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*down(?:ward|wards)?(?:[- ]facing)?[- ]dog(?:[- ](?:pose|position))?\b", " downward_dog "),
     (r"\b(?:holds?|does|doing|holding|in|is in) (?:an? |the )?(?:forearm |high )?plank(?: pose| position)?\b|\bplanks\b|\bplanking\b", " hold_plank "),
-    (r"\b(?:carr(?:y|ies|ying)) (?:an? |the |some |two |his |her )(?:[a-z]+ )?(?:box|boxes|crate|parcel|tray|bag|suitcase|chair|bucket|basket|pile|stack)(?:es)?"
+    (r"\b(?:carr(?:y|ies|ying)) (?:an? |the |some |two |his |her )(?:[a-z]+ )?(?:box|boxes|crate|parcel|tray|bag|suitcase|chair|bucket|basket|pile|stack)(?:es|s)?"
      r"(?: of [a-z]+)?\b", " carry a thing "),
     # Exercises
     (rf"\b{_LUNGE}(?:s|d|ing)? {_OF_LEG}\b", r" side_lunge \1_leg "),

@@ -216,7 +216,7 @@ FILLERS = words_in(
     cold warm glass_of body upright straight_up feet deep deeply low fully halfway half full once more round
     rhythm beat smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
     invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat
-    lightly stationary motionless motionlessly immobile perfectly completely moment second seconds minute
+    lightly stationary motionless motionlessly immobile perfectly completely moment second seconds minute minutes
     exercise exercises workout gym set repetitions reps fitness jacks steps pairs large-ish meters metres
     meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them something
     anything first about whole complete successive consecutive row close someone's person's man's user's woman's

@@ -194,7 +194,7 @@ def _moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
 def risings_that_no_clause_names(steps: Sequence[Step]) -> list[tuple[Step, str]]:
     """(step after, what is said) where somebody gets up only because the library does the next movement standing."""
     return [
-        (after, f"{after.name} is shown standing, after getting up")
+        (after, f"{after.name} is shown {'standing, ' * (after.posture == 'feet')}after getting up")
         for before, after in pairwise(steps)
         if before.lower in _RISING and not before.clauses and after.lower not in _GOING_ON
     ]

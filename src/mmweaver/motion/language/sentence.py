@@ -296,8 +296,9 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     ahead = ("forwards", "backwards", "back")
     sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
     sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
+    measured = bool(parsed.about.seconds or parsed.about.distance_m)  # "to the left for 3 s and to the right for 5 s"
     return (
-        parsed.link in ("then", "comma")
+        (parsed.link in ("then", "comma") or (parsed.link == "and" and measured))
         and last.lower in ("walk", "jog", "sidestep")
         and direction != last.direction
         and not last.arc_deg
