@@ -101,3 +101,11 @@ def test_a_sentence_without_room_leaves_the_motion_as_it_was():
     with pytest.raises(InputError):
         motion.act(parse("goes to the door"))
     assert motion.go_on().first_frame == first.end_frame
+
+
+@pytest.mark.parametrize("way", ["to the left", "forward", "backward"])
+def test_who_has_fallen_where_there_was_just_room_for_it_gets_up_there(way: str):
+    """Free floor 1.2 m wide: what the body lies on is free, whatever is around it."""
+    narrow = room(boxes=((-3.0, -1.0, 0.0, 6.0), (1.2, 3.0, 0.0, 6.0)))
+    falls, _, gets_up = carried_out(continuous(narrow, seed=3), (f"a person falls {way}", "waves", "gets up"))
+    assert falls.pose.joints_m[-1, joint("pelvis"), 2] < gets_up.pose.joints_m[-1, joint("pelvis"), 2] - 0.5

@@ -118,7 +118,8 @@ class CandidateSampler:
                 turn_by(trajectory, step)
             elif step.lower == "turn" or (step.facing and _turns_the_body(step)):
                 _lay_turn(trajectory, step, first=k == 0)
-            check_floor_space(trajectory, step, self.body)
+            if not self._is_down_there(k):
+                check_floor_space(trajectory, step, self.body)
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
             if step.lower == "sit_down" and k:
                 sitting = sitting or self._seat_behind(trajectory, seats)
@@ -140,6 +141,13 @@ class CandidateSampler:
             gap_m = float(np.hypot(*(np.array(trajectory.start_m) - self.favourite_m)))
             trajectory.cost += FAVOURITE_COST_PER_M * min(gap_m, 2.0)
         return trajectory
+
+    def _is_down_there(self, number: int) -> bool:
+        """Whether the body lies or kneels, in a step or until it rises in it, as the motion before left it."""
+        down = "" if self.after is None or self.after.posture not in ("floor", "knees") else self.after.posture
+        before, step = self.plan.steps[:number], self.plan.steps[number]
+        stayed = bool(down) and all(one.posture == down for one in before)
+        return stayed and (step.posture == down or step.lower in ("get_up", "kneel_up"))
 
     @cached_property
     def _usable_seats(self) -> list[Sitting]:

@@ -156,7 +156,7 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     else:
         low, high = -(BACK_BEHIND_M + 0.5) * h, 0.15 * h
     heading_rad = trajectory.heading_rad
-    if step.style in ("left", "right") and step.posture == "floor":
+    if step.style in ("left", "right") and (step.posture == "floor" or step.lower == "get_up"):
         heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
         low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
     along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(heading_rad), np.sin(heading_rad)])
