@@ -9,6 +9,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.clip_placement import facing_of
 from mmweaver.motion.motion_models import MotionTask, clip_of, heading_of, load_motion_model
 
 
@@ -34,8 +35,19 @@ def test_a_model_of_any_module_is_loaded_by_name(tmp_path: Path, monkeypatch: py
     clip = clip_of(model, MotionTask(sentence="slides", path_m=path, seconds=3.0))
     assert clip.joints_m.shape == (60, 22, 3)
     np.testing.assert_allclose(clip.joints_m[[0, -1], 0, :2], [path[0], path[-1]], atol=1e-6)
-    assert heading_of(path) == pytest.approx(np.arctan2(-1.0, 0.5))
-    assert heading_of(()) is None
+    assert heading_of((), clip) is None
+
+
+def test_the_way_of_a_model_s_motion_begins_as_the_path_whatever_the_body_faces():
+    path = ((0.0, 3.0), (0.5, 2.0))
+    for at, goes in ((path, True), ((path[0], path[0]), False)):
+        clip = slide(MotionTask(sentence="slides", path_m=at, seconds=3.0))
+        heading_rad = heading_of(((0.2, 1.5), (0.9, 1.5)), clip)  # to the right, on another path
+        assert heading_rad is not None
+        turned_rad = heading_rad - facing_of(clip.joints_m[0])
+        want_rad = 0.0 - np.arctan2(-1.0, 0.5) if goes else heading_rad - facing_of(clip.joints_m[0])
+        assert np.angle(np.exp(1j * (turned_rad - want_rad))) == pytest.approx(0, abs=1e-6)
+        assert goes or heading_rad == pytest.approx(0.0)
 
 
 def test_what_is_no_model_or_no_motion_is_refused():

@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
             texts = [DEMO_TEXT]
         text = texts[0] if texts is not None and len(texts) == 1 else texts
         motion = read_own_motion(arguments) or _motion_of_model(arguments, weaver, text)
-        placing = placing_options(arguments, of_model=motion is not None and arguments.motion is None)
+        placing = placing_options(arguments, of_model=motion if arguments.motion is None else None)
         request = weaver.request(text, motion=motion, **_settings(arguments), **placing)
         result = weaver.carry_out(request, _read_room(weaver, arguments, background))
         written = {REQUEST_FILE: _request_toml(arguments, text=texts, frames=request.frames, seconds=None)}

@@ -126,13 +126,13 @@ def _is_known(text: str) -> bool:
     return True
 
 
-def placing_options(arguments: argparse.Namespace, *, of_model: bool = False) -> dict[str, Any]:
-    """The arguments of `Weaver.request` about body and place; `of_model`: of a motion that a model made."""
-    if of_model and arguments.path:
+def placing_options(arguments: argparse.Namespace, *, of_model: "MotionClip | None" = None) -> dict[str, Any]:
+    """The arguments of `Weaver.request` about body and place; `of_model`: the motion, if a model made it."""
+    if of_model is not None and arguments.path:
         from mmweaver.motion.motion_models import heading_of
 
         return {
-            "at": arguments.path[0], "heading_rad": heading_of(arguments.path),
+            "at": arguments.path[0], "heading_rad": heading_of(arguments.path, of_model),
             "height_m": _one_or_all(arguments.height, 1), "subject": _one_or_all(arguments.subject, 1),
         }  # fmt: skip
     people = len(arguments.text or [""])

@@ -10,14 +10,15 @@ from functools import partial
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.registry import load_plugin, plugins
 from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.clip_placement import facing_of
 
 GROUP = "mmweaver.motion_models"
 Place = tuple[float, float]
+_GOES_M = 0.3  # a pelvis that has gone so far shows where it goes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,12 +65,22 @@ def clip_of(model: MotionModel, task: MotionTask) -> MotionClip:
     return clip
 
 
-def heading_of(path_m: tuple[Place, ...]) -> float | None:
-    """The direction in radians, from +x towards +y, in which a path begins; None without a path."""
+def heading_of(path_m: tuple[Place, ...], clip: MotionClip) -> float | None:
+    """The heading of the body at the clip's start, radians from +x towards +y, for its way to begin as the path does.
+
+    A body that goes sideways or backwards (a cartwheel) does not face where it goes; one that goes nowhere faces along
+    the path. None without a path.
+    """
     if len(path_m) < 2:
         return None
-    gap: Float[np.ndarray, 2] = np.subtract(path_m[1], path_m[0])
-    return float(np.arctan2(gap[1], gap[0]))
+    gap = np.subtract(path_m[1], path_m[0])
+    along_rad = float(np.arctan2(gap[1], gap[0]))
+    gone_m = clip.joints_m[:, 0, :2] - clip.joints_m[0, 0, :2]
+    far = np.flatnonzero(np.hypot(*gone_m.T) > _GOES_M)
+    if not len(far):
+        return along_rad
+    x, y = gone_m[far[0]]
+    return along_rad + facing_of(clip.joints_m[0]) - float(np.arctan2(y, x))
 
 
 def _imported(module: str, attribute: str) -> MotionModel:
