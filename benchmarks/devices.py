@@ -21,18 +21,9 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.dsp.cube import cube_values
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.scene_tensors import (
-    IMAGE_COLUMNS,
-    IMAGE_ROWS,
-    NUM_PLANES,
-    NUM_POINTS,
-    PLANE_FEATURES,
-    POINT_FEATURES,
-    REFLECTION_COS,
-    SceneTensors,
-)
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS
 from mmweaver.paths.body_paths import GHOST_POINTS
@@ -43,6 +34,7 @@ from mmweaver.paths.receiver import IDEAL, Receiver
 from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
 from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, scattered_paths
 from mmweaver.paths.visibility import Visibility
+from mmweaver.scene.procedural.procedural_room import make_room
 
 NUM_FRAMES, STATIC_PATHS, FACES, OCCLUDED, MOVING_PATHS = 20, 8300, 5, 400, 900
 
@@ -125,24 +117,8 @@ def measured(device: str) -> dict[str, float]:
 
 def network_seconds(device: str) -> dict[str, float]:
     """Motion to cube by the network, the room encoded once; its paths are sampled and rendered on the CPU."""
-    generator = torch.Generator().manual_seed(0)
-    view = SceneTensors(
-        image=torch.rand(5, IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
-        depth_m=1 + 3 * torch.rand(IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
-        point_m=torch.rand(NUM_POINTS, 3, generator=generator) * 2.5 + torch.tensor([-1.2, 0.8, -1.2]),
-        point_cross_section_m2=1e-3 * torch.rand(NUM_POINTS, generator=generator),
-        point_features=torch.rand(NUM_POINTS, POINT_FEATURES, generator=generator),
-        camera_from_radar=torch.tensor([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
-        camera_m=torch.zeros(3),
-        camera=torch.tensor([100.0, 100.0, 80.0, 60.0]),
-        plane_centre_m=torch.tensor([[0.0, 2.0, -1.2]]).repeat(NUM_PLANES, 1),
-        plane_axes=torch.eye(3).repeat(NUM_PLANES, 1, 1),
-        plane_half_m=torch.full((NUM_PLANES, 2), 2.0),
-        plane_features=torch.rand(NUM_PLANES, PLANE_FEATURES, generator=generator),
-        plane_reflection=torch.full((NUM_PLANES, len(REFLECTION_COS)), 0.3),
-    )
     torch.manual_seed(0)
-    room = LearnedRoom(WeaverNetwork().eval(), view, AWR1843, device=device)
+    room = LearnedRoom(WeaverNetwork().eval(), make_room("office", 0, 0).scene(), AWR1843, device=device)
     joints = np.random.default_rng(0).normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_FRAMES, NUM_JOINTS, 3))
     motion = FrameMotion(
         joints_m=joints.astype(np.float32), velocity_mps=np.zeros_like(joints, dtype=np.float32), subject=0

@@ -24,12 +24,13 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.generate import Weaver
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import FIRST_ORDER, Propagation
+from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
 NUM_FRAMES, ROUNDS = 20, 15
@@ -67,7 +68,7 @@ def costs(weights: Path, *, with_physics: bool) -> dict[str, float]:
         "weaver_encode_room": lambda: LearnedRoom(network, scene, config),
     }
     if with_physics:
-        for name, propagation in (("physics", Propagation(clutter=True)), ("first_order", FIRST_ORDER)):
+        for name, propagation in (("physics", ALL_PATHS), ("first_order", FIRST_ORDER)):
             simulator = Simulator(scene, config, propagation=propagation)
             steps[f"{name}_motion_to_cube"] = partial(_simulated, simulator, pose)
     return least(steps)

@@ -19,12 +19,12 @@ from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.board_effects import as_built
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
-from mmweaver.paths.static_paths import Propagation, RayTracedRoom
+from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 from mmweaver.paths.unresolved_clutter import seed_of_room
 
 if TYPE_CHECKING:
+    from mmweaver.models.given_room import GivenRoom
     from mmweaver.models.learned_paths import EchoNetwork, LearnedRoom
-    from mmweaver.models.scene_tensors import SceneTensors
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -88,7 +88,7 @@ class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
     def __init__(self, propagation: Propagation | None = None) -> None:
-        self.propagation = propagation or Propagation(clutter=True)
+        self.propagation = propagation or ALL_PATHS
         self._prepared = _Latest(self._prepare)
         # rays are the same for every board with the same places of antennas, and boards differ by seed
         self._traced = _Latest(
@@ -133,8 +133,7 @@ class Physics:
     def _prepare(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> Simulator:
-        built = config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
-        room = self._traced.get(scene, built, None, None)
+        room = self._traced.get(scene, _with_antennas_of(board, config), None, None)
         return Simulator(
             scene, config, micro_seed=seed_of_room(scene), background=background, board=board,
             propagation=self.propagation, room=room,
@@ -175,8 +174,8 @@ class Learned:
     def __init__(self, weights: Path | None = None) -> None:
         self.weights = weights
         self._encoded = _Latest(self._encode)
-        # what the network sees of a room is the same for every board, and boards differ by seed
-        self._viewed = _Latest(lambda scene, config, background, board: _view(scene, config))
+        # what the network is given of a room is the same for every board with the same places of antennas
+        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config))
 
     @cached_property
     def reads_fields(self) -> bool:
@@ -200,7 +199,7 @@ class Learned:
         board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal:
-        from mmweaver.models.learned_paths import FrameMotion
+        from mmweaver.models.frame_motion import FrameMotion
 
         with stages("encode the room"):
             room = self._encoded.get(scene, config, background, board)
@@ -220,8 +219,8 @@ class Learned:
     ) -> "LearnedRoom":
         from mmweaver.models.learned_paths import LearnedRoom
 
-        view = self._viewed.get(scene, config, None, None)
-        return LearnedRoom(self._network, view, config, background=background, board=board)
+        given = self._given.get(scene, _with_antennas_of(board, config), None, None)
+        return LearnedRoom(self._network, given, config, background=background, board=board)
 
     @cached_property
     def _network(self) -> "EchoNetwork":
@@ -230,11 +229,15 @@ class Learned:
         return load_network(self.weights or shipped_weights())[0]
 
 
-def _view(scene: Scene, config: RadarConfig) -> "SceneTensors":
-    from mmweaver.models.learned_paths import given_room
-    from mmweaver.models.scene_tensors import SceneTensors
+def _given_room(scene: Scene, config: RadarConfig) -> "GivenRoom":
+    from mmweaver.models.given_room import GivenRoom
 
-    return SceneTensors.of(scene, config, given_room(scene, config))
+    return GivenRoom.of(scene, config)
+
+
+def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
+    """The radar with antennas where a board has them: all that rays depend on."""
+    return config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
 
 
 RoomT = TypeVar("RoomT")

@@ -34,11 +34,12 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.activity_examples import activity_examples, compute_log_maps
@@ -113,7 +114,7 @@ def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) ->
     """The simulator in some room."""
 
     def method(room: UnseenRoom) -> Maker:
-        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed, propagation=AS_PUBLISHED)
+        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed, propagation=ALL_PATHS)
         num_frames = room.room.joints_m.shape[1]
 
         def make(pose: PoseSequence, seed: int) -> RadarCube:

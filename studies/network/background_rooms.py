@@ -23,7 +23,7 @@ from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -39,7 +39,7 @@ OTHER_SKIN = 1000
 def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
     """Ground truth, the network from the photo alone, and with the recording."""
     made_room = make_room(kind, 0, SEED)
-    true_room = Simulator(made_room.scene(), AWR1843, propagation=AS_PUBLISHED)
+    true_room = Simulator(made_room.scene(), AWR1843, propagation=ALL_PATHS)
     recording = radar_cube(true_room.run((), num_frames=frames, seed=1).adc)
     room = Room(scene=reconstruct(made_room.photo()), inputs={}, seconds={})
     weaver = Weaver("weaver", AWR1843)

@@ -28,10 +28,11 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -151,7 +152,7 @@ def _mean(room: StoredRoom, given: np.ndarray) -> Method:
 
 def _realization(room: StoredRoom, plan_seed: int) -> Method:
     scene = make_room(room.kind, room.layout, plan_seed).scene(room.lighting)
-    simulator = Simulator(scene, room.config, micro_seed=1, propagation=AS_PUBLISHED)
+    simulator = Simulator(scene, room.config, micro_seed=1, propagation=ALL_PATHS)
 
     def method(index: int) -> RadarCube:
         spec = SequenceSpec(index=index, person=int(room.person[index]), activity=room.activity[index],

@@ -6,13 +6,13 @@
     python -m studies run learned_scores --data DATASET --power weights/paper_power.safetensors --called paper_power
     python -m studies run learned_scores --data OF_ANOTHER_RADAR --other-radar hupr
 
-Ground truth is the simulator in the true room, and every method is given the exact joints. `realization` is the same
-simulator with other surface micro-phases of room and person: the oracle for methods that cannot know them.
-`realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the room without the
-person. `static_mean` is that of the ground truth itself, `training_mean` that of the rooms trained on. `paper` is the
-paper's own network (study `train_paper`), `paper_power` the same idea with power as its target, also shown another
-room's photo, and before training; `energy_db`, the energy of a cube over that of the ground truth, shows whether it has
-collapsed. Intervals: bootstrap over rooms.
+Ground truth is the simulator in the true room, with all paths and clutter, and every method is given the exact joints.
+`realization` is the same simulator with other surface micro-phases of room and person: the oracle for methods that
+cannot know them. `realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the
+room without the person. `static_mean` is that of the ground truth itself, `training_mean` and `nearest_training_pose`
+those of the rooms trained on, as the data set keeps them. `paper` is the paper's own network (study `train_paper`),
+`paper_power` the same idea with power as its target, also shown another room's photo, and before training; `energy_db`,
+the energy of a cube over that of the ground truth, shows whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -35,10 +35,12 @@ from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.echo_network import EchoNetwork
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import load_network, load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
+from mmweaver.paths.static_paths import ALL_PATHS, Propagation
+from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.power_training import PowerRecipe, initial_power_network
@@ -82,8 +84,8 @@ class Case:
 
     @cached_property
     def truth(self) -> RadarCube:
-        """The ground truth."""
-        return self.room.cube(self.index)
+        """The ground truth, with all paths: what the data set keeps may be geometry of first order."""
+        return _simulated(self, self.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None)
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -94,20 +96,28 @@ Method = Callable[[Case], RadarCube]
 
 
 def simulated(
-    scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0, propagation: Propagation = AS_PUBLISHED
+    scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0, propagation: Propagation = ALL_PATHS
 ) -> Method:
     """The simulator in some room, always with another noise seed than the ground truth."""
 
     def method(case: Case) -> RadarCube:
-        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed, propagation=propagation)
-        spec, frames = case.spec, len(case.joints[0])
-        subject, noise = spec.person + skin, spec.seed + OTHER
-        made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
-        if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
-            raise InputError("the data set's people move otherwise in this version; make it again")
-        return made.cube
+        spec = case.spec
+        return _simulated(
+            case, scene_of(case), micro_seed, propagation, subject=spec.person + skin, noise_seed=spec.seed + OTHER
+        )
 
     return method
+
+
+def _simulated(
+    case: Case, scene: Scene, micro_seed: int, propagation: Propagation, *, subject: int | None, noise_seed: int | None
+) -> RadarCube:
+    config, frames = case.room.config, len(case.joints[0])
+    simulator = Simulator(scene, config, micro_seed=seed_of_room(scene) + micro_seed, propagation=propagation)
+    made = generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
+    if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
+        raise InputError("the data set's people move otherwise in this version; make it again")
+    return made.cube
 
 
 def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
@@ -128,7 +138,8 @@ def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, reco
 
 def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
     """The radar's recording of a room with nobody in it, with noise."""
-    return radar_cube(Simulator(scene, config, propagation=AS_PUBLISHED).run((), num_frames=num_frames, seed=seed).adc)
+    simulator = Simulator(scene, config, micro_seed=seed_of_room(scene), propagation=ALL_PATHS)
+    return radar_cube(simulator.run((), num_frames=num_frames, seed=seed).adc)
 
 
 def nearest(train: list[StoredRoom]) -> Method:
@@ -154,7 +165,7 @@ def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
         return each.mean(axis=0, dtype=np.complex128).astype(np.complex64)
 
     def method(case: Case) -> RadarCube:
-        like = case.room.cube(case.index)
+        like = case.truth
         return replace(like, values=np.repeat(mean()[None], len(like.values), axis=0))
 
     return method

@@ -22,10 +22,11 @@ from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.echo_network import EchoNetwork
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -58,7 +59,7 @@ def motion_of(case: Case, pose: RadarPose, *, skin: int) -> PoseSequence:
 def simulated(scene: Scene, case: Case, pose: RadarPose, *, other: int = OTHER) -> RadarCube:
     """The simulator at a pose; with `other`, with other phases, skin and noise than the ground truth."""
     config, frames = case.room.config, len(case.joints[0])
-    simulator = Simulator(scene_seen_from(scene, pose), config, micro_seed=1 if other else 0, propagation=AS_PUBLISHED)
+    simulator = Simulator(scene_seen_from(scene, pose), config, micro_seed=1 if other else 0, propagation=ALL_PATHS)
     chunks = simulator.chunks(motion_of(case, pose, skin=other), num_frames=frames, seed=case.spec.seed + other)
     values = np.concatenate([radar_cube(chunk).values for chunk in chunks])
     return RadarCube(values=values, grid=CubeGrid.of(config, frames), config=config, scale=1.0)

@@ -8,8 +8,8 @@ Rooms of kinds that the network never saw, one sequence each, exact joints; grou
 room, as in `learned_scores`. *four photos*: the photo at the radar and three more by the same depth camera, whose poses
 have the errors of a phone's tracking (POSE_ERROR). *scan*: a mesh of the true room, written to a GLB with a name for
 each class of object, read back as any user's, with the radar's place and direction given. *rough poses*: of the further
-photos only the place to 10 cm and the turn to 5 degrees are said. *edges in steps*: as rooms were before decision 229,
-and as the truth is computed, whose edges are those of its furniture. Intervals: bootstrap over rooms.
+photos only the place to 10 cm and the turn to 5 degrees are said.
+Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -25,11 +25,10 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.paths.static_paths import AS_PUBLISHED, FIRST_ORDER, Propagation, RayTracedRoom
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -56,7 +55,6 @@ POSE_ERROR = (0.01, 0.3)  # metres and degrees, standard deviations
 ROUGH_ERROR = (0.10, 5.0)
 EYE_ABOVE_FLOOR_M, PITCH_DEG = 1.5, -15.0
 SPLIT = "test_room"
-STEPPED = "edges in steps"  # as they were before decision 229
 
 
 def stands(room: ProceduralRoom, number: int = 3) -> list[RadarPose]:
@@ -152,15 +150,11 @@ def once_a_room(scene_of: Callable[[Case], Scene]) -> Callable[[Case], Scene]:
     return found
 
 
-def learned(
-    network: WeaverNetwork, scene_of: Callable[[Case], Scene], propagation: Propagation = FIRST_ORDER
-) -> Method:
+def learned(network: WeaverNetwork, scene_of: Callable[[Case], Scene]) -> Method:
     """The network in the room that `scene_of` gives."""
 
     def method(case: Case) -> Any:
-        scene, config = scene_of(case), case.room.config
-        given = SceneTensors.of(scene, config, RayTracedRoom(scene, config, propagation=propagation))
-        room = LearnedRoom(network, given, config, room_seed=1)
+        room = LearnedRoom(network, scene_of(case), case.room.config, room_seed=1)
         joints, velocity = case.joints
         motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
         return room.cube([motion], seed=case.index)
@@ -225,10 +219,7 @@ def methods_of(network: WeaverNetwork, generic_scene: Scene) -> dict[str, Method
     for name, found in scenes.items():
         scene_of = once_a_room(found)
         methods[f"weaver, {name}"] = learned(network, scene_of)
-        methods[f"physics, {name}"] = simulated(scene_of, skin=OTHER, micro_seed=1, propagation=FIRST_ORDER)
-        if name == "one photo":
-            methods[f"weaver, {name}, {STEPPED}"] = learned(network, scene_of, AS_PUBLISHED)
-            methods[f"physics, {name}, {STEPPED}"] = simulated(scene_of, skin=OTHER, micro_seed=1)
+        methods[f"physics, {name}"] = simulated(scene_of, skin=OTHER, micro_seed=1)
     methods[BASELINES[1]] = simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1)
     methods[ORACLES[0]] = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
     return methods

@@ -32,7 +32,7 @@ from mmweaver.datasets.room_generation import generate_sequence, pose_of
 from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -57,7 +57,7 @@ Scores = dict[str, dict[str, float]]
 
 def simulated(scene: Scene, case: Case, micro_seed: int) -> RadarCube:
     """Our simulator in a scene, with other skin and noise than the ground truth and the same kinds of paths."""
-    simulator = Simulator(scene, case.room.config, micro_seed=micro_seed, propagation=AS_PUBLISHED)
+    simulator = Simulator(scene, case.room.config, micro_seed=micro_seed, propagation=ALL_PATHS)
     spec = case.spec
     made = generate_sequence(
         spec, case.true_scene, simulator, len(case.joints[0]), subject=spec.person + OTHER, noise_seed=spec.seed + OTHER

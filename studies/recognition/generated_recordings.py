@@ -17,7 +17,8 @@ from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.paths.receiver import IDEAL, Receiver

@@ -8,7 +8,7 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.ablations import FLAT_M2, STRENGTH, flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import NUM_ANCHORS, body_anchors
 from mmweaver.models.body_prior import body_prior
-from mmweaver.models.learned_paths import FrameMotion
+from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.procedural.procedural_room import make_room

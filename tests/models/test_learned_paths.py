@@ -10,7 +10,8 @@ from mmweaver.core.presets import AWR1843, HUPR, IWR6843_ISK
 from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.paths.adc_synthesis import phasor
 from mmweaver.paths.mean_echoes import MeanEchoes

@@ -10,7 +10,8 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
-from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.power_cells import CellSizes
 from mmweaver.models.power_network import PowerEncoding, PowerNetwork
 from mmweaver.scene.procedural.procedural_room import make_room

@@ -40,8 +40,8 @@ def test_lengths_and_rates_are_those_over_both():
     between = found.between[0, 1]
     for frame in range(2):
         paths, pairs = over_both(found, frame), between.pairs[frame]
-        a = between._parts[0].middles_m(frame)[pairs.first]
-        b = between._parts[1].middles_m(frame)[pairs.second]
+        a = between.first.middles_m(frame)[pairs.first]
+        b = between.second.middles_m(frame)[pairs.second]
         ways = a, b, b - a
         speeds = VELOCITY[0], VELOCITY[1], VELOCITY[1] - VELOCITY[0]
         assert len(paths) == len(a) > 10

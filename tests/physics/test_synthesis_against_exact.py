@@ -8,9 +8,9 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.body_paths import motion_through
 from mmweaver.paths.exact import exact_frame
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
+from mmweaver.paths.seen_body import motion_through
 from mmweaver.paths.static_paths import scattered_paths
 
 

@@ -16,7 +16,7 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.people import Person
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
+from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
 from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.paths.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -82,7 +82,7 @@ def generate_room(
     true_scene = room.scene(spec.lighting)
     simulator = Simulator(
         true_scene, config, board=board, micro_seed=seed_of_room(true_scene),
-        propagation=FIRST_ORDER if geometry_only else propagation or Propagation(clutter=True),
+        propagation=FIRST_ORDER if geometry_only else propagation or ALL_PATHS,
     )  # fmt: skip
     photo = room.photo(spec.lighting, noise=True)
     one = trace_sequence if geometry_only else generate_sequence

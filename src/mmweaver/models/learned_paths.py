@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -11,7 +11,7 @@ from torch import Tensor
 
 from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
@@ -22,95 +22,47 @@ from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.echo_network import EchoNetwork
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.given_room import GivenRoom
+from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.power_network import PowerNetwork
-from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.apparent_paths import signal_points
+from mmweaver.paths.apparent_paths import signal_points, static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cell_echoes import CellEchoes
 from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.occlusion import occluded
-from mmweaver.paths.paths import Paths, ScenePaths
-from mmweaver.paths.radar_equation import points_of
-from mmweaver.paths.random_phases import place_of, sample_cells, sample_moving, sample_moving_segments, sample_static
+from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
+from mmweaver.paths.random_phases import (
+    place_of,
+    sample_cells,
+    sample_moving,
+    sample_moving_segments,
+    sample_static,
+    strongest_first,
+)
 from mmweaver.paths.receiver import quantise
-from mmweaver.paths.static_paths import FIRST_ORDER, RayTracedRoom
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20
-HISTORY_FRAMES = 10  # before part of a longer signal, which the pose encoder sees, too
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrameMotion:
-    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3).
-
-    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3). The first
-    `num_before` frames are only there for the pose encoder, which looks at motion before and after a frame.
-    """
-
-    joints_m: np.ndarray
-    velocity_mps: np.ndarray
-    subject: int
-    num_segments: int = 1
-    num_before: int = 0
-
-    @classmethod
-    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "FrameMotion":
-        """A dense motion at so many radar frames from a first one, and before it as far as the motion is known."""
-        middle_s = FrameClock(config).middle_s
-        if len(middle_s) == 1:
-            middle_s = np.array([config.active_time_s / 2])
-        known = first_frame - int(np.ceil(pose.time_s[0] / config.frame_period_s - 1e-6))
-        before = max(0, min(HISTORY_FRAMES, known, first_frame))
-        frames = np.arange(first_frame - before, first_frame + num_frames)
-        time_s = frames[:, None] * config.frame_period_s + middle_s
-        joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
-        return cls(
-            joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s),
-            num_before=before,
-        )  # fmt: skip
-
-    def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
-        """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
-        joints, velocity = (
-            torch.from_numpy(part).float().unflatten(0, (-1, self.num_segments))
-            for part in (self.joints_m, self.velocity_mps)
-        )
-        late_s = torch.from_numpy(clock.middle_s - clock.middle_s.mean()).float()
-        if len(late_s) == self.num_segments:
-            return joints, velocity
-        return joints + velocity * late_s[:, None, None], velocity.expand(-1, len(late_s), -1, -1)
-
-    @property
-    def middle_joints_m(self) -> Tensor:
-        """Joints at the middle of each frame whose signal is wanted, float32 (frame, 22, 3)."""
-        middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
-        return torch.from_numpy(middle_m[self.num_before :]).float()
-
-
-def given_room(scene: Scene, config: RadarConfig) -> RayTracedRoom:
-    """The paths of a photographed room that the network starts from."""
-    return RayTracedRoom(scene, config, propagation=FIRST_ORDER)
 
 
 class LearnedRoom:
     """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
 
-    The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `background`: a
-    recording of the room by this radar with nobody there, from which static clutter is then taken. Raises InputError
-    for one of another radar.
+    The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `room` is a
+    scene, or one made ready for this radar with its antennas where the board has them. `background`: a recording of the
+    room by this radar with nobody there, from which static clutter is then taken. Raises InputError for one of another
+    radar.
     """
 
     def __init__(
         self,
         network: EchoNetwork,
-        scene: Scene | SceneTensors,
+        room: Scene | GivenRoom,
         config: RadarConfig,
         *,
         room_seed: int = 0,
@@ -120,9 +72,9 @@ class LearnedRoom:
     ):
         self.network, self.nominal, self.device = network.to(device), config, device
         self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
-        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config, given_room(scene, config))
         config = config if self.board is None else self.board.radar
         self.config = config
+        self.given = room if isinstance(room, GivenRoom) else GivenRoom.of(room, config, seed=room_seed)
         self.radar, self.renderer = MeanPower(config), CubeRenderer(config, self.board)
         self.noise_power, self.background = self.radar.noise, None
         gain = np.repeat(config.tx_noise_gain / config.tx_noise_gain.mean(), config.num_rx)
@@ -133,16 +85,17 @@ class LearnedRoom:
             at_range = self.board.noise_gain(share).astype(np.float32)
             self._noise_factor = at_range[:, None, None] * self._noise_factor
         with torch.inference_mode(), one_thread():
-            self.code = network.encode_for(view[None].to(device), config)
+            self.code = network.encode_for(self.given.view[None].to(device), config)
             echoes = self.code.static[0].to("cpu")
-            self.static = sample_static(echoes, config, room_seed)
+            static = [sample_static(echoes, config, room_seed), *([] if self.reads_cells else [self.given.others])]
+            self.static = strongest_first(StaticPaths.cat(static))
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
             if self.board is not None:
                 self.static = self.board.on_static(self.static)
             if background is not None:
                 check_recording(background, self.nominal)
-                expected = self.radar.maps(points_of(echoes, self.radar.response)).range_azimuth
+                expected = self.radar.maps(static_points(self.static, self.radar.response)).range_azimuth
                 self.background = BackgroundRecording.of(background, expected, self.radar)
                 self.static = self.background.conditioned(self.static, self.renderer)
                 self.noise_power = self.background.noise_power
@@ -167,15 +120,20 @@ class LearnedRoom:
         with torch.inference_mode(), one_thread():
             return self._paths(motions)
 
-    def _paths(self, motions: Sequence[FrameMotion], first_frame: int = 0) -> ScenePaths:
-        moving = Paths.cat(
-            [self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions], 1
-        )
+    def _paths(
+        self, motions: Sequence[FrameMotion], first_frame: int = 0, *, of_second_order: bool = True
+    ) -> ScenePaths:
+        moving = [
+            self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions
+        ]
+        has_second = self.given.traced.propagation.bounces > 1 and not self.reads_cells
+        if motions and has_second and of_second_order:
+            moving.append(second_order_paths(self.given.traced, motions, self.renderer.clock))
         noticed_m = self.static.departure_vertex_m[: self._num_noticed]
         by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
         hidden = torch.zeros(len(by_each[0]), len(self.static), dtype=torch.uint8)
         hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
-        return ScenePaths(static=self.static, moving=moving, occluded=hidden)
+        return ScenePaths(static=self.static, moving=Paths.cat(moving, 1), occluded=hidden)
 
     def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
         """One person's paths (frame * segment, path), less those that others occlude."""
@@ -237,12 +195,13 @@ class LearnedRoom:
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
         """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion.
 
-        Frames of several segments are fitted: their paths fade into each other, which points of whole frames do not.
+        Points have one place, so moving paths of second order are left out. Frames of several segments are fitted:
+        their paths fade into each other, which points of whole frames do not.
         """
-        paths = self.paths(motions)
         if len(self.renderer.clock.segments) > 1:
-            return self._fitted_field(paths)
-        with torch.inference_mode():
+            return self._fitted_field(self.paths(motions))
+        with torch.inference_mode(), one_thread():
+            paths = self._paths(motions, of_second_order=False)
             window = FitWindow.of(self.config, len(paths.occluded), 0)
             points = signal_points(paths.moving, self.renderer.clock, window.response)
             layers = Layers(

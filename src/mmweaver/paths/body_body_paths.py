@@ -6,18 +6,14 @@ decision 246.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
 
 from mmweaver.core.seeding import stream
-from mmweaver.paths.body_room_paths import FAINTEST_OF_DIRECT, NEAREST_M, ROOM_MARGIN_M, unit
+from mmweaver.paths.body_room_paths import FAINTEST_OF_DIRECT, NEAREST_M, ROOM_MARGIN_M, BodyRoomPaths, unit
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.room_patches import roulette
-
-if TYPE_CHECKING:
-    from mmweaver.paths.body_paths import BodyPaths
 
 MOST_PAIRS = 32  # of parts in a frame
 
@@ -34,20 +30,20 @@ class _PartPairs:
 class BodyBodyPaths:
     """Paths over two people, frame by frame."""
 
-    def __init__(self, first: "BodyPaths", second: "BodyPaths"):
-        assert first.second is not None, "paths of second order are asked for"
-        assert second.second is not None, "paths of second order are asked for"
-        self.first, self.second, self._parts = first, second, (first.second, second.second)
-        rng = stream(first.traced.micro_seed, "room", "between people")
-        drawn = rng.random((len(first.second.phase), len(second.second.phase)))
+    def __init__(self, first: BodyRoomPaths, second: BodyRoomPaths):
+        self.first, self.second = first, second
+        rng = stream(first.room.micro_seed, "room", "between people")
+        drawn = rng.random((len(first.phase), len(second.phase)))
         self._luck = np.triu(drawn) + np.triu(drawn, 1).T  # whoever is named first
-        self.pairs = [self._pairs(frame) for frame in range(first.num_frames)]
+        frames, every = range(first.of.num_frames), first.sampling.every
+        pairs = {frame: self._pairs(frame) for frame in frames[::every]}
+        self.pairs = [pairs[frame - frame % every] for frame in frames]
 
     def paths(self, frame: int, first_motion: np.ndarray, second_motion: np.ndarray) -> Paths:
         """Paths (path,) of one time segment of a frame; motions (point, 3, 3) of each person's skin."""
         pairs = self.pairs[frame]
-        a = self._parts[0].parts(frame, first_motion)[pairs.first]
-        b = self._parts[1].parts(frame, second_motion)[pairs.second]
+        a = self.first.parts(frame, first_motion)[pairs.first]
+        b = self.second.parts(frame, second_motion)[pairs.second]
         count = len(pairs.amplitude)
         return Paths(
             amplitude=torch.from_numpy(pairs.amplitude.astype(np.complex64)),
@@ -58,14 +54,15 @@ class BodyBodyPaths:
         )
 
     def _pairs(self, frame: int) -> _PartPairs:
-        (one, other), (own, others) = (self.first, self.second), self._parts
+        own, others = self.first, self.second
+        one, other = own.of, others.of
         a_m, b_m = own.middles_m(frame), others.middles_m(frame)
         leg_m = np.maximum(np.linalg.norm(a_m[:, None] - b_m, axis=2), NEAREST_M)
         sigma = own.bistatic(frame, b_m) * others.bistatic(frame, a_m).T
         level = one.gain * np.outer(one.pattern(unit(a_m)), other.pattern(unit(b_m)))
         distance_m = np.outer(np.linalg.norm(a_m, axis=1), np.linalg.norm(b_m, axis=1)) * leg_m
         power = level**2 * sigma / (4 * np.pi * distance_m**2)
-        power *= one.traced.is_clear(a_m[:, None], b_m[None], ROOM_MARGIN_M)
+        power *= own.room.is_clear(a_m[:, None], b_m[None], ROOM_MARGIN_M)
         if power.sum() < FAINTEST_OF_DIRECT * (one.direct_power[frame] + other.direct_power[frame]):
             power = np.zeros_like(power)
         pair, standing_for = roulette(power.ravel(), self._luck.ravel(), MOST_PAIRS)

@@ -6,13 +6,13 @@ import numpy as np
 import torch
 
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.body_room_paths import BodyRoomPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
-from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
+from mmweaver.paths.seen_body import BodyAtFrames, SeenBody, occluded_by
+from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.visibility import Visibility
 
 GHOST_POINTS = 200
@@ -24,84 +24,7 @@ FAINTEST = 1e-4  # ghosts over one face of less power than this share of the dir
 LEFT_OUT = 0.02  # and so much of the others' power, in their faintest paths
 
 
-@dataclass(frozen=True, kw_only=True)
-class BodyAtFrames:
-    """One body posed in every frame. `motion` covers each time segment, the other arrays the frame's middle."""
-
-    motion: np.ndarray  # (frame, segment, point, 3, 3) position, velocity, acceleration of the skin; m, m/s, m/s2
-    place_m: np.ndarray  # (frame, point, 3)
-    normal: np.ndarray  # (frame, point, 3)
-    hulls: list[RayCaster]  # one a frame, of everybody who may occlude
-
-    @classmethod
-    def of(
-        cls,
-        body: ScatteringBody,
-        clock: FrameClock,
-        joints_m: np.ndarray,
-        chest_m: np.ndarray | None,
-        hulls: list[RayCaster] | None = None,
-    ) -> "BodyAtFrames":
-        """Joints (frame, node, 22, 3) and chest (frame, node) at the clock's nodes.
-
-        `hulls` stand for this body and all others that may occlude it; the body's own if None, and no rays if empty.
-        """
-        frames, nodes = joints_m.shape[:2]
-        skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
-        places = skin.place_m.reshape(frames, nodes, -1, 3)
-        normals = skin.normal.reshape(frames, nodes, -1, 3)
-        return cls(
-            motion=motion_through(places, clock),
-            place_m=places[:, nodes // 2],
-            normal=normals[:, nodes // 2],
-            hulls=hulls_of([body], [joints_m]) if hulls is None else hulls,
-        )
-
-    def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float, wanted: np.ndarray) -> np.ndarray:
-        """Bool (frame, point): wanted, and no body lies between start (frame, point, 3) or (3,) and end."""
-        clear = wanted.copy()
-        for frame, hull in enumerate(self.hulls):
-            ask = np.flatnonzero(wanted[frame])
-            start = np.broadcast_to(start_m, end_m.shape)[frame, ask].astype(float)
-            clear[frame, ask] = hull.is_clear(start, end_m[frame, ask].astype(float), margin_m)
-        return clear
-
-
-def motion_through(nodes_m: np.ndarray, clock: FrameClock) -> np.ndarray:
-    """Positions (frame, segment * node, point, 3) -> the quadratics through them, (frame, segment, point, 3, 3).
-
-    The last but one axis is position, velocity and acceleration at the middle of the segment.
-    """
-    frames, _, points, _ = nodes_m.shape
-    out = np.empty((frames, len(clock.segments), points, 3, 3))
-    for index, segment in enumerate(clock.segments):
-        before, middle, after = (nodes_m[:, 3 * index + node] for node in range(3))
-        reach_s = segment.node_s[2]
-        out[:, index, :, 0] = middle
-        out[:, index, :, 1] = (after - before) / (2 * reach_s)
-        out[:, index, :, 2] = (before + after - 2 * middle) / reach_s**2
-    return out
-
-
-def hulls_of(bodies: list[ScatteringBody], joints_m: list[np.ndarray]) -> list[RayCaster]:
-    """One mesh a frame of all bodies together, posed at the frame's middle; joints (frame, node, 22, 3) of each."""
-    posed = [body.hull(own[:, own.shape[1] // 2]) for body, own in zip(bodies, joints_m, strict=True)]
-    first = np.cumsum([0, *(vertices.shape[1] for vertices, _ in posed)])
-    faces = np.concatenate([faces + at for (_, faces), at in zip(posed, first, strict=False)])
-    vertices = np.concatenate([vertices for vertices, _ in posed], axis=1)
-    return [RayCaster(frame, faces) for frame in vertices]
-
-
-def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.ndarray:
-    """Indices of the static paths, of those asked for, that a body blocks before the first or after the last vertex."""
-    first, last = paths.departure_vertex_m.numpy()[asked], paths.arrival_vertex_m.numpy()[asked]
-    blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
-    other = np.flatnonzero(np.any(first != last, axis=1))
-    blocked[other] |= ~hull.is_clear(last[other], np.zeros_like(last[other]), 0.02)
-    return asked[blocked]
-
-
-class BodyPaths:
+class BodyPaths(SeenBody):
     """Paths of one person in one room, frame by frame.
 
     With a `known` visibility no ray is cast, and the room needs no ray caster.
@@ -112,22 +35,17 @@ class BodyPaths:
         chest_m: np.ndarray | None = None, hulls: list[RayCaster] | None = None, known: Visibility | None = None,
     ):  # fmt: skip
         """`joints_m` (frame, node, 22, 3) and `chest_m` (frame, node) are given at the clock's nodes."""
-        self.room, self.body, self.config, self.known = room, body, room.config, known
-        self.posed = BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else [])
+        super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else []))
+        self.known = known
         self.over_faces: list[np.ndarray | None] = [None] * len(room.reflectors)
-        self.num_frames = len(joints_m)
-        self.distance_m = np.linalg.norm(self.posed.place_m, axis=-1)
-        self.towards = -self.posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]
-        self.cos = (self.posed.normal * self.towards).sum(-1)
         self.visible = self._visible()
-        self.gain = scatterer_gain(self.config)
-        self.parts = [self._direct()]
-        direct = self.direct_power = self.parts[0].power()  # (frame,) mW
+        self.parts = [SkinPaths(None, None, np.arange(len(body.micro_phase)), self.direct, self.visible)]
+        direct = self.direct_power
         for index in range(len(room.reflectors)):
             self.parts += self._ghosts(index, direct)
         self.second: BodyRoomPaths | None = None
         if room.propagation.bounces > 1 and known is None:
-            self.second = BodyRoomPaths(self, direct)
+            self.second = BodyRoomPaths(self)
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over the person in one frame, a record (path,) for each time segment."""
@@ -173,19 +91,6 @@ class BodyPaths:
         facing = self.cos > self.body.echo.least_cos
         facing &= self.traced.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
-
-    @property
-    def traced(self) -> RayTracedRoom:
-        """The room, with its ray caster."""
-        assert isinstance(self.room, RayTracedRoom), "a room without a ray caster needs a known visibility"
-        return self.room
-
-    def _direct(self) -> "SkinPaths":
-        cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
-        amplitude = self.gain * self.pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
-        return SkinPaths(
-            None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible
-        )
 
     def _ghosts(self, index: int, direct_power: np.ndarray) -> list["SkinPaths"]:
         """Over a face on departure or arrival, and over the face on both."""
@@ -235,10 +140,6 @@ class BodyPaths:
         clear = self.posed.is_clear(np.zeros(3), corner, SKIN_MARGIN_M, clear)
         return self.posed.is_clear(corner, place, SKIN_MARGIN_M, clear)
 
-    def pattern(self, direction: np.ndarray) -> np.ndarray:
-        """Amplitude of one antenna in unit directions (..., 3)."""
-        return pattern(direction.reshape(-1, 3), self.config).reshape(direction.shape[:-1])
-
 
 def ghost_points(body: ScatteringBody) -> np.ndarray:
     """Indices of the few skin points that stand for the body in reflections."""
@@ -259,10 +160,6 @@ class SkinPaths:
     amplitude: np.ndarray  # (frame, path) complex
     present: np.ndarray  # (frame, path) bool
     longer_m: np.ndarray | None = None  # (frame, path) of the path than over the face's front, if it is
-
-    def power(self) -> np.ndarray:
-        """(frame,) of all paths that are present, in mW."""
-        return (np.abs(self.amplitude) ** 2 * self.present).sum(axis=1)
 
     def strongest(self, direct_power: np.ndarray) -> "SkinPaths":
         """Without the frames that hardly add to the direct paths, and without the faintest paths of the others."""

@@ -19,10 +19,8 @@ from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.room_patches import roulette
 
 if TYPE_CHECKING:
-    from mmweaver.paths.body_paths import BodyPaths
+    from mmweaver.paths.seen_body import SeenBody
 
-MOST_PAIRS = 48  # of body part and patch in a frame
-MOST_PATCHES = 200  # of which those are chosen
 SKIN_POINTS = 64  # that stand for the body
 NEAREST_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
 ROOM_MARGIN_M = 0.06
@@ -46,6 +44,15 @@ def _part_name(capsule: Capsule) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PairSampling:
+    """How many paths of second order stand for all. Mean powers do not depend on it."""
+
+    most_pairs: int = 48  # of body part and patch in a frame
+    most_patches: int = 200  # of which those are chosen
+    every: int = 1  # frames are amplitudes computed, and kept in between
+
+
+@dataclass(frozen=True, kw_only=True)
 class _Pairs:
     """The chosen pairs of one frame."""
 
@@ -57,16 +64,15 @@ class _Pairs:
 class BodyRoomPaths:
     """Second-order paths of one person, frame by frame."""
 
-    def __init__(self, body_paths: "BodyPaths", direct_power: np.ndarray):
-        """`direct_power` (frame,) of the direct paths, in mW."""
-        self.of, self.room = body_paths, body_paths.traced
+    def __init__(self, seen: "SeenBody", sampling: PairSampling | None = None):
+        self.of, self.room, self.sampling = seen, seen.traced, sampling or PairSampling()
         self.patches = self.room.patches
         count = len(self.of.body.micro_phase)
         chosen = np.unique(np.linspace(0, count - 1, min(SKIN_POINTS, count)).astype(int))
         _, group = np.unique(part_of_capsule()[self.of.body.part], return_inverse=True)
         one_hot = np.eye(group.max() + 1)[:, group]
         # a part is where its visible skin is, or all of its skin where none is visible; (frame, part, point)
-        shown = one_hot * (body_paths.visible[:, None] + 1e-6)
+        shown = one_hot * (seen.visible[:, None] + 1e-6)
         self._members = shown / shown.sum(axis=2, keepdims=True)
         self._of_part = one_hot
         self._chosen, self._of_chosen = chosen, one_hot[:, chosen]
@@ -77,8 +83,11 @@ class BodyRoomPaths:
         self._pair_luck = rng.random((len(one_hot), len(self.patches)))
         self._patch_gain = pattern(unit(self.patches.place_m), self.room.config)
         self._patch_m = np.linalg.norm(self.patches.place_m, axis=1)
-        self.pairs = [self._pairs(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
-        self.twice = [self._body_radar_body(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
+        power, frames, every = seen.direct_power, range(seen.num_frames), self.sampling.every
+        pairs = {frame: self._pairs(frame, power[frame]) for frame in frames[::every]}
+        twice = {frame: self._body_radar_body(frame, power[frame]) for frame in frames[::every]}
+        self.pairs = [pairs[frame - frame % every] for frame in frames]
+        self.twice = [twice[frame - frame % every] for frame in frames]
 
     def paths(self, frame: int, motion: np.ndarray) -> list[Paths]:
         """Paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
@@ -127,7 +136,7 @@ class BodyRoomPaths:
         middle_m = of.posed.place_m[frame].mean(axis=0)
         gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * NEAREST_M)
         level = self.patches.cross_section_m2 * (self._patch_gain / (self._patch_m * gap_m)) ** 2
-        near, standing_for = roulette(level, self._patch_luck, MOST_PATCHES)
+        near, standing_for = roulette(level, self._patch_luck, self.sampling.most_patches)
         some = self.patches[near]
         clear = self.room.is_clear(np.broadcast_to(middle_m, some.place_m.shape), some.place_m, ROOM_MARGIN_M)
         near, some, standing_for = near[clear], some[clear], standing_for[clear]
@@ -141,7 +150,7 @@ class BodyRoomPaths:
         if total < FAINTEST_OF_DIRECT * direct_power:
             none = np.zeros(0, int)
             return _Pairs(part=none, patch=none, amplitude=np.zeros(0, complex))
-        pair, standing_for = roulette(power.ravel(), self._pair_luck[:, near].ravel(), MOST_PAIRS)
+        pair, standing_for = roulette(power.ravel(), self._pair_luck[:, near].ravel(), self.sampling.most_pairs)
         part, patch = np.unravel_index(pair, power.shape)
         size = np.sqrt(power.ravel()[pair] * standing_for)
         return _Pairs(part=part, patch=near[patch], amplitude=size * self.phase[part] * self.patches.phase[near[patch]])

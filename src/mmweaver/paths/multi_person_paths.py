@@ -10,9 +10,10 @@ import torch
 
 from mmweaver.paths.body_body_paths import BodyBodyPaths
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_paths import BodyPaths, hulls_of, occluded_by
+from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, ScenePaths
+from mmweaver.paths.seen_body import hulls_of, occluded_by
 from mmweaver.paths.static_paths import RayTracedRoom
 
 
@@ -41,8 +42,9 @@ class PeoplePaths:
             BodyPaths(room, body, clock, own, chest, self.hulls or None)
             for body, own, chest in zip(bodies, joints_m, chests, strict=True)
         ]
-        pairs = combinations(range(len(bodies)), 2) if mutual and room.propagation.bounces > 1 else ()
-        self.between = {(a, b): BodyBodyPaths(self.each[a], self.each[b]) for a, b in pairs}
+        seconds = [one.second for one in self.each if one.second is not None] if mutual else []
+        pairs = combinations(range(len(seconds)), 2)
+        self.between = {(a, b): BodyBodyPaths(seconds[a], seconds[b]) for a, b in pairs}
 
     def scene(self, num_frames: int) -> ScenePaths:
         """The paths of the room and of all people in so many frames."""

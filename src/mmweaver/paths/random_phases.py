@@ -28,18 +28,22 @@ FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are le
 
 
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
-    """Static echoes (echo,) with sampled phases, the strongest first; those too faint to matter are left out."""
+    """Static echoes (echo,) with sampled phases."""
     rng = stream(room_seed, "weaver", "room")
     amplitude = points_of(static, _response(config)).amplitude
-    cycles = torch.from_numpy(rng.random(len(amplitude)))
-    size = amplitude / amplitude.max()
-    kept = size.argsort(descending=True)[: int((size > FAINTEST).sum())]
-    place_m = place_of(static)[kept].numpy()
+    cycles = rng.random(len(amplitude))
+    place_m = place_of(static).numpy()
     delay_s = 2 * np.linalg.norm(place_m, axis=1) / SPEED_OF_LIGHT_MPS
     # sampled is the phase at the receiver: the amplitude lacks what the renderers add along the path
     along = config.centre_frequency_hz * delay_s - config.chirp_slope_hz_per_s * delay_s**2 / 2
-    sampled = amplitude[kept].numpy() * np.exp(2j * np.pi * (cycles[kept].numpy() - along))
+    sampled = amplitude.numpy() * np.exp(2j * np.pi * (cycles - along))
     return scattered_paths(place_m, sampled, Interaction.DIFFUSE, config)
+
+
+def strongest_first(paths: StaticPaths) -> StaticPaths:
+    """Static paths in the order of their strength; those too faint to matter are left out."""
+    size = paths.amplitude.abs()
+    return paths[size.argsort(descending=True)[: int((size > FAINTEST * size.max()).sum())]]
 
 
 def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:

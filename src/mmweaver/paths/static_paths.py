@@ -41,6 +41,7 @@ class Propagation:
     hidden_faces: bool = True  # whether a face right before another, as a locker's door or a window, takes its place
 
 
+ALL_PATHS = Propagation(clutter=True)  # what a radar receives, as far as we know
 FIRST_ORDER = Propagation(bounces=1)  # what the network learns, and what data sets with geometry keep
 # What studies published before there was a second order were computed with, and data sets kept.
 AS_PUBLISHED = replace(

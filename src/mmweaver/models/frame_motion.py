@@ -1,0 +1,72 @@
+"""One person at the middle of each radar frame: what the network is given of a motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PoseSequence
+from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
+from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.paths.frame_clock import FrameClock
+
+HISTORY_FRAMES = 10  # before part of a longer signal, which the pose encoder sees, too
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameMotion:
+    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3).
+
+    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3). The first
+    `num_before` frames are only there for the pose encoder, which looks at motion before and after a frame.
+    """
+
+    joints_m: np.ndarray
+    velocity_mps: np.ndarray
+    subject: int
+    num_segments: int = 1
+    num_before: int = 0
+    height_m: float = REFERENCE_HEIGHT_M
+    girth: float = 1.0
+
+    @classmethod
+    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "FrameMotion":
+        """A dense motion at so many radar frames from a first one, and before it as far as the motion is known."""
+        middle_s = FrameClock(config).middle_s
+        if len(middle_s) == 1:
+            middle_s = np.array([config.active_time_s / 2])
+        known = first_frame - int(np.ceil(pose.time_s[0] / config.frame_period_s - 1e-6))
+        before = max(0, min(HISTORY_FRAMES, known, first_frame))
+        frames = np.arange(first_frame - before, first_frame + num_frames)
+        time_s = frames[:, None] * config.frame_period_s + middle_s
+        joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
+        return cls(
+            joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s),
+            num_before=before, height_m=pose.height_m, girth=pose.girth,
+        )  # fmt: skip
+
+    def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
+        """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
+        joints, velocity = (
+            torch.from_numpy(part).float().unflatten(0, (-1, self.num_segments))
+            for part in (self.joints_m, self.velocity_mps)
+        )
+        late_s = torch.from_numpy(clock.middle_s - clock.middle_s.mean()).float()
+        if len(late_s) == self.num_segments:
+            return joints, velocity
+        return joints + velocity * late_s[:, None, None], velocity.expand(-1, len(late_s), -1, -1)
+
+    @property
+    def middle_joints_m(self) -> Tensor:
+        """Joints at the middle of each frame whose signal is wanted, float32 (frame, 22, 3)."""
+        middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
+        return torch.from_numpy(middle_m[self.num_before :]).float()
+
+    def at_nodes(self, clock: FrameClock) -> np.ndarray:
+        """Joints of the frames whose signal is wanted at the clock's nodes, (frame, node, 22, 3)."""
+        joints_m, velocity_mps = (part[self.num_before :].double().numpy() for part in self.segments(clock))
+        late_s = np.stack([segment.node_s for segment in clock.segments])[..., None, None]
+        nodes_m = joints_m[:, :, None] + velocity_mps[:, :, None] * late_s
+        return nodes_m.reshape(len(nodes_m), -1, *nodes_m.shape[3:])

@@ -1,0 +1,60 @@
+"""Paths of second order next to the network's: over people and rough surfaces of the room, and over two people.
+
+The network has learned paths of first order; these follow from joints and room by physics, as in `paths`, of fewer
+points of skin. Less what people occlude of each other, nothing is occluded on the way to the skin. Reference: decision
+291.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import combinations
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.paths.body_body_paths import BodyBodyPaths
+from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.paths.body_room_paths import BodyRoomPaths, PairSampling
+from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.occlusion import occluded
+from mmweaver.paths.paths import Paths
+from mmweaver.paths.seen_body import BodyAtFrames, SeenBody
+from mmweaver.paths.static_paths import RayTracedRoom
+
+SKIN_POINTS = 64
+SAMPLING = PairSampling(most_pairs=24, most_patches=100, every=5)  # a stream's parts begin at fifth frames
+
+
+def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
+    """Paths (frame * segment, path) of all people, each order a path of its own."""
+    seen = [_seen(room, motion, [one for one in motions if one is not motion], clock) for motion in motions]
+    over_room = [BodyRoomPaths(one, SAMPLING) for one in seen]
+    between = [BodyBodyPaths(*pair) for pair in combinations(over_room, 2)]
+    segments = []
+    for frame in range(seen[0].num_frames):
+        for index in range(len(clock.segments)):
+            found = [part for one in over_room for part in one.paths(frame, one.of.posed.motion[frame, index])]
+            for pair in between:
+                both = (one.of.posed.motion[frame, index] for one in (pair.first, pair.second))
+                found.append(pair.paths(frame, *both))
+            segments.append(Paths.cat(found))
+    return Paths.padded(segments).one_way()
+
+
+def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:
+    body = _body(motion.subject, motion.height_m, motion.girth)
+    one = SeenBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
+    for other in others:
+        one.visible &= ~occluded(_tensor(one.posed.place_m), other.middle_joints_m).numpy()
+    return one
+
+
+@lru_cache(maxsize=32)
+def _body(subject: int, height_m: float, girth: float) -> ScatteringBody:
+    return ScatteringBody(subject, height_m, SKIN_POINTS, girth=girth)
+
+
+def _tensor(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(values).float()
