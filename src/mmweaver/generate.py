@@ -32,7 +32,7 @@ from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal, physics_with
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal, with_propagation
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
@@ -68,9 +68,8 @@ class Weaver(RoomReader):
     `calibration`: the channel errors that the radar's firmware compensates (default: those of its .cfg); ADC samples
     are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
     `mmweaver train`, or a Hub name, for the network, which then makes all signals;
-    `from_pretrained` is the short form. `bounces`, of the physics alone: 2 (default), paths over body and room, or 1,
-    those of first order; `clutter` likewise: "all" (default) or "resolved", that of photo and mesh alone. Raises
-    InputError for unknown names.
+    `from_pretrained` is the short form. `bounces`: 2 (default), paths over body and room, too, or 1, those of first
+    order; `clutter`: "all" (default) or "resolved", that of photo and mesh alone. Raises InputError for unknown names.
     """
 
     def __init__(
@@ -97,7 +96,7 @@ class Weaver(RoomReader):
             self.method_name = method if file is None else "weaver"
             self.method = METHODS[method]() if file is None else Learned(file)
         if bounces is not None or clutter is not None:
-            self.method = physics_with(self.method, bounces, clutter)
+            self.method = with_propagation(self.method, bounces, clutter)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         is_named = not isinstance(radar, RadarConfig)

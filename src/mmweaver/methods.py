@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 # what meta.json says
 LEARNED_NOTE = UsualAssumption(
-    "echoes were written by a network trained on simulated rooms; phases of surfaces and skin are sampled"
+    "echoes of first order were written by a network trained on simulated rooms, others by physics; phases of surfaces"
+    " and skin are sampled"
 )
 FIELDS_NOTE = (
     "a hypernetwork wrote fields of power (recipe paper_power); each of their cells is a scatterer of sampled phase"
@@ -87,8 +88,8 @@ class Method(Protocol):
 class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
-    def __init__(self, propagation: Propagation | None = None) -> None:
-        self.propagation = propagation or ALL_PATHS
+    def __init__(self, propagation: Propagation = ALL_PATHS) -> None:
+        self.propagation = propagation
         self._prepared = _Latest(self._prepare)
         # rays are the same for every board with the same places of antennas, and boards differ by seed
         self._traced = _Latest(
@@ -123,11 +124,10 @@ class Physics:
                     samples[part] = chunk.samples
                 scale, done = chunk.scale, part.stop
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
-        order = (FIRST_ORDER_ALONE,) if self.propagation.bounces == 1 else ()
         return Signal(
             cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
             adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
-            assumptions=(*ASSUMPTIONS, *order, *several, *_of_background(simulator.background)),
+            assumptions=(*ASSUMPTIONS, *_of_order(self.propagation), *several, *_of_background(simulator.background)),
         )
 
     def _prepare(
@@ -140,24 +140,23 @@ class Physics:
         )  # fmt: skip
 
 
-def physics_with(method: Method, bounces: int | None, clutter: str | None) -> Physics:
-    """The physics with so many bounces, and clutter "all" or "resolved"; None leaves it as it is.
+def with_propagation(method: Method, bounces: int | None, clutter: str | None) -> Method:
+    """Physics or the network with so many bounces, and clutter "all" or "resolved"; None leaves it as it is.
 
     Raises InputError for another method or value.
     """
-    if not isinstance(method, Physics):
-        raise InputError("bounces and clutter are options of --method physics alone: the network has learned its own")
+    if not isinstance(method, Physics | Learned):
+        raise InputError("bounces and clutter are options of the methods physics and weaver; leave them out")
     if bounces not in (None, 1, 2):
         raise InputError(f"bounces must be 1 or 2, not {bounces}")
     if clutter not in (None, "all", "resolved"):
         raise InputError(f"clutter must be 'all' or 'resolved', not {clutter!r}")
     own = method.propagation
-    return Physics(
-        replace(
-            own, bounces=own.bounces if bounces is None else bounces,
-            clutter=own.clutter if clutter is None else clutter == "all",
-        )
+    propagation = replace(
+        own, bounces=own.bounces if bounces is None else bounces,
+        clutter=own.clutter if clutter is None else clutter == "all",
     )  # fmt: skip
+    return Physics(propagation) if isinstance(method, Physics) else Learned(method.weights, propagation)
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
@@ -171,11 +170,11 @@ class Learned:
     files that are no such weights.
     """
 
-    def __init__(self, weights: Path | None = None) -> None:
-        self.weights = weights
+    def __init__(self, weights: Path | None = None, propagation: Propagation = ALL_PATHS) -> None:
+        self.weights, self.propagation = weights, propagation
         self._encoded = _Latest(self._encode)
         # what the network is given of a room is the same for every board with the same places of antennas
-        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config))
+        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, propagation))
 
     @cached_property
     def reads_fields(self) -> bool:
@@ -211,7 +210,8 @@ class Learned:
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         note = FIELDS_NOTE if room.reads_cells else LEARNED_NOTE
         moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
-        assumptions = (note, *moved, *several, *_of_background(room.background))
+        order = () if room.reads_cells else _of_order(self.propagation)
+        assumptions = (note, *order, *moved, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
     def _encode(
@@ -229,10 +229,10 @@ class Learned:
         return load_network(self.weights or shipped_weights())[0]
 
 
-def _given_room(scene: Scene, config: RadarConfig) -> "GivenRoom":
+def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
     from mmweaver.models.given_room import GivenRoom
 
-    return GivenRoom.of(scene, config)
+    return GivenRoom.of(scene, config, propagation=propagation)
 
 
 def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
@@ -258,6 +258,10 @@ class _Latest(Generic[RoomT]):
             kept = scene, background, key, self._prepare(scene, config, background, board)
             self._kept = kept
         return kept[3]
+
+
+def _of_order(propagation: Propagation) -> tuple[str, ...]:
+    return (FIRST_ORDER_ALONE,) if propagation.bounces == 1 else ()
 
 
 def _of_background(background: "BackgroundRecording | None") -> tuple[str, ...]:

@@ -11,11 +11,18 @@ from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.paths.adc_synthesis import phasor
+from mmweaver.paths.body_model import body_of
 from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.multi_person_paths import PeoplePaths
+from mmweaver.paths.paths import Interaction, Paths
 from mmweaver.paths.random_phases import sample_moving
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import FIRST_ORDER
 from mmweaver.scene.procedural.procedural_room import make_room
 from tests.rooms import back_wall, floor, scene_of, standing_person
 
@@ -117,9 +124,11 @@ def test_noise_of_samples_is_white_and_has_the_cells_that_were_asked_for(room: L
     assert power.mean(axis=(0, 2, 3, 4)) == pytest.approx(np.full(32, AWR1843.noise_power_mw), rel=0.1)
 
 
-def test_who_stands_behind_another_is_occluded(room: LearnedRoom):
+def test_who_stands_behind_another_is_occluded(room: LearnedRoom, scene: Scene):
     front, behind = (_standing(0.0, y_m, subject) for subject, y_m in enumerate((1.4, 2.6)))
     aside = _standing(0.9, 2.6, 1)
+    given = GivenRoom.of(scene, AWR1843, propagation=FIRST_ORDER)
+    room = LearnedRoom(room.network, given, AWR1843)
     both, away = (room.paths([front, other]).moving for other in (behind, aside))
     alone = room.paths([behind]).moving
     count = alone.amplitude.shape[1]
@@ -129,6 +138,38 @@ def test_who_stands_behind_another_is_occluded(room: LearnedRoom):
 
     assert power(both) < 0.2 * power(alone)
     assert power(away) == pytest.approx(power(room.paths([aside]).moving), rel=1e-5)
+
+
+def test_paths_of_second_order_are_those_of_physics_on_average(scene: Scene):
+    """Within 3 dB of the ray tracer's, which has more points of skin and pairs, and bodies that occlude themselves."""
+    torch.manual_seed(0)
+    room = LearnedRoom(WeaverNetwork().eval(), scene, AWR1843)
+    simulator = Simulator(scene, AWR1843)
+    ratios_db = []
+    for x_m, y_m in ((-0.4, 1.6), (0.2, 2.0), (0.5, 2.6)):
+        powers = np.zeros(2)
+        for subject in range(6):  # one person's skin is 3 dB brighter than another's
+            pose = replace(standing_person((x_m, y_m, -1.2)), subject=subject)
+            motion = FrameMotion.of(pose, AWR1843, 1)
+            joints_m = simulator._joints_at_nodes(pose, np.arange(1))
+            people = PeoplePaths(simulator.room, [body_of(pose)], simulator.clock, [joints_m])
+            own = second_order_paths(room.given.traced, [motion], room.renderer.clock)
+            powers += [_power_over_room(own), _power_over_room(people.scene(1).moving.one_way())]
+        ratios_db.append(10 * np.log10(powers[0] / powers[1]))
+    assert np.abs(ratios_db).max() < 3
+
+
+def _power_over_room(paths: Paths) -> float:
+    return float((paths.amplitude * (paths.interaction == int(Interaction.BODY_ROOM))).abs().square().sum())
+
+
+def test_a_room_of_first_order_has_no_others(room: LearnedRoom, scene: Scene):
+    motion = _motion(0.3, -0.5)
+    plain = LearnedRoom(room.network, GivenRoom.of(scene, AWR1843, propagation=FIRST_ORDER), AWR1843)
+    assert len(plain.given.others) == 0
+    assert set(plain.paths([motion]).moving.interaction.unique().tolist()) == {int(Interaction.BODY)}
+    assert int(Interaction.BODY_ROOM) in room.paths([motion]).moving.interaction.unique().tolist()
+    assert _error_db(room.layer.numpy(), plain.layer.numpy()) > -20
 
 
 def test_long_frames_are_rendered_by_segments(scene: Scene):

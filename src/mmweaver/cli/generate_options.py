@@ -45,11 +45,11 @@ def add_generate_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     advanced.add_argument(
         "--bounces", type=int, choices=(1, 2),
-        help=Rare("of --method physics: 2 (default), paths over body and room, room and room, body-radar-body, or 1"),
+        help=Rare("2 (default): also paths over body and room, room and room, body-radar-body; or 1"),
     )  # fmt: skip
     advanced.add_argument(
         "--clutter", choices=("all", "resolved"),
-        help=Rare("of --method physics: with static clutter that photo and mesh do not resolve (default), or without"),
+        help=Rare("with static clutter that photo and mesh do not resolve (default), or without"),
     )  # fmt: skip
     advanced.add_argument(
         "--weights", type=source, metavar="FILE|DIR|HUB",

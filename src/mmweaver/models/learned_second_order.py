@@ -1,8 +1,7 @@
 """Paths of second order next to the network's: over people and rough surfaces of the room, and over two people.
 
 The network has learned paths of first order; these follow from joints and room by physics, as in `paths`, of fewer
-points of skin. Less what people occlude of each other, nothing is occluded on the way to the skin. Reference: decision
-291.
+points of skin, which the room and other people may occlude, but not the body itself. Reference: decision 291.
 """
 
 from collections.abc import Sequence
@@ -16,14 +15,14 @@ from torch import Tensor
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.paths.body_body_paths import BodyBodyPaths
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_room_paths import BodyRoomPaths, PairSampling
+from mmweaver.paths.body_room_paths import ROOM_MARGIN_M, BodyRoomPaths, PairSampling
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths
 from mmweaver.paths.seen_body import BodyAtFrames, SeenBody
 from mmweaver.paths.static_paths import RayTracedRoom
 
-SKIN_POINTS = 64
+SKIN_POINTS = 200
 SAMPLING = PairSampling(most_pairs=24, most_patches=100, every=5)  # a stream's parts begin at fifth frames
 
 
@@ -46,6 +45,7 @@ def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], cloc
 def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:
     body = _body(motion.subject, motion.height_m, motion.girth)
     one = SeenBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
+    one.visible &= room.is_clear(np.zeros(3), one.posed.place_m, ROOM_MARGIN_M)
     for other in others:
         one.visible &= ~occluded(_tensor(one.posed.place_m), other.middle_joints_m).numpy()
     return one

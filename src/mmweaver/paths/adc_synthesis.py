@@ -249,7 +249,8 @@ def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
     """|p - a| - |p| (..., antenna) for places p (..., 3) and antennas a; written so that nothing cancels."""
     distance = place_m.norm(dim=-1)[..., None]
     excess = antenna_m.square().sum(dim=-1) - 2 * (place_m @ antenna_m.T)
-    return excess / ((distance.square() + excess).clamp(min=0).sqrt() + distance)
+    both_m = (distance.square() + excess).clamp(min=0).sqrt() + distance
+    return excess / both_m.clamp(min=1e-12)  # 0 for the place of an antenna itself, as padding is
 
 
 def between(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
