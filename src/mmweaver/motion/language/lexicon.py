@@ -1,9 +1,14 @@
-"""The lexicon: words that a sentence may contain, by their function."""
+"""The lexicon: words that a sentence may contain, by their function. Lists of words stand in `lexicon.toml`."""
 
+from pathlib import Path
+
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.sided_phrases import SIDED_PHRASES
 from mmweaver.motion.language.verbs import words_in
+
+_WORDS = {name: words_in(words) for name, words in read_toml(Path(__file__).with_suffix(".toml")).items()}
 
 # These mean walking if the clause gives a destination.
 GOING = frozenset({"go", "move", "head", "come", "return"})
@@ -17,12 +22,7 @@ TARGETS = {
     "countertop": "counter", "television": "tv", "refrigerator": "fridge", "closet": "wardrobe", "oven": "stove",
     "cupboard": "cabinet", "windows": "window",
 }  # fmt: skip
-# Light verbs: "does squats", "starts walking", "keeps waving".
-LIGHT = words_in(
-    """
-    do perform make take give start begin continue keep proceed execute practice practise have throw land decide
-    """
-)
+LIGHT = _WORDS["light"]
 IRREGULAR = {
     "sat": "sit", "stood": "stand", "drank": "drink", "ran": "run", "strode": "stride",
     "went": "go", "gone": "go", "came": "come", "made": "make", "did": "do", "does": "do", "done": "do", "took": "take",
@@ -129,174 +129,28 @@ NUMBERS = {
     "another": 1,
 }  # fmt: skip
 TIMES = frozenset({"once", "twice", "thrice"})
-SEATS = words_in(
-    """
-    sofa couch chair stool bed bench armchair seat ottoman settee recliner
-    """
-)
-ARMS = words_in(
-    """
-    hand hands arm arms fist fists palm palms wrist wrists
-    """
-)
-RADAR = words_in(
-    """
-    radar camera sensor me us viewer observer device photographer lens audience awr1843
-    """
-)
-BOTH = words_in(
-    """
-    both hands arms fists
-    """
-)
-OWN = words_in(
-    """
-    his her their its my your own
-    """
-)
-PRONOUNS = words_in(
-    """
-    he she it they i we you who someone somebody
-    """
-)
+SEATS = _WORDS["seats"]
+ARMS = _WORDS["arms"]
+RADAR = _WORDS["radar"]
+BOTH = _WORDS["both"]
+OWN = _WORDS["own"]
+PRONOUNS = _WORDS["pronouns"]
 
-NEGATIONS = words_in(
-    """
-    not never no without cannot cant dont doesnt didnt isnt wont wasnt nor neither instead except refuses refuse
-    avoid avoids avoiding hardly barely nobody none rather
-    """
-)
-MANY = words_in(
-    """
-    people persons men women boys girls children kids couple crowd humans users everyone family pair others group
-    team subjects
-    """
-)
-NOT_HUMAN = words_in(
-    """
-    dog cat robot horse bird car animal monkey drone cow elephant fish pet puppy
-    """
-)
-# Words that make the movement another one, so that ignoring them would be wrong.
-OTHER_MOVEMENT = words_in(
-    """
-    rolling-over figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
-    square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
-    s-shape s-curve slalom eight break breakdance breakdancing mid-air midair stairs stair staircase
-    stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail railing trampoline
-    treadmill bike bicycle like allfours diagonally zigzag obstacle hurdle over knees knee leg legs foot tiptoe
-    tiptoes handstand cartwheel floor ground wheelchair swimming flip somersault asleep crossed spiral triangle
-    rectangle swings head shoulder shoulders elbow elbows hips hip thigh sit-ups push-ups plank tennis racket
-    upward downward platform edge curb log bridge bent hunched crouched against reacts shuffle scooter skateboard
-    grapevine waltz circle circles tango salsa waltzing ballet backflip kata karate fight fighting drums drum
-    piano trumpet flute conductor conducts skiing skating surfing climbing climbs climb vault vaults
-    dog partner someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging
-    half-circle guitar violin golf tightrope toes heel heels heel-toe obstacles hole puddle stones steps_up
-    side_flip headstand diagonal yoga basketball baskeball football soccer volleyball juggles kickboxing air-plane
-    scared
-    """
-)
-# Words that may be ignored: they change nothing that can be acted out.
-FILLERS = words_in(
-    """
-    a an the this that these there his her their its my your own one's is are was were be been being am has have
-    had will would can could should may might shall and or with in on at to for from of by into onto over_to up
-    down off out near next beside behind between through across along until till during so very really quite
-    fairly rather just only then now still while bit little some any each every per all again together himself
-    herself themselves itself myself person man woman human guy lady boy girl user subject child kid adult
-    someone somebody he she it they i you who which figure individual participant patient gentleman male female
-    actor player student tenant resident speaker character young old elderly tall short big small large long
-    wide medium narrow humans normal normally regular average casual casually comfortably comfortable relaxed
-    quietly silently steadily steady natural naturally simply repeatedly continuously constantly several few
-    many multiple times time speed pace fashion manner way style motion movement movements moderate moderately
-    usual usually side direction line room place position spot area middle centre center front end start
-    beginning point distance wall window door table desk kitchen living office bedroom corridor hallway lab tv
-    television plant shelf hello goodbye bye hi greeting friend attention audience help air high higher overhead
-    above chest mouth lips water coffee tea juice beer wine milk soda cup glass mug bottle straw refreshing hot
-    cold warm glass_of body upright straight_up feet deep deeply low fully halfway half full once more round
-    rhythm beat smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
-    invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat
-    lightly stationary motionless motionlessly immobile perfectly completely moment second seconds minute minutes
-    exercise exercises workout gym set repetitions reps fitness jacks steps pairs large-ish meters metres
-    meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them something
-    anything first about whole complete successive consecutive row close someone's person's man's user's woman's
-    arm's drunk drunken tight careful recovery starting ending performing doing object thing things ball box
-    book soup pot surface board plate food meal dish bowl handle screen keyboard computer laptop cloth
-    whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane objects waist breast
-    breast-high chest-high hair teeth sink mirror newspaper magazine mail email towards_it it's reading_glasses
-    tempo pose posture stance kind sort type_of lot music song hall quick-ish normal-speed relatively tiny huge
-    bigger larger smaller greater instrument virtual fridge cupboard lamp shoes toilet bath shower bathroom
-    garden street path track route trajectory consecutively successively subsequently than meanwhile both-handed
-    right-handed right-hand floor ground sides aside suddenly sudden past toward beneath
-    """
-)
-# How something is done, in ways that no movement of the library shows: known, and said to be left out.
-MANNERS = words_in(
-    """
-    happily happy sad sadly nervously angrily politely friendly confidently proudly cheerfully joyfully excited
-    excitedly enthusiastic loudly loud hard strongly strong firmly awkward rough sharp rhythmically joyful
-    cheerful furiously anxiously anxious nervous angry calm bored boredly tired tiredly exhausted elegantly
-    gracefully clumsily clumsy stiffly stiff aggressively aggressive dramatically wildly hesitantly tentatively
-    playfully sternly forcefully powerfully heavily
-    """
-)
-# Sizes of a movement.
-SIZES = words_in(
-    """
-    big large small little tiny huge long short wide narrow high deep low bigger larger smaller greater giant
-    mini exaggerated tight
-    """
-)
-# Before a place that a walk passes or goes to.
-PASSED = words_in(
-    """
-    to towards toward between through across along behind past into onto around under beneath out from beside
-    """
-)
-# Verbs with which "step" or "steps" is a noun.
-STEPPING = GOING | words_in(
-    """
-    walk jog run jump hop turn advance march retreat sidestep stumble pushed dance tumble stagger limp crawl
-    """
-)
-# Units of distance.
-DISTANCES = words_in(
-    """
-    meters metres meter metre m cm centimeters feet yards
-    """
-)
-# Verbs with which a leg, knee or foot is no other movement.
-LEG_VERBS = words_in(
-    """
-    kick raise lift stomp stamp one_leg_stand hop jump leap turn pivot rotate spin kneel_down kneel lunge limp
-    hobble step walk
-    """
-)
-# Verbs with which the floor is no other movement.
-FLOOR_VERBS = words_in(
-    """
-    lie lay lie_down fall collapse topple pick_up put_down get_up stand_up kneel kneel_down kneel_up stomp
-    stamp look_around bend faint wipe clean point
-    """
-)
-# Words for an object, which a person who "moves" one does not act out.
-THINGS = words_in(
-    """
-    object objects something thing things box it them
-    """
-)
-# Words that belong to the noun or verb after them.
-BEFORE_NOUNS = words_in(
-    """
-    a an one small big quick fast slow sharp short full is gets sideways little slight further
-    """
-)
-# Nouns and adjectives that look like forms of a verb.
-NOUNS_LIKE_VERBS = words_in(
-    """
-    ceiling evening morning bed red building wing king tired something anything everything during
-    """
-)
+NEGATIONS = _WORDS["negations"]
+MANY = _WORDS["many"]
+NOT_HUMAN = _WORDS["not_human"]
+OTHER_MOVEMENT = _WORDS["other_movement"]
+FILLERS = _WORDS["fillers"]
+MANNERS = _WORDS["manners"]
+SIZES = _WORDS["sizes"]
+PASSED = _WORDS["passed"]
+STEPPING = GOING | _WORDS["stepping"]
+DISTANCES = _WORDS["distances"]
+LEG_VERBS = _WORDS["leg_verbs"]
+FLOOR_VERBS = _WORDS["floor_verbs"]
+THINGS = _WORDS["things"]
+BEFORE_NOUNS = _WORDS["before_nouns"]
+NOUNS_LIKE_VERBS = _WORDS["nouns_like_verbs"]
 # What the spelling correction knows in addition to verbs.
 ALL_WORDS = frozenset().union(
     ARMS,
