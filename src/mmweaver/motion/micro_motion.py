@@ -1,9 +1,13 @@
 """Micro-motion of a body that stands still: postural sway, wavering and tremor of limbs, breathing and heartbeat.
 
 Millimetres, and yet what a radar sees of a standing person: clutter removal suppresses only what is truly static.
-Amplitudes are those of posturography (centre of mass 3 to 5 mm rms fore and aft, 2 to 3 mm sideways, 4 to 6 mm/s), of
-physiological tremor (8 to 12 Hz, some 0.1 mm at a hand held out) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
-breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
+Sway is that of somebody who stands as people do, twice that of subjects who were asked to stand quietly (centre of mass
+3 to 5 mm rms fore and aft, 4 to 6 mm/s); unconstrained, people also fidget every minute and shift by 2 cm (Duarte and
+Zatsiorsky, "Patterns of Center of Pressure Migration during Prolonged Unconstrained Standing", 1999). The trunk moves
+over the hips as much as the legs over the ankles: angular accelerations in a ratio of 3.1 +- 1.2 (Aramaki et al.,
+"Reciprocal Angular Acceleration of the Ankle and Hip Joints during Quiet Standing in Humans", 2001; here 2.8). Tremor
+is physiological (8 to 12 Hz, some 0.1 mm at a hand held out); so is the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
+breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4; decision 288.
 """
 
 from dataclasses import dataclass
@@ -15,10 +19,10 @@ from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS, joint
 
 CENTRE_OF_MASS = 0.55  # of the height; sway amplitudes are given there
 SEATED, STANDING = 0.36, 0.48  # pelvis above the feet, of the height: a seated body sways about the pelvis
-# A seated body rests on the seat, its hands on the thighs: how far it wavers and trembles compared with a standing one.
-SEATED_WAVER, SEATED_TREMOR = 0.5, 0.25
+# A seated body rests on the seat, its hands on the thighs: how far it sways, wavers and trembles against one standing.
+SEATED_SWAY, SEATED_WAVER, SEATED_TREMOR = 0.5, 0.5, 0.25
 # Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
-WAVER = {"knee": 0.4, "spine1": 0.2, "spine3": 0.2, "head": 0.5, "shoulder": 0.3, "elbow": 0.6, "wrist": 0.8}
+WAVER = {"knee": 0.2, "spine1": 0.6, "spine3": 0.6, "head": 0.5, "shoulder": 0.3, "elbow": 0.3, "wrist": 0.4}
 WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
 
 
@@ -30,7 +34,7 @@ class MicroMotionSettings:
     the front of the chest.
     """
 
-    sway_m: float = 4.0e-3
+    sway_m: float = 8.0e-3
     waver_m: float = 2.0e-3
     tremor_m: float = 0.08e-3
     breath_m: float = 7.0e-3
@@ -84,12 +88,12 @@ class MicroMotion:
         right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
         right = right[:, :2] / np.maximum(np.linalg.norm(right[:, :2], axis=1, keepdims=True), 1e-6)
         front = np.stack([-right[:, 1], right[:, 0]], axis=1)
-        sway = self.settings.sway_m * self.size[0] * self.sway.at(time_s)
+        sway = _share(SEATED_SWAY, stands) * self.settings.sway_m * self.size[0] * self.sway.at(time_s)
         level = sway[:, :1] * front + 0.6 * sway[:, 1:] * right
         moved = joints_m.astype(float)
         moved[..., :2] += lever[..., None] * level[:, None]
         waver_m, tremor_m = (
-            amplitude * (seated + (1 - seated) * stands)[..., None]
+            amplitude * _share(seated, stands)[..., None]
             for amplitude, seated in ((self.settings.waver_m, SEATED_WAVER), (self.settings.tremor_m, SEATED_TREMOR))
         )
         own = waver_m * self.waver.at(time_s) + tremor_m * self.tremor.at(time_s)
@@ -113,6 +117,11 @@ def _stands(joints_m: np.ndarray, height_m: float) -> np.ndarray:
     pelvis = joints_m[:, [joint("pelvis")], 2] - _lower_foot_m(joints_m)
     share = np.clip((pelvis / height_m - SEATED) / (STANDING - SEATED), 0, 1)
     return share**2 * (3 - 2 * share)
+
+
+def _share(seated: float, stands: np.ndarray) -> np.ndarray:
+    """A movement's size (time, 1) against a standing body's, between `seated` and 1."""
+    return seated + (1 - seated) * stands
 
 
 def _height_over_support(joints_m: np.ndarray, stands: np.ndarray) -> np.ndarray:
