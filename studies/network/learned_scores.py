@@ -31,7 +31,7 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.room_generation import generate_sequence
+from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.echo_network import EchoNetwork
@@ -85,7 +85,7 @@ class Case:
     @cached_property
     def truth(self) -> RadarCube:
         """The ground truth, with all paths: what the data set keeps may be geometry of first order."""
-        return _simulated(self, self.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None)
+        return _simulated(self, self.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None).cube
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -102,22 +102,22 @@ def simulated(
 
     def method(case: Case) -> RadarCube:
         spec = case.spec
-        return _simulated(
+        made = _simulated(
             case, scene_of(case), micro_seed, propagation, subject=spec.person + skin, noise_seed=spec.seed + OTHER
         )
+        if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
+            raise InputError("the data set's people move otherwise in this version; make it again")
+        return made.cube
 
     return method
 
 
 def _simulated(
     case: Case, scene: Scene, micro_seed: int, propagation: Propagation, *, subject: int | None, noise_seed: int | None
-) -> RadarCube:
+) -> GeneratedSequence:
     config, frames = case.room.config, len(case.joints[0])
     simulator = Simulator(scene, config, micro_seed=seed_of_room(scene) + micro_seed, propagation=propagation)
-    made = generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
-    if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
-        raise InputError("the data set's people move otherwise in this version; make it again")
-    return made.cube
+    return generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
 
 
 def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:

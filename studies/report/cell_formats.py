@@ -83,17 +83,6 @@ _STYLES = {
 }  # fmt: skip
 
 
-COLLAPSED_DB = -10.0  # energy over that of the ground truth
-
-
-def _collapse(metric: Mapping[str, Any], digits: str) -> str:
-    """Nothing, or that a method writes hardly any energy."""
-    energy_db = metric["value"]
-    return (
-        "" if energy_db is None or energy_db > COLLAPSED_DB else f", collapsed: {-energy_db:.0f} dB too little energy"
-    )
-
-
 def _percentiles(metric: Mapping[str, Any], digits: str) -> str:
     low, high = metric["percentiles_5_95"]
     return f"{low:.{digits}f} to {high:.{digits}f}"
@@ -106,7 +95,6 @@ def _edges_percent(metric: Mapping[str, Any], digits: str) -> str:
 
 # {name: text of a metric}; for what no number says
 _SPECIAL: dict[str, Callable[[Mapping[str, Any], str], str]] = {
-    "collapse": _collapse,
     "percentiles": _percentiles,
     "edges_percent": _edges_percent,
     "recorded": lambda metric, digits: ", ".join(f"{value:.3g}" for value in metric["recorded_5_50_95"]),

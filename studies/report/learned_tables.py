@@ -5,8 +5,22 @@ from studies.report.table_layouts import MatrixTable, PivotTable, RowTable
 BOTH = (("ra_ssim", "RA"), ("rd_ssim", "RD"))
 SCORES = RowTable(
     sources=("learned_scores/test_room",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "training_mean": "mean of the training rooms (baseline)",
+        "nearest_training_pose": "the nearest training pose's recording (baseline)",
+        "generic_room_physics": "physics in some other room (baseline)",
+        "wrong_photo": "the network, another room's photo (baseline)",
+        "paper": "the paper's network",
+        "weaver": "**the network**",
+        "physics_in_photographed_room": "physics in the photographed room",
+        "realization": "physics in the true room, other phases (oracle)",
+        "static_mean": "the ground truth's own static mean (needs a recording of it)",
+        "weaver_with_background": "**the network with a background recording**",
+        "realization_skin": "physics in the true room, its phases known (oracle of that)",
+    },
     columns=(
-        ("method", "{method}{metrics.energy_db:collapse}"),
+        ("made by", "{label}"),
         ("RA SSIM", "{metrics.ra_ssim:interval.2}"), ("RD SSIM", "{metrics.rd_ssim:interval.2}"),
         ("RA, all cells", "{metrics.ra_ssim_all_cells:fixed.2}"),
         ("RD, all cells", "{metrics.rd_ssim_all_cells:fixed.2}"),
@@ -14,7 +28,7 @@ SCORES = RowTable(
         ("NMSE of magnitude, dB", "{metrics.magnitude_nmse_db:fixed.2}"),
         ("antenna phase error, rad", "{metrics.antenna_phase_error_rad:fixed.2}"),
         ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"), ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"),
-        ("CPU, s", "{metrics.cpu_s:fixed.2}"),
+        ("energy, dB", "{metrics.energy_db:fixed.1}"), ("CPU, s", "{metrics.cpu_s:fixed.2}"),
     ),
 )  # fmt: skip
 POWER = RowTable(
@@ -232,7 +246,8 @@ LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
     "diffusion_scores": DIFFUSION,
     "whole_room": WHOLE_ROOM, "radar_poses": RADAR_POSES,
-    "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
+    "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
+    "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
