@@ -32,3 +32,16 @@ def test_it_can_be_differentiated():
 def test_a_lopsided_window_is_refused():
     with pytest.raises(ValueError, match="symmetric"):
         WindowKernel(np.arange(8.0))
+
+
+@pytest.mark.parametrize("window", [hann(32), np.ones(9), np.ones(8)])
+def test_bins_one_apart_have_the_same_response(window: np.ndarray):
+    """Over several periods, on either side."""
+    kernel = WindowKernel(window)
+    place = np.array([[0.0, 3.3, -41.25], [77.77, 8.5, 1e-7]])
+    bins = -5 + np.arange(40)
+    expected = kernel(torch.from_numpy(bins - place[..., None]))
+    ours = kernel.on_bins(-5.0, 40, place)
+    for one, other in zip(ours, expected, strict=True):
+        assert np.allclose(one, other.numpy(), atol=1e-4)
+    assert np.allclose(ours[0], expected[0].numpy(), atol=5e-6)

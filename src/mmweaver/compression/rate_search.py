@@ -23,7 +23,7 @@ from mmweaver.core.shapes import CubeValues
 
 EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at least this share of the cube's
 TRIALS = 9
-CLOSE_ENOUGH = 0.98  # of the bytes allowed
+CLOSE_ENOUGH, ENOUGH_LATER, LATER = 0.98, 0.971, 2  # of the bytes allowed; the same after so many trials
 CLOSEST = 1.002  # ratio of steps that are tried one after the other, at least
 MOST_PRICE, PRICES = 1000.0, 10  # squared steps a bit, where a quality jumps; how many are tried
 WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
@@ -65,7 +65,8 @@ def _finest(segment: SegmentEncoder, num_bytes: int, plan: Plan, progress: Progr
         progress(f"trial {trial + 1}")
         if one.num_bytes <= num_bytes:
             fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
-            if one.num_bytes >= CLOSE_ENOUGH * num_bytes or step <= segment.finest_step:
+            enough = CLOSE_ENOUGH if trial < LATER else ENOUGH_LATER
+            if one.num_bytes >= enough * num_bytes or step <= segment.finest_step:
                 break
         else:
             larger, low = one, step

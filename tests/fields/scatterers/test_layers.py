@@ -5,8 +5,6 @@ from mmweaver.fields.scatterers.layers import (
     Layers,
     compact,
     fit_static,
-    join_points,
-    no_points,
     static_cells,
     static_values,
     strongest,
@@ -23,7 +21,6 @@ def test_padding_is_moved_to_the_end_and_trimmed():
     points = compact(some([[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.2, 0.0]]))
     assert points.amplitude.real.tolist() == torch.tensor([[0.3, 0.1], [0.2, 0.0]]).tolist()
     assert points.range_bin[0].tolist() == torch.tensor([3.0, 1.0]).tolist()
-    assert join_points(points, no_points(2)).amplitude.shape == (2, 2)
 
 
 def test_the_strongest_are_selected_over_all_frames():

@@ -1,28 +1,31 @@
 """Fits scatterers to a cube: alternates greedy selection with joint refinement."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from mmweaver.fields.beams import beams_of
 from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.greedy import Beams, next_points
+from mmweaver.fields.scatterers.greedy import Greedy
 from mmweaver.fields.scatterers.layers import (
     Layers,
-    fit_static,
-    join_points,
+    compact,
     no_points,
+    static_response,
     static_values,
     strongest,
-    subtract_static,
     values_of_point,
 )
-from mmweaver.fields.scatterers.refinement import Damping, refined
+from mmweaver.fields.scatterers.point_factors import PointFactors
+from mmweaver.fields.scatterers.refinement import Damping, refined_factors
+
+Array = np.ndarray
 
 DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
 CALIBRATED_EVERY = 4  # stages: gains change slowly
-NOISE_CELLS = 30_000  # of which the median tells the power of the noise
+NOISE_CELLS = 10_000  # of which the median tells the power of the noise
 WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
@@ -57,20 +60,20 @@ def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
 
 
 class _Fit:
-    """State of one fit; invariant: `residual` = target / calibration - static - points."""
+    """State of one fit; invariants: `received` = target / calibration - static, `residual` = received - points."""
 
     def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
-        self.target, self.recipe, self.fit_window = target, recipe, fit_window
+        self.target, self.recipe = target.contiguous().numpy(), recipe
         self.response, self.axes = fit_window.response, fit_window.axes
-        self.to_beams = torch.from_numpy(beams_of(fit_window.config)).to(target.dtype)
-        self.beams = Beams.over(self.axes, self.response.num_directions)
-        self.calibration = torch.ones(target.shape[-1], dtype=target.dtype)
-        self.points = no_points(len(target))
+        self.to_beams = beams_of(fit_window.config).astype(np.complex64)
+        self.greedy = Greedy.of(self.response, self.axes)
+        self.calibration = np.ones(target.shape[-1], np.complex64)
+        self.points = PointFactors.of(no_points(len(target)), self.response, self.axes)
         self.damping = Damping.fresh(len(target))
-        self.static = torch.zeros_like(target[0, :, 0])
-        self.active_beams: Tensor | None = None  # (range, beam) of the static layer; None = all
-        self.calibrated = target  # over the gains
-        self.residual = target.clone()
+        self.static = np.zeros(self.target.shape[1::2], np.complex64)
+        self.static_response = static_response(self.response, self.axes)
+        self.active_beams: Array | None = None  # (range, beam) of the static layer; None = all
+        self.received, self.residual = self.target.copy(), self.target.copy()
         self.refinements = 0
         self._update_static()
 
@@ -83,93 +86,120 @@ class _Fit:
             self._fill(round(self._most_points() * (stage + 1) / recipe.stages))
             self._refine(recipe.steps_a_stage)
         for _ in range(recipe.swaps):
-            self.points = strongest(self.points, round(self._most_points() * (1 - recipe.swapped_share)))
-            self.residual = self._without_static() - self.response.render(self.points, self.axes)
+            self._keep(round(self._most_points() * (1 - recipe.swapped_share)))
             self._refine(1)
             self._add(self._most_points())
             self._refine(max(2, recipe.steps_a_stage))
         self._refine(recipe.last_steps)
         return Layers(
-            points=self.points, static=self.static, calibration=self.calibration, noise_power=self._noise_power(),
-            active_beams=self.active_beams,
+            points=compact(self.points.points()), static=torch.from_numpy(self.static),
+            calibration=torch.from_numpy(self.calibration), noise_power=self._noise_power(),
+            active_beams=None if self.active_beams is None else torch.from_numpy(self.active_beams),
         )  # fmt: skip
+
+    @property
+    def _num_points(self) -> int:
+        return int(np.count_nonzero(self.points.amplitude))
 
     def _fill(self, wanted: int) -> None:
         """Adds new scatterers, or removes the weakest, up to the wanted number."""
-        if int((self.points.amplitude != 0).sum()) > wanted:
-            self.points = strongest(self.points, wanted)
-            self.residual = self._without_static() - self.response.render(self.points, self.axes)
+        if self._num_points > wanted:
+            self._keep(wanted)
         self._add(wanted)
 
+    def _keep(self, wanted: int) -> None:
+        """Keeps the strongest scatterers."""
+        kept = strongest(self.points.points(), wanted)
+        self.points = PointFactors.of(kept, self.response, self.axes)
+        self.residual = self.received - self.response.render(kept, self.axes).numpy()
+
     def _add(self, wanted: int) -> None:
-        have = int((self.points.amplitude != 0).sum())
-        if wanted > have:
-            least = self.recipe.least_gain * self._noise_power()
-            new = next_points(self.residual, self.response, self.axes, self.beams, count=wanted - have, least=least)
-            self.points = join_points(self.points, new)
-            if new.amplitude.shape[1]:
-                self.residual = self.response.render(replace(new, amplitude=-new.amplitude), self.axes, self.residual)
+        have = self._num_points
+        if wanted <= have:
+            return
+        least = self.recipe.least_gain * self._noise_power()
+        new = self.greedy.next_points(self.residual, count=wanted - have, least=least)
+        before = self.points.counts().tolist()
+        self.points = self.points.joined(new.frame, new.bins, new.direction, new.amplitude)
+        rest = _as_matrices(self.residual)
+        for frame, (first, count) in enumerate(zip(before, self.points.counts().tolist(), strict=True)):
+            if count > first:
+                rest[frame] -= self.points.rendered(frame, count, first)
 
     def _refine(self, steps: int) -> None:
-        if not self.points.amplitude.shape[1]:
+        if not self._num_points:
             return
-        self.points, self.residual = refined(
-            self.points, self._without_static(), self.response, self.axes, self.damping,
-            steps=steps, largest=self.recipe.largest_group, residual=self.residual,
+        self.points = refined_factors(
+            self.points, _as_matrices(self.received), _as_matrices(self.residual), self.damping,
+            steps=steps, largest=self.recipe.largest_group,
         )  # fmt: skip
         self.refinements += 1
         if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
             self._calibrate()
         self._update_static()
 
-    def _without_static(self) -> Tensor:
-        out = self.calibrated.clone()
-        subtract_static(out, self.static, self.response, self.axes)
-        return out
-
     def _update_static(self) -> None:
         """Moves the static part of the residual into the static layer."""
         if not self.recipe.with_static:
             return
         before = self.static
-        self.static = before + fit_static(self.residual, self.response, self.axes)
+        self.static = before + self._fitted_static()
         if self.active_beams is not None:
             self.static = (self.static @ self.to_beams.T * self.active_beams) @ self.to_beams.conj()
-        subtract_static(self.residual, self.static - before, self.response, self.axes)
+        for values in (self.received, self.residual):
+            self._subtract_static(values, self.static - before)
 
-    def _worthwhile_beams(self) -> Tensor:
+    def _fitted_static(self) -> Array:
+        """Least-squares static layer (range, antenna) of the residual."""
+        kernel, bins = self.static_response
+        found = np.einsum("trda,d->ra", self.residual[:, :, bins], kernel)
+        return found / (len(self.residual) * np.square(kernel).sum())
+
+    def _subtract_static(self, values: Array, static: Array) -> None:
+        kernel, bins = self.static_response
+        values[:, :, bins] -= static[:, None, :] * kernel[:, None]
+
+    def _worthwhile_beams(self) -> Array:
         """Beams (range, beam) that explain more energy per parameter than a weak scatterer does."""
         slow = float(self.response.doppler_kernel(self.axes.doppler_bin)[0].square().sum())
         fast = float(self.response.range_kernel(torch.arange(-2.0, 3.0))[0].square().sum())
-        echo = self.points.amplitude.abs()
-        echo = echo[echo > 0].square() * (len(self.calibration) * fast * slow)
-        weak = float(echo.quantile(WEAK_SHARE)) if len(echo) else 0.0
+        echo = np.abs(self.points.amplitude[self.points.amplitude != 0])
+        weak = float(np.quantile(np.square(echo), WEAK_SHARE)) if len(echo) else 0.0
+        weak *= len(self.calibration) * fast * slow
         least = max(weak, self.recipe.least_gain * self._noise_power()) * 2 / values_of_point(self.response)
-        beams = (self.static + fit_static(self.residual, self.response, self.axes)) @ self.to_beams.T
-        return beams.abs().square() * (len(self.target) * slow) > least
+        beams = (self.static + self._fitted_static()) @ self.to_beams.T
+        return np.square(np.abs(beams)) * (len(self.target) * slow) > least
 
     def _most_points(self) -> int:
         recipe = self.recipe
         if recipe.num_values is None:
             return recipe.num_points
-        static = static_values(self.active_beams, self.static.numel()) if recipe.with_static else 0
+        active = None if self.active_beams is None else torch.from_numpy(self.active_beams)
+        static = static_values(active, self.static.size) if recipe.with_static else 0
         gains = 2 * len(self.calibration) if recipe.with_calibration else 0
         return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
 
     def _calibrate(self) -> None:
         """Least-squares gain of each antenna; the mean gain stays 1."""
-        received = self._without_static()
-        model = received - self.residual
-        gain = (model.conj() * received).sum((0, 1, 2)) / model.abs().square().sum((0, 1, 2)).clamp(min=1e-30)
-        gain = gain / gain.abs().mean().clamp(min=1e-6)
+        model = self.received - self.residual
+        flat, received = (values.reshape(-1, values.shape[-1]) for values in (model, self.received))
+        power = np.square(np.abs(flat)).sum(axis=0)
+        gain = np.einsum("ca,ca->a", flat.conj(), received) / np.maximum(power, 1e-30)
+        gain = (gain / np.maximum(np.abs(gain).mean(), 1e-6)).astype(np.complex64)
         self.calibration = self.calibration * gain
-        self.calibrated = self.target / self.calibration
         self.static = self.static / gain
-        self.residual = self._without_static() - model
+        self.received = self.target * (1 / self.calibration)
+        self._subtract_static(self.received, self.static)
+        self.residual = self.received - model
 
     def _noise_power(self) -> float:
         """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
-        some = self.residual.flatten()[:: max(1, self.residual.numel() // NOISE_CELLS)]
-        found = float(torch.view_as_real(some).square().sum(-1).median()) / 0.6931
+        some = self.residual.reshape(-1)[:: max(1, self.residual.size // NOISE_CELLS)]
+        found = float(np.median(np.square(some.real) + np.square(some.imag))) / 0.6931
         most = self.recipe.most_noise
         return found if most is None else min(found, most)
+
+
+def _as_matrices(values: Array) -> Array:
+    """Complex (frame, range, doppler, antenna) -> real (frame, range, (doppler, antenna, part)), the same memory."""
+    return values.view(np.float32).reshape(*values.shape[:2], -1)

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
 import torch
+from jaxtyping import Float
 from torch import Tensor
 
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
@@ -67,21 +69,21 @@ def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
 
 def subtract_static(residual: Tensor, static: Tensor, response: PointResponse, axes: Axes) -> None:
     """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
-    kernel, bins = _static_response(response, axes)
-    residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
+    kernel, bins = static_response(response, axes)
+    residual[:, :, bins] -= static[:, None, :] * torch.from_numpy(kernel)[:, None]
 
 
 def fit_static(residual: Tensor, response: PointResponse, axes: Axes) -> Tensor:
     """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
-    kernel, bins = _static_response(response, axes)
-    static = torch.einsum("trda,d->ra", residual[:, :, bins], kernel.to(residual.dtype))
-    return static / (len(residual) * kernel.square().sum())
+    kernel, bins = static_response(response, axes)
+    static = torch.einsum("trda,d->ra", residual[:, :, bins], torch.from_numpy(kernel).to(residual.dtype))
+    return static / (len(residual) * float(np.square(kernel).sum()))
 
 
-def _static_response(response: PointResponse, axes: Axes) -> tuple[Tensor, slice]:
+def static_response(response: PointResponse, axes: Axes) -> tuple[Float[np.ndarray, "bins"], slice]:
     """Doppler response of zero velocity where it is not zero, and these bins: three for a Hann window."""
-    kernel = response.doppler_kernel(axes.doppler_bin)[0]
-    found = (kernel.abs() > NO_RESPONSE).nonzero()
+    kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
+    found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
     bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
     return kernel[bins], bins
 
@@ -98,11 +100,6 @@ def no_points(num_frames: int) -> Points:
 def select_points(points: Points, order: Tensor) -> Points:
     """Points of each frame selected by `order` (frame, selected)."""
     return points[torch.arange(len(order))[:, None], order]
-
-
-def join_points(first: Points, second: Points) -> Points:
-    """Concatenates the points of each frame and removes the padding in between."""
-    return compact(Points.cat([first, second], dim=1))
 
 
 def compact(points: Points) -> Points:
