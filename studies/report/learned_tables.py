@@ -1,5 +1,7 @@
 """Declared tables of the learned method: unseen rooms, other radars, tuning, recognition, the paper's network."""
 
+from dataclasses import replace
+
 from studies.report.table_layouts import MatrixTable, PivotTable, RowTable
 
 BOTH = (("ra_ssim", "RA"), ("rd_ssim", "RD"))
@@ -31,6 +33,7 @@ SCORES = RowTable(
         ("energy, dB", "{metrics.energy_db:fixed.1}"), ("CPU, s", "{metrics.cpu_s:fixed.2}"),
     ),
 )  # fmt: skip
+ALL_PATHS = replace(SCORES, sources=("learned_scores/all_paths",))
 POWER = RowTable(
     sources=("learned_scores/paper_power",),
     labels={
@@ -246,7 +249,7 @@ LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
     "diffusion_scores": DIFFUSION,
     "whole_room": WHOLE_ROOM, "radar_poses": RADAR_POSES,
-    "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
+    "learned_scores": SCORES, "learned_all_paths": ALL_PATHS, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,

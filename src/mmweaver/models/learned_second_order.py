@@ -23,7 +23,7 @@ from mmweaver.paths.seen_body import BodyAtFrames, SeenBody
 from mmweaver.paths.static_paths import RayTracedRoom
 
 SKIN_POINTS = 200
-SAMPLING = PairSampling(most_pairs=24, most_patches=100, every=5)  # a stream's parts begin at fifth frames
+SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's parts begin at fifth frames
 
 
 def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
