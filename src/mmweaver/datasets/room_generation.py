@@ -71,7 +71,7 @@ class GeneratedRoom:
 
 def generate_room(
     spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False, board: Board = IDEAL_BOARD,
-    propagation: Propagation | None = None,
+    propagation: Propagation = ALL_PATHS,
 ) -> GeneratedRoom:  # fmt: skip
     """Generates a room and simulates all its sequences with one board; about 0.35 CPU-seconds per sequence.
 
@@ -82,7 +82,7 @@ def generate_room(
     true_scene = room.scene(spec.lighting)
     simulator = Simulator(
         true_scene, config, board=board, micro_seed=seed_of_room(true_scene),
-        propagation=FIRST_ORDER if geometry_only else propagation or ALL_PATHS,
+        propagation=FIRST_ORDER if geometry_only else propagation,
     )  # fmt: skip
     photo = room.photo(spec.lighting, noise=True)
     one = trace_sequence if geometry_only else generate_sequence

@@ -37,4 +37,4 @@ def test_what_needs_the_same_hand_follows_and_is_said_to(text: str) -> None:
 
 def test_one_hand_after_the_other_stays_so() -> None:
     steps = parse("a man raises the left arm and then the right arm").steps
-    assert [(step.hand, step.beside) for step in steps] == [("left", None), ("right", None)]
+    assert [(step.hand, step.other_hand) for step in steps] == [("left", None), ("right", None)]

@@ -92,8 +92,8 @@ def in_the_given_words(
 def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
     numbers = tuple(dict.fromkeys(index[number] for number in step.clauses))
     words = ", ".join(clauses[number].clause for number in numbers) or step.clause
-    beside = None if step.beside is None else _in_own_words(step.beside, index, clauses)
-    return replace(step, clauses=numbers, clause=words, beside=beside)
+    other_hand = None if step.other_hand is None else _in_own_words(step.other_hand, index, clauses)
+    return replace(step, clauses=numbers, clause=words, other_hand=other_hand)
 
 
 def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:

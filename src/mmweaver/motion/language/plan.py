@@ -15,7 +15,7 @@ class Step:
 
     lower: str = "stand"  # key of a body activity
     upper: str = ""  # key of a hand activity, overlaid
-    beside: "Step | None" = None  # what the other hand does meanwhile: a hand activity, its hand and count
+    other_hand: "Step | None" = None  # what the other hand does meanwhile: a hand activity, its hand and count
     hand: str = ""  # left | right | both | "" (chosen by the seed)
     foot: str = ""  # left | right | "": the leg that moves
     direction: str = (
@@ -54,13 +54,13 @@ class Step:
         upper = BY_KEY[self.upper].name
         if self.upper == "raise":
             upper = {"both": "raising both hands", "": "hand raise"}.get(self.hand, f"{self.hand}-hand raise")
-        upper = upper if self.beside is None else f"{upper} and {self.beside.name}"
+        upper = upper if self.other_hand is None else f"{upper} and {self.other_hand.name}"
         return upper if self.lower == "stand" else f"{lower} and {upper}"
 
     @property
     def each(self) -> "tuple[Step, ...]":
         """The step, and what the other hand does."""
-        return (self,) if self.beside is None else (self, self.beside)
+        return (self,) if self.other_hand is None else (self, self.other_hand)
 
     @property
     def moves(self) -> bool:

@@ -154,7 +154,7 @@ def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
 
     A hand that the sentence leaves open is the other one's opposite, of two the right for the first.
     """
-    if not {one.upper, other.upper} <= ONE_ARMED or one.beside is not None or other.beside is not None:
+    if not {one.upper, other.upper} <= ONE_ARMED or one.other_hand is not None or other.other_hand is not None:
         return None
     unclear = one.clauses == other.clauses and not (one.hand and other.hand)  # "wiping or stirring with the right hand"
     if unclear or "both" in (one.hand, other.hand) or (one.hand and one.hand == other.hand):
@@ -184,8 +184,8 @@ def overlay(one: Step, other: Step) -> Step:
             replace(legs, upper="", hand="", count=legs.count if legs.moves else 0), replace(first, lower="stand")
         )
         clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
-        beside = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
-        return replace(together, beside=beside, clause=f"{one.clause}, {other.clause}", clauses=clauses)
+        other_hand = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
+        return replace(together, other_hand=other_hand, clause=f"{one.clause}, {other.clause}", clauses=clauses)
     lower = one if one.lower != "stand" or other.lower == "stand" else other
     upper = one if one.upper else other
     return replace(

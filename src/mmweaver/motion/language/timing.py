@@ -145,8 +145,8 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
 
 def _limits(step: Step) -> tuple[float, float]:
     """Least and natural duration of a step, in seconds."""
-    if step.beside is not None:
-        both = [_limits(replace(part, lower=step.lower, beside=None)) for part in step.each]
+    if step.other_hand is not None:
+        both = [_limits(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
         return max(least for least, _ in both), max(natural for _, natural in both)
     if step.seconds:
         return step.seconds, step.seconds

@@ -150,22 +150,22 @@ def perform(context: StepContext) -> Controls:
         if not context.step.upper:
             return posture
         controls = GESTURES[context.step.upper](context, posture.copy())
-        return controls if context.step.beside is None else _with_other_arm(context, controls, posture)
+        return controls if context.step.other_hand is None else _with_other_arm(context, controls, posture)
 
 
 def _with_other_arm(context: StepContext, controls: Controls, posture: Controls) -> Controls:
     """The controls with the arm of what the other hand does; head and trunk go with the first activity alone."""
-    step, beside = context.step, context.step.beside
-    assert beside is not None
+    step, second = context.step, context.step.other_hand
+    assert second is not None
     other = replace(
-        beside,
+        second,
         lower=step.lower,
         start_s=step.start_s,
         end_s=step.end_s,
         pace=step.pace,
-        speed=beside.speed or step.speed,
+        speed=second.speed or step.speed,
     )
-    alone = GESTURES[beside.upper](replace(context, step=other), posture)
-    side = LEFT if beside.hand == "left" else RIGHT
+    alone = GESTURES[second.upper](replace(context, step=other), posture)
+    side = LEFT if second.hand == "left" else RIGHT
     controls.arm_rad[:, side] = alone.arm_rad[:, side]
     return controls
