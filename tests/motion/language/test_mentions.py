@@ -66,3 +66,18 @@ def test_the_person_stays_seated_and_keeps_the_side():
     assert parse("a person spins a plate on a stick").steps[0].lower == "stand"
     assert [step.lower for step in parse("a person jogs at a moderate pace").steps] == ["jog"]
     assert parse("a person bends the right arm and nods").steps[-1].upper == "nod"
+
+
+@pytest.mark.parametrize(
+    ("text", "not_shown"),
+    [
+        ("a boy bounces on the bed", "'on the bed' is not shown"),
+        ("a person jumps off the chair", "'off the chair' is not shown"),
+        ("a person looks for something under the bed", "'under the bed' is not shown"),
+        ("a person reads a book on the sofa", ""),
+        ("a person sits down on the chair and waves", ""),
+    ],
+)
+def test_furniture_that_no_step_uses_is_named(text: str, not_shown: str):
+    said = "".join(clause.how for clause in parse(text, in_part=True).clauses)
+    assert (not_shown in said) if not_shown else not said

@@ -26,11 +26,21 @@ TABLE = Landmark(kind="table", position_m=np.array([0.0, 2.0, -0.5]), approach_m
         ("a person waves two metres away on the left", "2 m from the radar, on the left"),
         ("a person waves on the left two metres away", "on the left, 2 m from the radar"),
         ("a person claps on the right near the window", "near the window, on the right"),
+        ("a man on the left waves to a woman on the right", "on the left"),
+        ("a tall woman in the background claps", "in the background"),
     ],
 )
 def test_places_are_read(text: str, words: str):
     found = [step.place for step in parse(text).steps if step.place is not None]
     assert [place.words for place in found] == [words]
+
+
+def test_somebody_else_is_faced_where_they_are():
+    step = parse("a man waves to the woman on the right").steps[0]
+    assert (step.place, step.facing) == (None, "right")
+    plan = parse("a man on the left waves to a woman on the right")
+    assert plan.steps[0].facing == "right"
+    assert plan.clauses[0].status == "done"
 
 
 def test_sides_of_the_body_are_no_places():

@@ -313,3 +313,16 @@ def test_everyday_clauses_and_what_they_are_shown_as(text: str, shown: list[tupl
     plan = parse(f"a person {text}", in_part=True)
     assert [(step.lower, step.upper) for step in plan.steps] == shown
     assert plan.clauses[0].status == "approximated"
+
+
+def test_exercises_on_the_belly_are_reached_and_left_on_the_belly():
+    steps = parse(
+        "a person waves, does push-ups, rests for ten seconds, does five more push-ups, then walks away"
+    ).steps
+    assert [step.lower for step in steps] == [
+        "stand", "lie_down", "push_ups", "lie", "push_ups", "get_up", "walk",
+    ]  # fmt: skip
+    assert {step.style for step in steps[1:6]} == {"front"}
+    assert [step.lower for step in parse("a person waves, then crawls to the left").steps] == [
+        "stand", "kneel_down", "crawl",
+    ]  # fmt: skip

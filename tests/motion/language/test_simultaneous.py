@@ -4,6 +4,7 @@ import pytest
 
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.simultaneous import overlay
+from mmweaver.motion.language.timing import plan_motion
 
 
 def test_overlay_takes_legs_of_one_and_arms_of_the_other():
@@ -38,3 +39,11 @@ def test_what_needs_the_same_hand_follows_and_is_said_to(text: str) -> None:
 def test_one_hand_after_the_other_stays_so() -> None:
     steps = parse("a man raises the left arm and then the right arm").steps
     assert [(step.hand, step.other_hand) for step in steps] == [("left", None), ("right", None)]
+
+
+def test_what_is_carried_upstairs_is_carried_all_the_way():
+    for text in ("a person carries a box up the stairs", "a woman hauls two bags downstairs"):
+        plan = plan_motion(text)
+        assert [(step.lower, step.upper) for step in plan.steps] == [("stairs", "carry")], text
+        assert plan.duration_s > 4.0  # a whole step up and down
+        assert "stairs" in plan.notes[0]

@@ -33,7 +33,7 @@ def _angles(body: SkeletonProportions, away: Float[Array, "n 3"], elbow: Array) 
     upper, fore = body.upper_arm_m, body.forearm_m
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
-    length = cap(distance, 0.985 * (upper + fore), 0.01)
+    length = cap(distance, 0.985 * (upper + fore), 0.03)
     along = (upper**2 - fore**2 + length**2) / (2 * length)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 1e-8))
     square = elbow - (direction @ elbow)[:, None] * direction

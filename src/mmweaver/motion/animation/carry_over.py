@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.controls import Array, Controls
+from mmweaver.motion.animation.controls import TURNING, Array, Controls, whole_turns
 from mmweaver.motion.animation.profiles import bump
 
 FADING_S = 0.6
@@ -32,12 +32,18 @@ class ControlsState:
         from scipy.interpolate import CubicSpline
 
         near = np.abs(time_s - at_s) < 0.2
-        orders: list[dict[str, Array]] = [{}, {}, {}]
-        for field in fields(Controls):
-            spline = CubicSpline(time_s[near], getattr(controls, field.name)[near], axis=0)
-            for order, values in enumerate(orders):
-                values[field.name] = np.asarray(spline(at_s, order))[None]
-        return cls(value=Controls(**orders[0]), rate=Controls(**orders[1]), acceleration=Controls(**orders[2]))
+        parts = {field.name: getattr(controls, field.name)[near] for field in fields(Controls)}
+        flat = [part.reshape(len(part), -1) for part in parts.values()]
+        spline = CubicSpline(time_s[near], np.concatenate(flat, axis=1), axis=0)
+        ends = np.cumsum([part.shape[1] for part in flat])[:-1]
+        value, rate, acceleration = (
+            Controls(**{
+                name: values.reshape(1, *part.shape[1:])
+                for (name, part), values in zip(parts.items(), np.split(spline(at_s, order), ends), strict=True)
+            })
+            for order in range(3)
+        )  # fmt: skip
+        return cls(value=value, rate=rate, acceleration=acceleration)
 
 
 def carried_over(controls: Controls, time_s: Float[Array, " n"], before: ControlsState) -> Controls:
@@ -55,6 +61,8 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
         ]  # fmt: skip
         if field.name in ("heading_rad", "foot_rad"):
             gaps[0] = _smallest_turn(gaps[0], is_yaw_first=field.name == "foot_rad")
+        if field.name == "arm_rad":
+            gaps[0][..., TURNING] -= whole_turns(gaps[0][..., TURNING])
         values = getattr(controls, field.name)
         of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
         shares = (_left(each if of_feet else u), *_moving(u))
@@ -83,8 +91,7 @@ def _over(share: Array, ndim: int) -> Array:
 
 def _smallest_turn(gap_rad: Array, *, is_yaw_first: bool) -> Array:
     """Differences of headings without whole turns; of a foot only its yaw is a heading."""
-    turn = 2 * np.pi
-    rest = gap_rad - turn * np.round(gap_rad / turn)
+    rest = gap_rad - whole_turns(gap_rad)
     if not is_yaw_first:
         return np.asarray(rest)
     return np.stack([rest[..., 0], gap_rad[..., 1]], axis=-1)

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 Array = np.ndarray
 LEFT, RIGHT = 0, 1
+TURNING = (0, 2)  # of the angles of an arm: flexion and twist go round
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +54,18 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     return Controls(**values)
 
 
+def whole_turns(gap_rad: Array) -> Array:
+    """The whole turns in differences of angles, in radians."""
+    return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))
+
+
+def _without_whole_turns(before: Controls, part: Controls, at: int) -> None:
+    """Takes whole turns out of the arms of a part: who has circled them does not turn them back afterwards."""
+    at = min(at, len(part.heading_rad) - 1)
+    for angle in TURNING:
+        part.arm_rad[..., angle] -= whole_turns(part.arm_rad[at, :, angle] - before.arm_rad[at, :, angle])
+
+
 def blended(
     parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
 ) -> Controls:
@@ -62,6 +75,8 @@ def blended(
     """
     from mmweaver.motion.animation.profiles import bump, rise
 
+    for before, part, start_s in zip(parts, parts[1:], starts_s[1:], strict=False):
+        _without_whole_turns(before, part, int(np.searchsorted(time_s, start_s)))
     ups, foot_ups, lift = [np.ones_like(time_s)], [np.ones((len(time_s), 2))], np.zeros((len(time_s), 2))
     for k in range(1, len(parts)):
         u = (time_s - starts_s[k]) / blends_s[k] + 0.5

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.shapes import Joints
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.profiles import cap, rise, softmin
+from mmweaver.motion.animation.profiles import cap, larger, rise, softmin
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 
 Array = np.ndarray
@@ -109,7 +109,7 @@ def _pelvis(body: SkeletonProportions, controls: Controls, frame: Frames, ankles
     for side in (LEFT, RIGHT):
         hip = rotated(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
-        height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
+        height = np.sqrt(larger(longest**2 - across, (0.3 * longest) ** 2, (0.18 * longest) ** 2))
         limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
     pelvis[:, 2] = softmin(limits, 0.003 + 0.01 * controls.knee_room)
     return pelvis
@@ -124,8 +124,8 @@ def _place_leg(
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
     # A swinging leg is not fully extended, so that the knee does not snap.
-    loose = 1 - controls.contact[:, side] * (1 - controls.knee_room)
-    reach = cap(distance, (LONGEST_LEG - 0.0015 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
+    loose = 1 - (controls.contact[:, side] * (1 - controls.knee_room)) ** 3
+    reach = cap(distance, (LONGEST_LEG - 0.0015 * loose) * body.leg_m, (0.0012 + 0.05 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
     aside = np.sqrt(body.thigh_m**2 - along**2)
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)

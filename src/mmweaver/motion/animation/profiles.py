@@ -1,4 +1,4 @@
-"""Smooth functions of time: all at least C2, so that joint accelerations are continuous. Shapes are kept."""
+"""Smooth functions of time: all at least C1, so that no velocity jumps, most of them C2. Shapes are kept."""
 
 from collections.abc import Sequence
 
@@ -33,6 +33,12 @@ def bump(u: Values) -> Values:
     return np.asarray(64 * (high * high * high))
 
 
+def wide_bump(u: Values) -> Values:
+    """0 outside (0, 1), 1 at 1/2, wider than `bump`; C1."""
+    u = np.clip(u, 0.0, 1.0)
+    return np.asarray(16 * (u * (1 - u)) ** 2)
+
+
 def plateau(time_s: Values, start_s: float, end_s: float, up_s: float, down_s: float) -> Values:
     """0 before start, up to 1 within `up_s`, down to 0 within `down_s` before the end; C2."""
     return np.asarray(rise((time_s - start_s) / up_s) * rise((end_s - time_s) / down_s))
@@ -53,6 +59,16 @@ def travel(u: Values, ramp_in: float, ramp_out: float) -> Values:
 def cap(x: Values, limit: Values | float, width: Values | float) -> Values:
     """x where it is below limit - width, never above limit, smooth between; C3."""
     return x - 2 * width * rise_integral(np.asarray((x - limit + width) / (2 * width)))
+
+
+def reached(x: Values, limit: float = 1.0) -> Values:
+    """x up to 0.7 of the limit, then smoothly up to the limit and no farther; C3."""
+    return cap(x, limit, 0.3 * limit)
+
+
+def larger(x: Values, least: Values | float, width: Values | float) -> Values:
+    """About the larger of x and `least`, smooth within about `width` of where they meet; above both."""
+    return np.asarray(0.5 * (x + least + np.sqrt((x - least) ** 2 + width**2)))
 
 
 def softmin(values: Sequence[Values], width: Values | float) -> Values:

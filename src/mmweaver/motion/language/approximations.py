@@ -52,7 +52,7 @@ def _whole(pattern: str) -> str:
 APPROXIMATIONS = _read()
 _pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
 _LINK = re.compile(r"[,.;]|\b(?:and|then|while|before|after)\b")
-_HELD = re.compile(r"<(\d+)>")
+_HELD = re.compile(r"<(\d+)>(?: +for (\d+(?:\.\d+)?) seconds\b)?")
 _STEMS = re.compile(r"\\b\(\?:[a-z'|-]+\)\(\?:")  # patterns that begin with stems of verbs and their endings
 _ARTICLE = re.compile(r"\b(?:an?|the|his|her|their)$")
 _OF_A_NOUN = re.compile(r"(?<!performs )(?<!does )(?<!doing )(?<!makes )\b(?:an?|the|his|her|their|its|some|of)$")
@@ -98,7 +98,17 @@ def with_approximations(
             return f" <{len(held) - 1}> "
 
         folded = _pattern(one.pattern).sub(hold, folded)
-    return " ".join(_HELD.sub(lambda found: held[int(found[1])], folded).split()) if held else text
+    return " ".join(_HELD.sub(lambda found: _in_turn(held[int(found[1])], found[2]), folded).split()) if held else text
+
+
+def _in_turn(replacement: str, seconds: str | None) -> str:
+    """A replacement, each of whose movements takes an equal share of the seconds that the sentence gives, if any."""
+    if not seconds:
+        return replacement
+    words, _, mark = replacement.rpartition(f" {MARK}")
+    parts = re.split(", ", words.strip(" ,"))
+    lasting = ", ".join(f"{part} for {float(seconds) / len(parts):.4g} seconds" for part in parts)
+    return f"{', ' if words.lstrip().startswith(',') else ''}{lasting} {MARK}{mark} "
 
 
 def _part_around(found: re.Match[str]) -> str:

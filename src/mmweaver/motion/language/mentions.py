@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from mmweaver.motion.language.coverage import goes_aside, goes_round, moves_one_hand, sides_of
+from mmweaver.motion.language.lexicon import SEATS
 from mmweaver.motion.language.plan import ClauseRecord, Step
 from mmweaver.motion.language.verbs import words_in
 
@@ -116,6 +117,14 @@ _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
         rf"(?<=from )(?:off )?(?:an? |{_WHOSE} )?(?:[a-z]+ )?(?:shelf|table|desk|counter|cupboard|wall|bookshelf|rack)",
         lambda step: not _does("pick_up")(step),
     ),
+    (
+        rf"(?:on(?:to)?|off|in(?:to)?) (?:an? |{_WHOSE} )(?:[a-z]+ )?(?:{'|'.join(sorted(SEATS))})\b",
+        lambda step: step.uses_seat or step.direction == "seat" or step.place is not None,
+    ),
+    (
+        rf"(?:under|underneath|below|beneath) (?:an? |{_WHOSE} )(?:[a-z]+ )?(?!chin|nose|arms?|head)[a-z]+",
+        lambda step: False,
+    ),
     (r"across (?:the|a) (?:room|floor|hall|kitchen)", lambda step: step.moves),
     (
         rf"(?:onto|on|into|to) (?:an? |{_WHOSE} )?(?:[a-z]+ )?(?:shelf|table|desk|counter|cupboard|bookshelf|rack)\b",
@@ -177,7 +186,7 @@ def _sides_left_out(folded: str, steps: Sequence[Step]) -> list[tuple[str, str]]
         if found[3] != found[1] and not any(_moves_limb(step, found[3], is_hand=is_hand) for step in steps):
             return [(found[3], "the other hand or foot is not shown")]
     named = {found[1] for found in _SIDED_WAY.finditer(folded)}
-    shown = {side for step in steps for side in sides_of(step)}
+    shown = {side for step in steps for side in sides_of(step) | (set() if step.place is None else step.place.sides)}
     to_and_fro = any({step.lower, step.upper} & _BOTH_SIDES and not step.facing for step in steps)
     if len(named) == 2 and len(shown) < 2 and not to_and_fro:
         return [(next(found[0] for found in _SIDED_WAY.finditer(folded)), "the other side is not shown")]

@@ -116,8 +116,6 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
         return replace(about, count=int(value))
     if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):
         return replace(about, seconds=value)
-    if following[:1] and following[0] in ("minutes", "mins", "min"):
-        return replace(about, seconds=60 * value)
     if following[:1] and following[0] in ("m", "meter", "metre", "meters", "metres"):
         return replace(about, distance_m=value)
     if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:

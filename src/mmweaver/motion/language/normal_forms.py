@@ -115,6 +115,8 @@ NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b((?:wakes? up|waking up)(?: and|,| then)+ )?(?:gets?|getting|climbs?|rolls?) (?:up )?out of (?:the |his |her |their )?bed\b", "is lying on the bed, then gets up"),
     (rf"\b(?:raises?|lifts?|raising|lifting) {_OWN}({_SIDE} )?(arms?|hands?)(?: up)?(?: (?:straight )?(?:above|over) (?:the|his|her|their) heads?)?(?: and|,| then)+ (?:holds?|keeps?|leaves?) (?:it|them) (?:there|up there|in the air)\b",
      r"lifts the \1 \2 straight up and keeps it up"),
+    (r"\b(?:holds?|keeps?|holding|keeping) (?:it|them|that|this|(?:the|this|that) (?:pose|position|posture|stretch))(?: (?:up|there|still|out|in the air))* (?=for \d)", ""),
+    (r"\bas (high|far|fast|quickly|slowly|low|wide) as possible\b", r"\1"),
     (r"\bcircuit\b", "circle"), (r"\b(circles?), (?=(?:(?:counter|anti)[- ]?)?clockwise|to (?:the|its|his) (?:left|right))", r"\1 "),
     (r",? (?:where it passes through|(?:and )?thereby describes|describing|thus describing) an? (quarter|half|full) circle(?: line)?(?: along)?\b", r" in a \1 circle"),
     (r"\b(?:is )?(?:performing|performs|doing|does|makes|making) a (left|right) (\d+)[- ]degrees? (?:curve|bend|circle)\b", r"walks in a \2 degree curve to the \1"),

@@ -3,6 +3,7 @@
 import re
 from dataclasses import dataclass, replace
 
+from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import NUMBERS, RADAR, TARGETS
 
 MARK = "place_"
@@ -37,6 +38,20 @@ _PATTERNS = (
 _ROOM = re.compile(rf"\b(?:in|inside|across|through|around) (?:the|a|his|her|their|an) ({_ROOMS})\b")
 
 
+_PERSON = rf"(?:{'|'.join(sorted(PEOPLE))}|person|human|user|somebody|someone|friend|neighbou?r|stranger|other)"
+# Somebody else's side, who is waved to: the body faces it.
+_WHOM = re.compile(
+    r"\b((?:point|wav|turn|nod|bow|gestur|clap|shout|talk|speak|sing|smil)(?:e?s|e|ing|ed)?\b(?: (?!and\b|then\b|while\b)[a-z]+){0,4}? )"
+    rf"(?:at|to|towards?|for) (?:the |an? |his |her |their |another )*(?:[a-z]+ )?{_PERSON} (?:who is )?(?:standing |sitting )?"
+    r"(?:on|at|to) (?:the|his|her|their) (left|right)(?: hand side| side)?\b(?! of the (?!room|picture|photo|image|scene))"
+)
+# Where the person of the sentence is: "a man on the left waves".
+_WHOSE = re.compile(
+    rf"^((?:an? |the |my |our )?(?:[a-z-]+ ){{0,2}}?{_PERSON}) (?:(?:who|that) (?:is |stands |sits )?)?(?:standing |seated )?"
+    r"(?:(?:on|at) the (?P<side>left|right)(?: hand side| side| half| corner)?|in the (?P<middle>middle|cent(?:re|er))"
+    r"|(?P<far>in the background|(?:in|at) the back|at the (?:far|other) end)|(?P<close>in the foreground))"
+    r"(?: of the (?:room|picture|photo|image|scene|floor))? (?=[a-z]+(?:s|ing)\b)"
+)
 _AIMED = re.compile(
     r"\b((?:point|wav|turn|nod|bow|gestur)(?:e?s|e|ing|ed)?\b(?: (?!and\b|then\b|while\b)[a-z]+){0,4}? )(?:at|to|towards?)"
     rf" (?:the |a |an |his |her |their ){_ADJECTIVES}({_OBJECT})\b"
@@ -62,6 +77,11 @@ class Place:
         return replace(one, also=more if one.also is None else one.also.together_with(more))
 
     @property
+    def sides(self) -> set[str]:
+        """Of left and right, those that it names."""
+        return {self.relation} & {"left", "right"} | (set() if self.also is None else self.also.sides)
+
+    @property
     def words(self) -> str:
         """As it is shown in messages."""
         if self.also is not None:
@@ -80,6 +100,8 @@ class Place:
 
 def mark_places(text: str) -> str:
     """The sentence, in lower case, with a token for each place, and for what is faced or pointed at."""
+    text = _WHOM.sub(lambda found: f"{found[1]} {AIM}{found[2]} ", text)
+    text = _WHOSE.sub(lambda found: f"{found[1]} {MARK}{found['side'] or found.lastgroup} ", text)
     for pattern in (_AIMED, _FACED):
         text = pattern.sub(lambda found: f"{found[1]} {AIM}{TARGETS[found[2]]} ", text)
     for pattern, relation in _PATTERNS:

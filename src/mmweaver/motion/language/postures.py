@@ -8,6 +8,7 @@ from mmweaver.motion.language.plan import Step
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
+ON_THE_BELLY = ("push_ups", "plank")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -30,7 +31,7 @@ def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
         return [*_up_from(posture, step), step] if step.lower != "fall" else [step]
-    return _going_down(step, posture, bool(before))
+    return _going_down(step, posture, before)
 
 
 def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
@@ -43,15 +44,22 @@ def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
     return [replace(step, lower="stand")]
 
 
-def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
+def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """Sitting, kneeling, lying: stays so, or goes down first."""
+    anything_before = bool(before)
     if step.lower in ("recline", "lie_on_seat", "fall_off") or (posture, step.posture) == ("couch", "seat"):
         return _by_the_seat(step, posture, anything_before)
+    if step.lower in ON_THE_BELLY:
+        is_there = posture == "floor" and _lies_on(before) == "front"
+        down = Step(lower="lie_down", style="front", clause=step.clause)
+        return [step] if is_there or not before else [*_up_from(posture, step), down, step]
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
             step = replace(step, lower=STILL[posture])
         return [step]
     first = _up_from(posture, step)
+    if step.lower == "crawl":
+        return [*first, Step(lower="kneel_down", clause=step.clause), step] if before else [step]
     down = ENTERING.get(step.lower, step.lower)
     during = step.upper if step.lower in _WITH_FREE_HANDS and not _is_done_once(step) else ""
     if not anything_before and step.lower == down and step.upper and step.lower != "fall":
@@ -65,6 +73,16 @@ def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
             replace(step, lower=STILL[step.posture]),
         ]
     return [*first, replace(step, lower=down)]
+
+
+def _lies_on(before: list[Step]) -> str:
+    """front | back | left | right: how somebody who is on the floor lies there."""
+    for step in reversed(before):
+        if step.lower in ON_THE_BELLY:
+            return "front"
+        if step.lower in ("lie_down", "fall") or (step.lower == "lie" and step.style):
+            return step.style or "back"
+    return "back"
 
 
 def _is_done_once(step: Step) -> bool:
@@ -106,11 +124,13 @@ def _styled(steps: list[Step]) -> list[Step]:
     """Lying on back or belly as the person went down; kneeling on the knee that was named."""
     style, foot = "", ""
     for k, step in enumerate(steps):
+        if step.lower in ON_THE_BELLY:
+            style = "front"
         if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
             foot = step.foot or foot
-        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off"):
+        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *ON_THE_BELLY):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot)

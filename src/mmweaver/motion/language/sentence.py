@@ -13,6 +13,7 @@ from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
 from mmweaver.motion.language.clause_records import in_own_words, in_the_given_words, note_what_is_not_shown
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
+from mmweaver.motion.language.durations import in_seconds
 from mmweaver.motion.language.left_out import (
     EXACT,
     LEAVING_OUT,
@@ -65,8 +66,9 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
+    text = in_seconds(text)
     try:
-        return _parsed(with_approximations(text, only_always=True), text)
+        return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
         normal = with_approximations(in_normal_form(text), only_always=True)
         similar = with_approximations(in_normal_form(text), is_understood=cache(_is_understood_alone))

@@ -25,9 +25,6 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:does|do|is|are)(?: not|n't) (?:move|moving)(?: at all)?\b|\bkeeps? (?:completely |very )?(?:still|motionless)\b", " waits "),
     (r"\b(?:with|on|using) each (leg|foot|hand|arm)\b", r"with the left \1, then with the right \1"),
     (r"\b(?:both|left and right) ((?:front|side)[- ]lunge)s?\b", r"left \1, then right \1"),
-    (r"\bhalf (?:a|of a) minute\b", "30 seconds"),
-    (r"\b(?:a|one) minute\b(?: and a half)?", "60 seconds"),
-    (r"\b(?:an|one) hour\b", "3600 seconds"),
     # a limb that was named goes on: "stretches the right arm forward, then the hand returns to the chest"
     (r"\b(left|right) (arm|hand)\b([^.]*?(?:,|;|\band|\bthen) )(?:the|this|that) (arm|hand)(?= [a-z]+s\b)", r"\1 \2\3the \1 \4"),
     # how a limb is held before it moves: "the right arm hangs straight, is lifted straight up"

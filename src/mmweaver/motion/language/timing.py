@@ -166,7 +166,8 @@ def _limits(step: Step) -> tuple[float, float]:
         slower = 1.25 if step.speed < 0 else 1.0
         return step.count * least + edges, (step.count * natural + edges) * slower
     under = BY_KEY[step.lower]
-    return max(doing.least_s, under.least_s * under.once), max(doing.natural_s, under.natural_s * under.once)
+    is_whole = under.once or bool(under.counted_s and not under.moves)  # a squat is not left halfway
+    return max(doing.least_s, under.least_s * is_whole), max(doing.natural_s, under.natural_s * is_whole)
 
 
 def _circle_limits(step: Step) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
     spline_through,
     vary,
 )
-from mmweaver.motion.animation.profiles import plateau, rise
+from mmweaver.motion.animation.profiles import larger, plateau, reached, rise
 from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
@@ -55,7 +55,7 @@ def _lifted(context: StepContext, controls: Controls, up: PerTime) -> Controls:
         arm[:, 0] += up * (top - arm[:, 0])
         arm[:, 1] += up * (0.1 - arm[:, 1])
         arm[:, 2] *= 1 - up
-        arm[:, 3] += (bent - arm[:, 3]) * np.minimum(1.0, 4 * up)
+        arm[:, 3] += (bent - arm[:, 3]) * reached(4 * up)
         mix_arm(controls, side, arm, np.ones_like(up))
     return controls
 
@@ -109,7 +109,7 @@ def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime
     on = rise((context.time_s - context.start_s + 0.4) / 0.5) if not context.first else np.ones_like(aside)
     for side in sides(context)[:1]:
         out = -aside if side == LEFT else aside
-        ahead = np.sqrt(np.maximum(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2))
+        ahead = np.sqrt(larger(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2, 0.01))
         ahead += _ACROSS * (np.hypot(out, 0.3) - out) / 2
         target = place(ahead, _MIDDLE[0] + size * out, _MIDDLE[1] + size * up, len(up))
         # an elbow that pointed down would jump where the arm of a circle points down, too

@@ -45,8 +45,8 @@ def _feet(
     for side in (LEFT, RIGHT):
         first = 0.0 if lead * SIDE_SIGN[side] < 0 else 1.0  # free while the weight is on the other side
         within = (beat - first) % 2.0
-        free = plateau(within, 0.12, 0.92, 0.3, 0.3) * on
-        lift = (bump((within - 0.08) / 0.42) + bump((within - 0.52) / 0.42)) * on
+        free = plateau(within, 0.08, 0.96, 0.38, 0.38) * on
+        lift = (bump((within - 0.06) / 0.44) + bump((within - 0.5) / 0.5)) * on
         shift_foot(controls, side, ahead * h * free, wide * h * free, 0.035 * h * lift)
         controls.contact[:, side] -= np.clip(free, 0, 1) * 0.9
         controls.foot_rad[:, side, 1] += 0.3 * lift

@@ -25,7 +25,8 @@ def plank(context: StepContext) -> Controls:
 def push_ups(context: StepContext) -> Controls:
     """The body stays straight from the heels to the head and goes down and up on the arms; the root is at the feet."""
     rate, end = cycles(context, context.tempo(0.35, 0.55, 0.8), 0.3, 1.1)
-    phase = 2 * np.pi * rate * (np.minimum(context.time_s, end) - context.start_s)
+    until = np.minimum(context.time_s, end) if context.step.count else context.time_s  # a count ends stretched
+    phase = 2 * np.pi * rate * (until - context.start_s)
     return _on_hands(context, 0.5 - 0.5 * np.cos(phase))
 
 

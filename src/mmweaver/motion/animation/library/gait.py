@@ -16,6 +16,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
+SOLE_DOWN_S = 0.07  # at the least, from the strike of the heel until the sole is flat
 ELBOW_LAG = 0.15  # of a step, behind the shoulder
 NOD = 0.4  # share of the pelvis's surge that the neck does not follow
 
@@ -249,7 +250,8 @@ def _pitch(
     """Foot pitch in radians: heel strike, flat, heel rise, toe-off, swing; scaled with the length of the steps."""
     came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
     stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
-    down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
+    flat_s = max(0.22 * stance, SOLE_DOWN_S)
+    down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / flat_s))
     rises, folded = fall.strike_s + style.heel_rises * stance, fall.off_s + style.folded * swing
     up = style.toe_off_rad * abs(goes) * rise((t - rises) / (folded - rises))
     back = rise((t - folded) / (after.strike_s - folded))

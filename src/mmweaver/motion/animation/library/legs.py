@@ -165,6 +165,7 @@ def lunging(context: StepContext) -> Controls:
         down = plateau(time_s, begin + 0.12 * lasts, begin + 0.88 * lasts, 0.36 * lasts, 0.36 * lasts)
         shift_foot(controls, acting, long * h * gone, 0.0, 0.05 * h * air)
         lift_weight(controls, acting, air)
+        controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * gone)
         shift_pelvis(controls, ahead * long * h * gone, 0.0, -deep * h * down)
         controls.foot_rad[:, 1 - acting, 1] += heel_rad * down
         controls.spine_rad[:, 1] += 0.06 * down
@@ -192,6 +193,7 @@ def _from_planted_feet(
     over *= gone
     shift_foot(controls, side, long_m * gone, 0.0, 0.03 * context.body.height_m * air)
     lift_weight(controls, side, np.asarray(air))
+    controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * gone)
     shift_pelvis(controls, long_m * (0.5 * gone + 0.35 * over), 0.0, -deep_m * (0.2 * gone + 0.9 * over))
     controls.foot_rad[:, 1 - side, 1] += 0.15 * over
     controls.spine_rad[:, 1] += 0.06 * over

@@ -20,7 +20,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
     vary,
 )
 from mmweaver.motion.animation.library.standing import upright
-from mmweaver.motion.animation.profiles import plateau
+from mmweaver.motion.animation.profiles import plateau, reached
 from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
@@ -70,9 +70,9 @@ def limb_extension(context: StepContext) -> Controls:
     controls, body = upright(context), context.body
     side, up = leg_side(context), _there_and_back(context, 2.8, 1.3, 4.5)
     angle = vary(context, 0.62, 0.2) * up
-    over = np.minimum(1.0, 2.5 * up)
+    over = reached(2.5 * up)
     lean_over(controls, body, 1 - side, over)
-    lift_weight(controls, side, np.minimum(1.0, 3 * up))
+    lift_weight(controls, side, reached(3 * up))
     shift_foot(controls, side, 0.0, body.leg_m * np.sin(angle), body.leg_m * (1 - np.cos(angle)))
     controls.spine_rad[:, 0] += OUTWARD[side] * 0.1 * up
     _arm_aside(context, controls, side, up, vary(context, 1.95, 0.1))
@@ -95,7 +95,7 @@ def _arm_aside(context: StepContext, controls: Controls, side: int, up: PerTime,
     arm[:, 1] = top
     arm[:, 0] = context.rng.normal(0.1, 0.12)
     arm[:, 2:] = 0.1
-    mix_arm(controls, side, arm, np.minimum(up, 1.1))
+    mix_arm(controls, side, arm, reached(up, 1.1))
 
 
 def hands_up(context: StepContext, controls: Controls) -> Controls:

@@ -6,7 +6,7 @@ from jaxtyping import Float
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, ARM_HANGING, upright
-from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.profiles import rise, wide_bump
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
 
@@ -52,7 +52,7 @@ def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
     controls.pelvis_m[:, 2] += down * (seat - controls.pelvis_m[:, 2])
     controls.pelvis_m[:, 0] -= back * np.cos(heading)
     controls.pelvis_m[:, 1] -= back * np.sin(heading)
-    lean = bump(np.clip(u, 0, 1) * 0.88 + 0.06) - bump(np.array(0.06))
+    lean = wide_bump(u)
     slouch = float(context.rng.uniform(0.05, 0.18))
     controls.pelvis_rad[:, 1] += 0.5 * lean - slouch * down
     controls.spine_rad[:, 1] += 0.35 * lean + 1.3 * slouch * down

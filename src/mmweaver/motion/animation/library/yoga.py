@@ -15,7 +15,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
     vary,
 )
 from mmweaver.motion.animation.library.standing import upright
-from mmweaver.motion.animation.profiles import bump, plateau
+from mmweaver.motion.animation.profiles import bump, plateau, reached
 from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
@@ -32,8 +32,8 @@ def tree_pose(context: StepContext) -> Controls:
     """One foot against the other leg's knee, that knee out to the side, palms together over the head."""
     controls, body, h = upright(context), context.body, context.body.height_m
     side, held = leg_side(context), _held(context, 1.6)
-    lean_over(controls, body, 1 - side, np.minimum(1.0, 2.0 * held))
-    lift_weight(controls, side, np.minimum(1.0, 3.0 * held))
+    lean_over(controls, body, 1 - side, reached(2.0 * held))
+    lift_weight(controls, side, reached(3.0 * held))
     shift_foot(
         controls, side, 0.02 * h * held, -vary(context, 0.052, 0.05) * h * held, vary(context, 0.24, 0.08) * h * held
     )
