@@ -3,6 +3,7 @@
 python tools/codec_curves.py
 """
 
+import argparse
 import json
 from io import BytesIO
 from pathlib import Path
@@ -63,4 +64,5 @@ def draw(found: Curves, out: Path) -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__).parse_args()
     draw(curves(ROOT / "results"), ROOT / "docs" / "images" / "codec_curves.png")

@@ -28,7 +28,7 @@ def test_the_transform_is_unitary_and_compacts_noise():
 
 def test_a_decoder_has_the_values_of_the_encoder():
     values = windowed_noise()
-    layer = NoiseLayer.of(values, 0.3, BEAMS)
+    layer = NoiseLayer.of(to_noise(values, BEAMS), 0.3, BEAMS)
     again = NoiseLayer.unpack(layer.packed + b"more", values.shape, BEAMS)
     assert np.array_equal(again.values, layer.values)
     assert again.packed == layer.packed

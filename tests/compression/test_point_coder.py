@@ -5,7 +5,15 @@ import pytest
 import torch
 
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.point_coder import CodedPoints, PointCoder, PointSteps, dequantize, nearness, quantize
+from mmweaver.compression.point_coder import (
+    CodedPoints,
+    PointCoder,
+    PointSteps,
+    dequantize,
+    nearness,
+    quantize,
+    uniform_bits,
+)
 from mmweaver.fields.scatterers.layers import no_points
 from tests.fields.echoes import SMALL
 from tests.fields.scatterers.test_refinement import AXES, RESPONSE, random_points
@@ -44,6 +52,18 @@ def test_every_parameter_follows_the_step():
         energy = float((RESPONSE.render(again, AXES) - truth).abs().square().sum())
         errors.append(np.sqrt(energy / 30) / step)  # a scatterer, in steps
     assert all(0.2 < error < 2.0 for error in errors)
+
+
+def test_what_is_not_uniform_hardly_depends_on_the_step():
+    """Bits of a scatterer besides those that are counted: where it is, and the octave of its amplitude."""
+    rest = []
+    for step in (0.05, 0.01, 1e-3):
+        coded, steps = coded_at(step)
+        writer = Encoder()
+        PointCoder(SHAPE, steps, 2, 300).code(writer, coded)
+        rest.append((8 * len(writer.to_bytes()) - uniform_bits(coded, steps, 2)) / len(coded))
+    assert max(rest) - min(rest) < 3
+    assert all(4 < bits < 16 for bits in rest)
 
 
 def test_weak_scatterers_are_dropped():

@@ -91,6 +91,10 @@ class CellSample:
         )
         return Estimate(num_bytes=max(self.front_at(step) + cells, 1.0), active_error=active_error, all_error=all_error)
 
+    def nodes(self, coarser: int) -> set[int]:
+        """Where on the grid there are estimates already."""
+        return {node for node, other in self._known if other == coarser}
+
     def _at_node(self, node: int, coarser: int) -> tuple[float, float, float]:
         if (node, coarser) not in self._known:
             self._known[node, coarser] = self._estimated(2.0 ** (node / STEPS_AN_OCTAVE), coarser)

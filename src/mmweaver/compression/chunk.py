@@ -20,10 +20,11 @@ from mmweaver.compression.coded_chunk import ChunkDraft, ChunkMode, CodedChunk
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
+from mmweaver.compression.level_size import estimated_bits
 from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.moving_cells import code_moving, decoded_moving, moving_cells, pack_steps, unpack_steps
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
-from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
+from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize, uniform_bits
 from mmweaver.compression.residual_stream import (
     PRICE,
     QuantizedCells,
@@ -49,7 +50,6 @@ LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
-NEAR_STEP = 0.3  # difference of log(step) within which bytes of layers follow from the number of their values
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
@@ -113,9 +113,9 @@ class ChunkEncoder:
     _coefficients: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)
     _samples: dict[TransformChoice, CellSample] = field(default_factory=dict)
     _refined_points: tuple[int, Points] | None = None
-    _coded_layers: tuple[float, int, int] | None = None  # step, number of values and bytes of layers coded before
+    _adaptive_bits: float | None = None  # of a scatterer coded before, but for those that are counted
     _noise: tuple[ChunkMode, bool, NoiseLayer] | None = None
-    _quiet: dict[ChunkMode, np.ndarray] = field(default_factory=dict)
+    _quiet: dict[ChunkMode, np.ndarray] = field(default_factory=dict)  # coefficients of what has no signal
     _noise_sample: CellSample | None = None
     _components: Components | None = None
 
@@ -228,7 +228,7 @@ class ChunkEncoder:
         if self._noise is None or self._noise[:2] != (mode, only_size):
             layers = replace(mode, noise_step=0.0)
             if layers not in self._quiet:
-                self._quiet[layers] = without_signal(target, self.is_active)
+                self._quiet[layers] = to_noise(without_signal(target, self.is_active), self.beams)
             layer = NoiseLayer.of(self._quiet[layers], mode.noise_step, self.beams, only_size=only_size)
             self._noise = mode, only_size, layer
         return self._noise[2]
@@ -251,7 +251,7 @@ class ChunkEncoder:
         self, stream: Encoder, step: float, *, only_size: bool
     ) -> tuple[np.ndarray, np.ndarray, int, bytes, int, float]:
         """Codes static layer and scatterers; returns what remains, nearness, flags, the packed gains, the number of
-        values, and the bytes of layers that were not coded, since those of a step near it are known."""
+        values, and the bytes of layers that were not coded, since some have been."""
         assert self.layers is not None
         window = self.frames.fit_window()
         layers = self.layers
@@ -264,27 +264,21 @@ class ChunkEncoder:
             layers = replace(layers, points=_dequantize(coded, window, steps))
             target = self.target - rendered(layers, window.response, window.axes).numpy()
         num_values = int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response)
-        uncoded_bytes = self._layer_bytes(step, num_values) if only_size else None
-        if uncoded_bytes is None:
+        uncoded_bytes, point_bits = 0.0, uniform_bits(coded, steps, window.response.num_directions)
+        if only_size and self._adaptive_bits is not None:
+            uncoded_bytes = (_static_bits(static) + point_bits + self._adaptive_bits * len(coded)) / 8
+        else:
             if static.any():
                 _code_static(stream, static)
+            before = len(stream.to_bytes())
             if len(coded):
                 _point_coder(self.frames, window, steps).code(stream, coded)
-            self._coded_layers = step, num_values, len(stream.to_bytes())
+                self._adaptive_bits = (8 * (len(stream.to_bytes()) - before) - point_bits) / len(coded)
         has_gains = bool((layers.calibration != 1).any())
         flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains
         near = nearness(coded, self.target.shape[:3])
         front = _pack_gains(layers.calibration) if has_gains else b""
-        return target, near, flags, front, num_values, uncoded_bytes or 0.0
-
-    def _layer_bytes(self, step: float, num_values: int) -> float | None:
-        """Bytes of layers, from those at a step near it; None where there are none."""
-        if self._coded_layers is None:
-            return None
-        near_step, before, num_bytes = self._coded_layers
-        if not before or abs(math.log(step / near_step)) > NEAR_STEP:
-            return None
-        return num_bytes * num_values / before + num_values / 8 * math.log2(near_step / step)
+        return target, near, flags, front, num_values, uncoded_bytes
 
     def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
         values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)
@@ -418,6 +412,15 @@ def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
     every = np.ones(levels.shape[2:], np.int64)
     LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
+
+
+def _static_bits(levels: np.ndarray) -> float:
+    """About the bits of `_code_static`."""
+    if not levels.any():
+        return 0.0
+    every = np.ones(levels.shape[2:], np.int64)
+    weights = np.ones(levels.shape[1])
+    return estimated_bits(LevelCoder(levels.shape[1:]), levels.reshape(2, len(weights), -1), every, weights)
 
 
 def _static_step(window: FitWindow, step: float) -> float:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Complex
 
-from mmweaver.compression.transforms import static_bins
+from mmweaver.compression.transforms import dct_matrix, static_bins
 
 Array = np.ndarray
 NO_DCT, STATIC_DCT, FULL_DCT = 0, 1, 2
@@ -21,6 +21,7 @@ MOST_DOPPLER = 16  # bins up to which their KLT is worth its bytes
 WORD = 2**15 - 1
 ANTENNA_WORD = 127
 CORRELATED = 0.3  # correlation of neighbouring cells from which they predict each other's sign
+MOST_MATRIX = 64  # numbers up to which a product with a matrix is faster than a fast transform
 HEADER = struct.Struct("<B")
 
 
@@ -152,6 +153,12 @@ def choices_of(shape: tuple[int, ...]) -> list[TransformChoice]:
 def _dct(values: Array, axis: int, *, inverse: bool) -> Array:
     """Orthonormal DCT over an axis; complex64 stays complex64."""
     from scipy import fft
+
+    num, after = values.shape[axis], math.prod(values.shape[axis + 1 :])
+    if num <= MOST_MATRIX and values.dtype == np.complex64:
+        matrix = dct_matrix(num).astype(np.float32)
+        flat = np.ascontiguousarray(values).view(np.float32).reshape(-1, num, 2 * after)
+        return ((matrix.T if inverse else matrix) @ flat).view(np.complex64).reshape(values.shape)
 
     transform = fft.idct if inverse else fft.dct
     real, imaginary = (transform(part, axis=axis, norm="ortho") for part in (np.real(values), np.imag(values)))

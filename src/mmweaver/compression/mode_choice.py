@@ -13,7 +13,7 @@ from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.moving_cells import FINER_STEPS, moving_cells
 from mmweaver.compression.residual_stream import PRICE, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.layers import Layers, fit_static, subtract_static
+from mmweaver.fields.scatterers.layers import Layers, fit_static, static_response, subtract_static
 
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_A_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many each, as many in all
@@ -128,17 +128,19 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
         with_calibration=True, stages=FIT_STAGES, last_steps=LAST_STEPS, least_gain=LEAST_GAIN,
         most_noise=encoder.noise_power,
     )  # fmt: skip
-    response, axes, target = window.response, window.axes, torch.from_numpy(encoder.target)
-    moving = target.clone()
+    response, axes = window.response, window.axes
+    at_rest, moving = static_response(response, axes), encoder.target.copy()
     if recipe.with_static:
-        subtract_static(moving, fit_static(target, response, axes), response, axes)
-    ranges, bins = _box(moving.numpy(), encoder.noise_power, with_static=recipe.with_static)
+        subtract_static(moving, fit_static(moving, at_rest), at_rest)
+    ranges, bins = _box(moving, encoder.noise_power, with_static=recipe.with_static)
     own = replace(axes, range_bin=axes.range_bin[ranges], doppler_bin=axes.doppler_bin[bins])
+    target = torch.from_numpy(encoder.target)
     layers = fitted(target[:, ranges, bins].contiguous(), replace(window, axes=own), recipe)
     static = torch.zeros(target.shape[1], target.shape[3], dtype=layers.static.dtype)
     if recipe.with_static:
         points = replace(layers.points, amplitude=-layers.points.amplitude)
-        static = fit_static(response.render(points, axes, target / layers.calibration), response, axes)
+        rest = response.render(points, axes, target / layers.calibration).numpy()
+        static = torch.from_numpy(fit_static(rest, at_rest))
     return replace(layers, static=static)
 
 

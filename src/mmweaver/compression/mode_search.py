@@ -8,7 +8,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.coded_chunk import ChunkMode
 from mmweaver.compression.segment import SegmentEncoder
 from mmweaver.compression.step_search import COUNT_AIM, LEAST_ERROR, Found, Plan, step_of_error, step_of_size, sum_at
@@ -26,6 +25,7 @@ NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
 MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 12, 7
 NOISE_COUNTS, SAME_NOISE = 2, 0.05  # counts of a noise layer; share of the signal's bytes that an estimate may mistake
+AS_GOOD = 0.97  # of the product of errors as counted first: what a file without a layer must have to be decided on
 CLEARLY_BETTER = 0.8  # of the product of errors: with this advantage by estimates, no file without layers is counted
 
 # layers that a file is counted without, too: a sample of the cells may mistake what they are worth
@@ -36,16 +36,27 @@ LAYERS: dict[str, Callable[[ChunkMode], bool]] = {
 
 
 def best_plan(segment: SegmentEncoder, num_bytes: int) -> Plan:
-    """The best of the files with all layers that pay by estimates, and of those without each of them."""
-    best = _plan(segment, num_bytes)
+    """The best of the files with all layers that pay by estimates, and of those without each of them.
+
+    These are counted first as they begin: only where they are about as good then, the rest is decided.
+    """
+    best, first = _plan(segment, num_bytes)
     for layer, has_layer in LAYERS.items():
         if not any(has_layer(chunk.mode) for chunk in best.found.coded):
             continue
         if layer == "scatterers" and _is_clear(segment, num_bytes):
             continue
         segment.leave_out(layer)
-        best = min(best, _plan(segment, num_bytes), key=lambda plan: plan.badness)
+        other = _first(segment, num_bytes)
+        if _as_begun(segment, num_bytes, other) * AS_GOOD > _as_begun(segment, num_bytes, first):
+            continue
+        plan, _ = _plan(segment, num_bytes, other)
+        best, first = min((best, first), (plan, other), key=lambda one: one[0].badness)
     return best
+
+
+def _as_begun(segment: SegmentEncoder, num_bytes: int, first: Found) -> float:
+    return Plan.of(first, num_bytes, segment.bounds).badness
 
 
 def _is_clear(segment: SegmentEncoder, num_bytes: int) -> bool:
@@ -70,13 +81,13 @@ def _first(segment: SegmentEncoder, num_bytes: int) -> Found:
     return _counted(segment, num_bytes, step, segment.coarser)
 
 
-def _plan(segment: SegmentEncoder, num_bytes: int) -> Plan:
-    """The file with all layers that pay by estimates."""
-    first = _first(segment, num_bytes)
+def _plan(segment: SegmentEncoder, num_bytes: int, first: Found | None = None) -> tuple[Plan, Found]:
+    """The file with all layers that pay by estimates, and as it was counted `first`."""
+    first = first or _first(segment, num_bytes)
     if segment.coarser == 1:
-        return Plan.of(first, num_bytes, segment.bounds)
+        return Plan.of(first, num_bytes, segment.bounds), first
     plan = _evened(segment, num_bytes, first)
-    return plan if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, plan)
+    return (plan if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, plan)), first
 
 
 def _counted(segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, noise_step: float = 0.0) -> Found:
@@ -193,7 +204,7 @@ def _noise_steps(
         left = num_bytes - factors.noise_bytes * sum_at(noise, noise_step, 1).num_bytes
         return step_of_size(first.samples, max(left, 1) / factors.signal_bytes, 0, bounds)
 
-    enough = step_of_error(noise, NOISE_SHARE * allowed / factors.error, bounds, _all_error)
+    enough = step_of_error(noise, NOISE_SHARE * allowed / factors.error, 1, bounds, lambda one: one.all_error)
     if factors.noise_bytes * sum_at(noise, enough, 1).num_bytes > MOST_SHARE * num_bytes:
         return 0.0, 0.0
     noise_step, step = enough, signal_step(enough)
@@ -207,10 +218,6 @@ def _noise_steps(
         else:
             low = math.log(middle)
     return noise_step, step
-
-
-def _all_error(sample: CellSample, step: float) -> float:
-    return sample.at(step, 1).all_error
 
 
 def _over_range(segment: SegmentEncoder, num_bytes: int, plan: Plan) -> Plan:

@@ -13,6 +13,7 @@ from scipy import fft
 
 from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.residual_stream import QuantizedCells, code_plain_cells, estimated_cell_bits, quantized
+from mmweaver.compression.transforms import dct_matrix
 
 Array = np.ndarray
 MOST_HOLES = 0.25  # share of active cells up to which they are filled
@@ -34,15 +35,14 @@ class NoiseLayer:
     @classmethod
     def of(
         cls,
-        quiet: Complex[Array, "frame range doppler antenna"],
+        coefficients: Complex[Array, "beam frame range doppler"],
         step: float,
         beams: Complex[Array, "beam antenna"],
         *,
         only_size: bool = False,
     ) -> "NoiseLayer":
-        """The layer of values without signal, see `without_signal`."""
+        """The layer of what `to_noise` makes of values without signal, see `without_signal`."""
         step = float(np.float32(step))
-        coefficients = to_noise(quiet, beams)
         cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
         stream, values = Encoder(), from_noise(cells.values(step, 1), beams)
         if only_size:
@@ -82,12 +82,22 @@ def without_signal(
     quiet = np.where(holes, 0, values).astype(np.complex64)
     if is_active.mean() > MOST_HOLES:
         return quiet
+    matrices = [dct_matrix(num).astype(np.float32) for num in values.shape[1:3]]
     profiles = [np.cos(np.pi * np.arange(num) / (2 * num)) ** 4 for num in values.shape[1:3]]
     power = (profiles[0][:, None, None] * profiles[1][:, None]).astype(np.float32)
-    for floor in FLOORS:
-        smooth = _along(_along(quiet, fft.dctn, (1, 2)) * (power / (power + np.float32(floor))), fft.idctn, (1, 2))
-        quiet = np.where(holes, smooth, quiet)
+    gains = [power / (power + np.float32(floor)) for floor in FLOORS]
+    for frame, is_hole in zip(quiet, is_active, strict=True):  # one at a time stays in the cache
+        for gain in gains if is_hole.any() else []:
+            smooth = _product(matrices, frame)
+            smooth *= gain
+            frame[is_hole] = _product([matrix.T for matrix in matrices], smooth)[is_hole]
     return quiet
+
+
+def _product(matrices: list[Array], values: Complex[Array, "range doppler antenna"]) -> Array:
+    """Values times a matrix along range and one along Doppler."""
+    flat = matrices[0] @ values.view(np.float32).reshape(len(values), -1)
+    return (matrices[1] @ flat.reshape(*values.shape[:2], -1)).view(np.complex64)
 
 
 def to_noise(

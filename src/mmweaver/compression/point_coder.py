@@ -133,6 +133,14 @@ def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axe
     )
 
 
+def uniform_bits(coded: CodedPoints, steps: PointSteps, num_directions: int) -> float:
+    """Bits of what `PointCoder` codes as uniform, most of all; those of one cell of sixteen of a direction are not."""
+    sizes = [_phases(coded.size), 2 ** _octave(coded.size)]
+    sizes += [_parts(coded.size, sixteenths) for sixteenths in (steps.range_sixteenths, steps.doppler_sixteenths)]
+    sizes += [_direction_parts(coded.size, sixteenths) for sixteenths in steps.direction_sixteenths[:num_directions]]
+    return sum(float(np.log2(one).sum()) for one in sizes)
+
+
 def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
     """Strength of the strongest scatterer near each cell: 0 none, then one level per two octaves, at most 5."""
     out = np.zeros(shape, np.int64)

@@ -11,13 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.compression.cell_choice import active_cells
-from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk import decode_chunk
 from mmweaver.compression.coded_chunk import CodedChunk
 from mmweaver.compression.mode_search import best_plan
 from mmweaver.compression.residual_stream import PRICE
 from mmweaver.compression.segment import SegmentEncoder
-from mmweaver.compression.step_search import AIM, LEAST_ERROR, Found, Plan, step_of_error
+from mmweaver.compression.step_search import AIM, LEAST_ERROR, Found, Plan, step_of_error, step_of_size, sum_at
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import CubeValues
 
@@ -25,6 +24,8 @@ EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at
 TRIALS = 9
 CLOSE_ENOUGH, ENOUGH_LATER, LATER = 0.98, 0.971, 2  # of the bytes allowed; the same after so many trials
 CLOSEST = 1.002  # ratio of steps that are tried one after the other, at least
+# a step so many times coarser costs more than a coarser noise layer; share of its bytes that one keeps at least
+MUCH_COARSER, LEAST_NOISE = 1.08, 0.95
 MOST_PRICE, PRICES = 1000.0, 10  # squared steps a bit, where a quality jumps; how many are tried
 WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
 EXACT_DB = -300.0  # said of a cube without any error
@@ -69,6 +70,10 @@ def _finest(segment: SegmentEncoder, num_bytes: int, plan: Plan, progress: Progr
             if one.num_bytes >= enough * num_bytes or step <= segment.finest_step:
                 break
         else:
+            nearer = one.step_of_size(AIM * num_bytes, (low, high))
+            if not trial and noise_step and nearer > MUCH_COARSER * step:
+                noise_step = _less_noise(segment, one, math.ceil(one.num_bytes - AIM * num_bytes))
+                continue
             larger, low = one, step
         if high < low * 1.0001:
             break
@@ -78,6 +83,14 @@ def _finest(segment: SegmentEncoder, num_bytes: int, plan: Plan, progress: Progr
         else:
             step = _between(larger, fits, num_bytes, is_even=bool(trial % 3 == 2))
     return fits or coded(segment.coarsest_step)
+
+
+def _less_noise(segment: SegmentEncoder, one: Found, num_bytes: int) -> float:
+    """The step of noise layers of so many bytes less."""
+    samples, before = segment.noise_samples(), sum(chunk.draft.noise_bytes for chunk in one.coded)
+    now = sum_at(samples, one.noise_step, 1).num_bytes
+    least = now * max(1 - num_bytes / before, LEAST_NOISE)
+    return step_of_size(samples, least, 1, segment.bounds)
 
 
 def _between(larger: Found, fits: Found, num_bytes: int, *, is_even: bool) -> float:
@@ -137,22 +150,18 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
 def _step_of_quality(segment: SegmentEncoder, quality_db: float, is_active: np.ndarray) -> float:
     signal = float(np.sum(np.abs(segment.cube.values[is_active]) ** 2)) / segment.scale.peak**2
     error = signal * 10 ** (-quality_db / 10)
-    return step_of_error(
-        segment.samples(), error, segment.bounds, lambda one, step: one.at(step, segment.coarser).active_error
-    )
+    return step_of_error(segment.samples(), error, segment.coarser, segment.bounds, lambda one: one.active_error)
 
 
 def _next_quality(
     coded: list[CodedChunk], guess: float, too_good_db: float, low: float, high: float, *, is_late: bool
 ) -> float:
-    samples, step = [chunk.sample for chunk in coded], math.exp(guess)
-
-    def error(sample: CellSample, step: float) -> float:
-        return sample.at(step, 1).active_error  # in which coarse cells have no part
-
-    here = sum(error(sample, step) for sample in samples)
+    samples = [chunk.sample for chunk in coded]
+    error = sum_at(samples, math.exp(guess), 1).active_error * 10 ** (
+        too_good_db / 10
+    )  # coarse cells have no part in it
     bounds = math.exp(max(low, guess - 2)), math.exp(min(high, guess + 2))
-    found = math.log(step_of_error(samples, here * 10 ** (too_good_db / 10), bounds, error))
+    found = math.log(step_of_error(samples, error, 1, bounds, lambda one: one.active_error))
     edge = 0.02 * (high - low)
     inside = low + edge < found < high - edge
     return found if inside and not is_late else (max(low, guess - 4) + min(high, guess + 4)) / 2

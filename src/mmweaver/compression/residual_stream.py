@@ -67,20 +67,26 @@ def quantized(
     own_step = np.where(is_active, step, step * (coarser or 1))
     # most cells have less energy than their least level
     is_open = (energy >= SLIGHTLY_LESS * ((1 - ROUNDING) * own_step) ** 2) & (is_active | (coarser > 0))
-    some = coefficients[:, is_open]
-    parts = np.stack([np.real(some), np.imag(some)])
-    parts /= own_step[is_open].astype(parts.dtype)
+    cells = np.flatnonzero(is_open)
+    # (beam, cell, part), as in memory
+    parts = coefficients.reshape(len(coefficients), -1).take(cells, axis=1)
+    parts = parts.view(parts.real.dtype).reshape(*parts.shape, 2)
+    parts /= own_step.ravel()[cells, None].astype(parts.dtype)
     magnitude = np.abs(parts)
-    levels = np.floor(magnitude + magnitude.dtype.type(ROUNDING))
+    levels = magnitude + magnitude.dtype.type(ROUNDING)
+    np.floor(levels, out=levels)
     if price > PRICE:
         levels = _lowered(magnitude, levels, price)
-    worth = _is_worthwhile(magnitude, levels, price) & levels.any(axis=(0, 1))
-    is_open[is_open] = worth
-    parts, magnitude, levels = (values[:, :, worth] for values in (parts, magnitude, levels))
+    worth = np.flatnonzero(_is_worthwhile(magnitude, levels, price))
+    if len(worth) < len(cells):
+        parts, magnitude, levels = (values.take(worth, axis=1) for values in (parts, magnitude, levels))
+    is_open = np.zeros(is_active.shape, bool)
+    is_open.flat[cells[worth]] = True
+    centroids = _centroids(magnitude, levels)
     return QuantizedCells(
-        levels=np.where(parts < 0, -levels, levels).astype(np.int64),
+        levels=np.moveaxis(np.copysign(levels, parts, out=parts), 2, 0).astype(np.int64, order="C"),
         classes=np.where(is_open, np.where(is_active | (coarser <= 1), FINE, COARSE), CLOSED),
-        centroids=_centroids(magnitude, levels),
+        centroids=centroids,
     )
 
 
@@ -132,17 +138,22 @@ def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
 
 
 def _is_worthwhile(magnitude: Array, levels: Array, price: float) -> Array:
-    gain = np.sum(levels * (2 * magnitude - levels), axis=(0, 1))
-    return gain > price * (np.sum(approximate_bits(levels), axis=(0, 1)) + OPEN_BITS)
+    """Whether cells (cell,) of levels (beam, cell, part) save as much error as their bits are worth; not empty ones."""
+    saved = magnitude + magnitude
+    saved -= levels
+    saved *= levels
+    saved, bits = (values.sum(axis=0).sum(axis=1) for values in (saved, approximate_bits(levels)))
+    return (saved > price * (bits + OPEN_BITS)) & (saved > 0)
 
 
 def approximate_bits(levels: Array) -> Array:
     """Approximate bits of magnitudes in open cells."""
-    small = np.minimum(levels, len(BITS_OF_LEVEL) - 1).astype(np.int16)
-    bits = BITS_OF_LEVEL.take(small)
-    is_large = small == len(BITS_OF_LEVEL) - 1
-    if is_large.any():
-        bits[is_large] = _bits_of(levels[is_large])
+    most = len(BITS_OF_LEVEL) - 1
+    if levels.max(initial=0) < most:
+        return BITS_OF_LEVEL.take(levels.astype(np.intp), mode="clip")  # without a check of each
+    bits = BITS_OF_LEVEL.take(np.minimum(levels, most).astype(np.intp))
+    is_large = levels >= most
+    bits[is_large] = _bits_of(levels[is_large])
     return bits
 
 
@@ -156,8 +167,12 @@ BITS_OF_LEVEL = _bits_of(np.arange(256)).astype(np.float32)
 
 
 def _centroids(magnitude: Array, levels: Array) -> tuple[int, int]:
+    """Mean offset of values from level 1, and from higher ones, in 1/256, plus 128."""
+    offset = magnitude - levels
+    is_one, is_more = levels == 1, levels > 1
     found = []
-    for chosen in (levels == 1, levels > 1):
-        mean = float((magnitude[chosen] - levels[chosen]).mean()) if chosen.any() else 0.0
+    for chosen in (is_one, is_more):
+        num = np.count_nonzero(chosen)
+        mean = float(np.vdot(offset, chosen.astype(offset.dtype))) / num if num else 0.0
         found.append(int(np.clip(round(mean * 256) + 128, 0, 255)))
     return found[0], found[1]

@@ -1,7 +1,7 @@
 """Files of a step, coded or counted, and the step at which they would have a size or an error (encoder side)."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,7 @@ from mmweaver.compression.coded_chunk import CodedChunk
 COUNT_AIM, AIM = 0.992, 0.996  # of the bytes allowed, for chunks that were counted, and for coded ones
 FURTHEST = 8  # ratio of steps up to which an estimate is believed
 LEAST_ERROR = 1e-30  # relative to the squared peak
+USUAL_SLOPE, HALVED_EVERY = 0.12, 4  # of log(bytes) over the grid of estimates; trials of which one halves the range
 
 Bounds = tuple[float, float]  # the finest and the coarsest step
 
@@ -103,27 +104,52 @@ def step_of_size(samples: list[CellSample], num_bytes: int | float, coarser: int
     def excess(step: float) -> float:
         return math.log(sum_at(samples, step, coarser).num_bytes / max(num_bytes, LEAST_ERROR))
 
-    return _step_where(excess, *bounds)
+    return _step_where(excess, *bounds, _known(samples, coarser))
 
 
 def step_of_error(
-    samples: list[CellSample], error: float, bounds: Bounds, error_of: Callable[[CellSample, float], float]
+    samples: list[CellSample], error: float, coarser: int, bounds: Bounds, error_of: Callable[[Estimate], float]
 ) -> float:
     """The step at which chunks have an error by the estimate."""
 
     def room(step: float) -> float:
-        return -math.log(max(sum(error_of(sample, step) for sample in samples), LEAST_ERROR) / max(error, LEAST_ERROR))
+        found = error_of(sum_at(samples, step, coarser))
+        return -math.log(max(found, LEAST_ERROR) / max(error, LEAST_ERROR))
 
-    return _step_where(room, *bounds)
+    return _step_where(room, *bounds, _known(samples, coarser))
 
 
-def _step_where(excess: Callable[[float], float], finest: float, coarsest: float) -> float:
-    """The step at which a falling function of it is zero: halving on the grid of estimates, then false position."""
+def _known(samples: list[CellSample], coarser: int) -> set[int]:
+    """Where on the grid all samples have been estimated."""
+    return set.intersection(*(sample.nodes(coarser) for sample in samples)) if samples else set()
+
+
+def _step_where(excess: Callable[[float], float], finest: float, coarsest: float, known: Iterable[int]) -> float:
+    """The step at which a falling function of it is zero: false position on the grid of estimates, then between two.
+
+    `known`: where on the grid the function costs nothing.
+    """
     low, high = (math.log2(bound) * STEPS_AN_OCTAVE for bound in (finest, coarsest))
     above, below = math.inf, -math.inf
-    while (middle := round((low + high) / 2)) > low and middle < high:
-        here = excess(2 ** (middle / STEPS_AN_OCTAVE))
-        low, above, high, below = (middle, here, high, below) if here > 0 else (low, above, middle, here)
+
+    def probe(node: int) -> None:
+        nonlocal low, above, high, below
+        if low < node < high:
+            here = excess(2 ** (node / STEPS_AN_OCTAVE))
+            low, above, high, below = (node, here, high, below) if here > 0 else (low, above, node, here)
+
+    for node in known:
+        probe(node)
+    trial = 0
+    while (first := math.floor(low) + 1) <= (last := math.ceil(high) - 1):
+        trial += 1
+        if math.isinf(above - below) and not math.isinf(min(above, -below)):  # one side is known
+            guess = low + above / USUAL_SLOPE + 1 if math.isinf(below) else high + below / USUAL_SLOPE - 1
+        elif math.isinf(above) or trial % HALVED_EVERY == 0:
+            guess = (low + high) / 2
+        else:
+            guess = low + (high - low) * above / (above - below)
+        probe(min(max(round(guess), first), last))
     above = excess(2 ** (low / STEPS_AN_OCTAVE)) if above == math.inf else above
     below = excess(2 ** (high / STEPS_AN_OCTAVE)) if below == -math.inf else below
     if above <= 0 or below >= 0:

@@ -1,11 +1,22 @@
 """Names and durations of the stages of a long job."""
 
 import logging
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from time import perf_counter
+from typing import Any
 
 _LOG = logging.getLogger(__name__)
+
+
+@lru_cache(maxsize=1)
+def _thread_pools(modules: int) -> Any:
+    """The thread pools of the libraries that are loaded with so many modules: finding them takes 4 ms."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 class Stages:
@@ -30,11 +41,9 @@ class Stages:
         """Times one stage; the time of a repeated stage is added up."""
         if self._listener is not None:
             self._listener(name)
-        from threadpoolctl import threadpool_limits
-
         start = perf_counter()
         try:
-            with threadpool_limits(limits=1, user_api="blas"):
+            with _thread_pools(len(sys.modules)).limit(limits=1, user_api="blas"):
                 yield
         finally:
             seconds = perf_counter() - start

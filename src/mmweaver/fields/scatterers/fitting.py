@@ -12,10 +12,12 @@ from mmweaver.fields.scatterers.greedy import Greedy
 from mmweaver.fields.scatterers.layers import (
     Layers,
     compact,
+    fit_static,
     no_points,
     static_response,
     static_values,
     strongest,
+    subtract_static,
     values_of_point,
 )
 from mmweaver.fields.scatterers.point_factors import PointFactors
@@ -143,21 +145,11 @@ class _Fit:
         if not self.recipe.with_static:
             return
         before = self.static
-        self.static = before + self._fitted_static()
+        self.static = before + fit_static(self.residual, self.static_response)
         if self.active_beams is not None:
             self.static = (self.static @ self.to_beams.T * self.active_beams) @ self.to_beams.conj()
         for values in (self.received, self.residual):
-            self._subtract_static(values, self.static - before)
-
-    def _fitted_static(self) -> Array:
-        """Least-squares static layer (range, antenna) of the residual."""
-        kernel, bins = self.static_response
-        found = np.einsum("trda,d->ra", self.residual[:, :, bins], kernel)
-        return found / (len(self.residual) * np.square(kernel).sum())
-
-    def _subtract_static(self, values: Array, static: Array) -> None:
-        kernel, bins = self.static_response
-        values[:, :, bins] -= static[:, None, :] * kernel[:, None]
+            subtract_static(values, self.static - before, self.static_response)
 
     def _worthwhile_beams(self) -> Array:
         """Beams (range, beam) that explain more energy per parameter than a weak scatterer does."""
@@ -167,7 +159,7 @@ class _Fit:
         weak = float(np.quantile(np.square(echo), WEAK_SHARE)) if len(echo) else 0.0
         weak *= len(self.calibration) * fast * slow
         least = max(weak, self.recipe.least_gain * self._noise_power()) * 2 / values_of_point(self.response)
-        beams = (self.static + self._fitted_static()) @ self.to_beams.T
+        beams = (self.static + fit_static(self.residual, self.static_response)) @ self.to_beams.T
         return np.square(np.abs(beams)) * (len(self.target) * slow) > least
 
     def _most_points(self) -> int:
@@ -189,7 +181,7 @@ class _Fit:
         self.calibration = self.calibration * gain
         self.static = self.static / gain
         self.received = self.target * (1 / self.calibration)
-        self._subtract_static(self.received, self.static)
+        subtract_static(self.received, self.static, self.static_response)
         self.residual = self.received - model
 
     def _noise_power(self) -> float:

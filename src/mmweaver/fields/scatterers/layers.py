@@ -11,6 +11,9 @@ from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 VALUES_OF_POINT = 4  # range, velocity, complex amplitude; plus one per direction the array resolves
 
+Array = np.ndarray
+StaticResponse = tuple[Float[Array, "bins"], slice]  # of Doppler bins, and which these are
+
 NO_RESPONSE = 1e-5  # relative to the peak
 BITS_OF_VALUE = 32  # float32
 
@@ -67,20 +70,19 @@ def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
     return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
 
 
-def subtract_static(residual: Tensor, static: Tensor, response: PointResponse, axes: Axes) -> None:
+def subtract_static(residual: Array, static: Array, response: StaticResponse) -> None:
     """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
-    kernel, bins = static_response(response, axes)
-    residual[:, :, bins] -= static[:, None, :] * torch.from_numpy(kernel)[:, None]
+    kernel, bins = response
+    residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
 
 
-def fit_static(residual: Tensor, response: PointResponse, axes: Axes) -> Tensor:
+def fit_static(residual: Array, response: StaticResponse) -> Array:
     """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
-    kernel, bins = static_response(response, axes)
-    static = torch.einsum("trda,d->ra", residual[:, :, bins], torch.from_numpy(kernel).to(residual.dtype))
-    return static / (len(residual) * float(np.square(kernel).sum()))
+    kernel, bins = response
+    return np.einsum("trda,d->ra", residual[:, :, bins], kernel) / (len(residual) * np.square(kernel).sum())
 
 
-def static_response(response: PointResponse, axes: Axes) -> tuple[Float[np.ndarray, "bins"], slice]:
+def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
     """Doppler response of zero velocity where it is not zero, and these bins: three for a Hann window."""
     kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
     found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
