@@ -43,7 +43,7 @@ def _still(cube: RadarCube) -> np.ndarray:
     return cube.values[:, :, REST].mean(axis=0)
 
 
-def test_what_rests_is_the_recordings_own(scene: Scene, recording: RadarCube):
+def test_static_clutter_is_the_recordings_own(scene: Scene, recording: RadarCube):
     known, sampled = (_learned_room(scene, one) for one in (recording, None))
     recorded = _still(recording)
     assert np.allclose(known.layer.numpy(), recorded, atol=1e-6 * np.abs(recorded).max())

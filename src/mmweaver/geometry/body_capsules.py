@@ -147,21 +147,15 @@ class PosedCapsules:
 def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> PosedCapsules:
     """All capsules for joints in metres, of a person of `height_m`."""
     trunk = _trunk_rotation(joints_m)
-    starts, axes, rotations = [], [], []
-    for capsule in CAPSULES:
-        start = joints_m[:, joint(capsule.start)]
-        end = joints_m[:, joint(capsule.end)]
-        before = CONTINUED_FROM.get(capsule.start)
-        bone = start - joints_m[:, joint(before)] if before else end - start
-        if capsule.is_lump:
-            bone = -trunk[:, :, 2]
-        length = np.linalg.norm(bone, axis=-1, keepdims=True)
-        unit = bone / np.maximum(length, 1e-9)
-        own = np.linalg.norm(end - start, axis=-1, keepdims=True)
-        starts.append(start)
-        axes.append(unit * (own + capsule.extend_m * scale_of(height_m)))
-        rotations.append(_shortest_rotation(trunk, np.asarray(capsule.rest), unit))
-    return PosedCapsules(start_m=np.stack(starts, 1), axis_m=np.stack(axes, 1), rotation=np.stack(rotations, 1))
+    start, end = joints_m[:, _START], joints_m[:, _END]
+    bone = joints_m[:, _TO] - joints_m[:, _FROM]
+    bone[:, _LUMPS] = -trunk[:, None, :, 2]
+    unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+    own = np.linalg.norm(end - start, axis=-1, keepdims=True)
+    return PosedCapsules(
+        start_m=start, axis_m=unit * (own + _EXTEND_M[:, None] * scale_of(height_m)),
+        rotation=_shortest_rotations(trunk, unit),
+    )  # fmt: skip
 
 
 def hull(
@@ -217,23 +211,37 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return out
 
 
-def _shortest_rotation(
-    trunk: Float[Array, "time 3 3"], rest: Float[Array, "3"], unit: Float[Array, "time 3"]
-) -> Float[Array, "time 3 3"]:
-    """Rotations whose third column is `unit`, reached by the shortest rotation from the rest direction in the trunk.
-
-    The shortest rotation keeps skin from spinning about its bone, which a radar would see as velocity.
-    """
+def _rest_frame(rest: Float[Array, "3"]) -> Float[Array, "3 3"]:
+    """A frame in the trunk whose third column is the direction of a capsule at rest."""
     rest = rest / np.linalg.norm(rest)
     not_along = np.array([0.0, 1.0, 0.0]) if abs(rest[1]) < 0.9 else np.array([0.0, 0.0, 1.0])
     across = _cross(not_along, rest)
     across /= np.linalg.norm(across)
-    start = trunk @ np.stack([across, _cross(rest, across), rest], axis=-1)
+    return np.stack([across, _cross(rest, across), rest], axis=-1)
+
+
+def _shortest_rotations(
+    trunk: Float[Array, "time 3 3"], unit: Float[Array, "time capsule 3"]
+) -> Float[Array, "time capsule 3 3"]:
+    """Rotations whose third column is `unit`, reached by the shortest rotation from the rest direction in the trunk.
+
+    The shortest rotation keeps skin from spinning about its bone, which a radar would see as velocity.
+    """
+    start = trunk[:, None] @ _REST_FRAMES
     old = start[..., 2]
     axis = _cross(old, unit)
-    cos = (old * unit).sum(-1)[..., None]
+    cos = (old * unit).sum(-1, keepdims=True)
+    less = axis / np.maximum(1 + cos, 1e-3)
     rotated = [
-        v * cos + _cross(axis, v) + axis * (axis * v).sum(-1, keepdims=True) / np.maximum(1 + cos, 1e-3)
-        for v in (start[..., 0], start[..., 1])
+        v * cos + _cross(axis, v) + less * (axis * v).sum(-1, keepdims=True) for v in (start[..., 0], start[..., 1])
     ]
     return np.stack([*rotated, unit], axis=-1)
+
+
+_REST_FRAMES = np.stack([_rest_frame(np.asarray(one.rest)) for one in CAPSULES])
+_START, _END = [joint(one.start) for one in CAPSULES], [joint(one.end) for one in CAPSULES]
+# The joints between which a capsule's direction is taken: its own, or those of the bone that it continues.
+_FROM = [joint(CONTINUED_FROM.get(one.start, one.start)) for one in CAPSULES]
+_TO = [joint(one.start if one.start in CONTINUED_FROM else one.end) for one in CAPSULES]
+_LUMPS = [number for number, one in enumerate(CAPSULES) if one.is_lump]
+_EXTEND_M = np.array([one.extend_m for one in CAPSULES])

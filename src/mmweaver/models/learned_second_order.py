@@ -29,23 +29,20 @@ SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's 
 def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
     """Paths (frame * segment, path) of all people, each order a path of its own."""
     seen = [_seen(room, motion, [one for one in motions if one is not motion], clock) for motion in motions]
-    over_room = [BodyRoomPaths(one, SAMPLING) for one in seen]
-    between = [BodyBodyPaths(*pair) for pair in combinations(over_room, 2)]
-    segments = []
-    for frame in range(seen[0].num_frames):
-        for index in range(len(clock.segments)):
-            found = [part for one in over_room for part in one.paths(frame, one.of.posed.motion[frame, index])]
-            for pair in between:
-                both = (one.of.posed.motion[frame, index] for one in (pair.first, pair.second))
-                found.append(pair.paths(frame, *both))
-            segments.append(Paths.cat(found))
-    return Paths.padded(segments).one_way()
+    people = [BodyRoomPaths(one, SAMPLING) for one in seen]
+    between = [BodyBodyPaths(*pair) for pair in combinations(people, 2)]
+    count, every = seen[0].num_frames, SAMPLING.every
+    blocks = [slice(first, min(first + every, count)) for first in range(0, count, every)]
+    sources = [one.over_room for one in people] + [pair.paths for pair in between] + [one.over_radar for one in people]
+    each = [Paths.padded([source(block) for block in blocks]) for source in sources]
+    return Paths.cat(each, dim=1).one_way()
 
 
 def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:
     body = _body(motion.subject, motion.height_m, motion.girth)
     one = SeenBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
-    one.visible &= room.is_clear(np.zeros(3), one.posed.place_m, ROOM_MARGIN_M)
+    clear = room.is_clear(np.zeros(3), one.posed.place_m[:: SAMPLING.every], ROOM_MARGIN_M)
+    one.visible &= np.repeat(clear, SAMPLING.every, axis=0)[: one.num_frames]
     for other in others:
         one.visible &= ~occluded(_tensor(one.posed.place_m), other.middle_joints_m).numpy()
     return one

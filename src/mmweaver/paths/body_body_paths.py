@@ -39,18 +39,18 @@ class BodyBodyPaths:
         pairs = {frame: self._pairs(frame) for frame in frames[::every]}
         self.pairs = [pairs[frame - frame % every] for frame in frames]
 
-    def paths(self, frame: int, first_motion: np.ndarray, second_motion: np.ndarray) -> Paths:
-        """Paths (path,) of one time segment of a frame; motions (point, 3, 3) of each person's skin."""
-        pairs = self.pairs[frame]
-        a = self.first.parts(frame, first_motion)[pairs.first]
-        b = self.second.parts(frame, second_motion)[pairs.second]
-        count = len(pairs.amplitude)
+    def paths(self, frames: slice) -> Paths:
+        """Paths (frame * segment, path) of frames between two at which amplitudes are computed."""
+        pairs = self.pairs[frames.start]
+        a = self.first.parts(frames)[:, pairs.first]
+        b = self.second.parts(frames)[:, pairs.second]
+        shape = a.shape[:2]
         return Paths(
-            amplitude=torch.from_numpy(pairs.amplitude.astype(np.complex64)),
+            amplitude=torch.from_numpy(pairs.amplitude.astype(np.complex64)).expand(shape),
             departure=ApparentPoint.of(a),
-            arrival=ApparentPoint.of(_radial(b, b - a)[:, :, None] * unit(b[:, 0])[:, None]),
-            is_reciprocal=torch.ones(count, dtype=torch.bool),
-            interaction=torch.full((count,), int(Interaction.BODY_BODY), dtype=torch.uint8),
+            arrival=ApparentPoint.of(_radial(b, b - a)[..., None] * unit(b[:, :, 0])[..., None, :]),
+            is_reciprocal=torch.ones(shape, dtype=torch.bool),
+            interaction=torch.full(shape, int(Interaction.BODY_BODY), dtype=torch.uint8),
         )
 
     def _pairs(self, frame: int) -> _PartPairs:
@@ -72,15 +72,16 @@ class BodyBodyPaths:
 
 
 def _radial(part: np.ndarray, leg: np.ndarray) -> np.ndarray:
-    """Length, rate and acceleration (pair, 3) of the way from one person over the other's part to the radar.
+    """Length, rate and acceleration (..., pair, 3) of the way from one person over the other's part to the radar.
 
-    `part` (pair, 3, 3) is the other's motion, `leg` that relative to the one's.
+    `part` (..., pair, 3, 3) is the other's motion, `leg` that relative to the one's.
     """
-    total = np.zeros((len(part), 3))
+    total = np.zeros(part.shape[:-1])
     for way in (part, leg):
-        length_m = np.maximum(np.linalg.norm(way[:, 0], axis=1), 1e-6)
-        along = way[:, 0] / length_m[:, None]
-        rate = (along * way[:, 1]).sum(axis=1)
-        across2 = (way[:, 1] ** 2).sum(axis=1) - rate**2
-        total += np.stack([length_m, rate, (along * way[:, 2]).sum(axis=1) + across2 / length_m], axis=1)
+        position, velocity, acceleration = (way[..., order, :] for order in range(3))
+        length_m = np.maximum(np.linalg.norm(position, axis=-1), 1e-6)
+        along = position / length_m[..., None]
+        rate = (along * velocity).sum(axis=-1)
+        across2 = (velocity**2).sum(axis=-1) - rate**2
+        total += np.stack([length_m, rate, (along * acceleration).sum(axis=-1) + across2 / length_m], axis=-1)
     return total

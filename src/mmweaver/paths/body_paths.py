@@ -49,11 +49,13 @@ class BodyPaths(SeenBody):
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over the person in one frame, a record (path,) for each time segment."""
-        return [self._segment(frame, motion) for motion in self.posed.motion[frame]]
-
-    def _segment(self, frame: int, motion: np.ndarray) -> Paths:
-        second = [] if self.second is None else self.second.paths(frame, motion)
-        return Paths.cat([part.paths(frame, motion) for part in self.parts] + second)
+        of_segments = [
+            Paths.cat([part.paths(frame, motion) for part in self.parts]) for motion in self.posed.motion[frame]
+        ]
+        if self.second is None:
+            return of_segments
+        second = self.second.paths(slice(frame, frame + 1))
+        return [Paths.cat([first, second[index]]) for index, first in enumerate(of_segments)]
 
     def occluded_paths(self, frame: int) -> StaticPaths:
         """The static paths that the person occludes in one frame."""

@@ -89,44 +89,58 @@ class BodyRoomPaths:
         self.pairs = [pairs[frame - frame % every] for frame in frames]
         self.twice = [twice[frame - frame % every] for frame in frames]
 
-    def paths(self, frame: int, motion: np.ndarray) -> list[Paths]:
-        """Paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
-        parts = self.parts(frame, motion)
-        pairs, twice = self.pairs[frame], self.twice[frame]
-        there = np.flatnonzero(twice)
-        return [
-            self._record(
-                pairs.amplitude, parts[pairs.part], self._over(parts[pairs.part], pairs.patch), Interaction.BODY_ROOM
-            ),
-            self._record(twice[there], 2 * parts[there], 2 * parts[there], Interaction.BODY_RADAR_BODY),
-        ]
+    def paths(self, frames: slice) -> Paths:
+        """Paths (frame * segment, path) of frames between two at which amplitudes are computed."""
+        return Paths.cat([self.over_room(frames), self.over_radar(frames)], dim=1)
 
-    def parts(self, frame: int, motion: np.ndarray) -> np.ndarray:
-        """Motion (part, 3, 3) of the parts, of that of all skin points (point, 3, 3)."""
-        return np.tensordot(self._members[frame], motion, axes=1)
+    def over_room(self, frames: slice) -> Paths:
+        """Those over patches of the room, in either order."""
+        pairs = self.pairs[frames.start]
+        body = self.parts(frames)[:, pairs.part]
+        return self._record(pairs.amplitude, body, self._over(body, pairs.patch), Interaction.BODY_ROOM)
+
+    def over_radar(self, frames: slice) -> Paths:
+        """Body, radar, and body again."""
+        twice = self.twice[frames.start]
+        there = np.flatnonzero(twice)
+        ends = 2 * self.parts(frames)[:, there]
+        return self._record(twice[there], ends, ends, Interaction.BODY_RADAR_BODY)
+
+    def parts(self, frames: slice) -> np.ndarray:
+        """Motion (frame * segment, part, 3, 3) of the parts: the mean of their skin points."""
+        motion = self.of.posed.motion[frames]
+        parts = self._members[frames, None] @ motion.reshape(*motion.shape[:3], 9)
+        return parts.reshape(-1, parts.shape[2], 3, 3)
 
     def middles_m(self, frame: int) -> np.ndarray:
         """Places (part, 3) of the parts at the middle of a frame."""
         return self._members[frame] @ self.of.posed.place_m[frame]
 
     def _over(self, body: np.ndarray, patch: np.ndarray) -> np.ndarray:
-        """Apparent motion (pair, 3, 3) of the end that leads over a patch: its direction, and as far as the body."""
+        """Apparent motion of the end that leads over a patch: its direction, and as far as the body.
+
+        `body` and the result (segment, pair, 3, 3).
+        """
         place = self.patches.place_m[patch]
-        leg = body[:, 0] - place
-        leg_m = np.linalg.norm(leg, axis=1)
-        along = leg / leg_m[:, None]
-        rate = (along * body[:, 1]).sum(axis=1)
-        across2 = (body[:, 1] ** 2).sum(axis=1) - rate**2
-        radial = np.stack([self._patch_m[patch] + leg_m, rate, (along * body[:, 2]).sum(axis=1) + across2 / leg_m], 1)
-        return radial[:, :, None] * unit(place)[:, None]
+        position, velocity, acceleration = (body[:, :, order] for order in range(3))
+        leg = position - place
+        leg_m = np.linalg.norm(leg, axis=-1)
+        along = leg / leg_m[..., None]
+        rate = (along * velocity).sum(axis=-1)
+        across2 = (velocity**2).sum(axis=-1) - rate**2
+        towards_m = (along * acceleration).sum(axis=-1) + across2 / leg_m
+        radial = np.stack([self._patch_m[patch] + leg_m, rate, towards_m], axis=-1)
+        return radial[..., None] * unit(place)[:, None]
 
     def _record(self, amplitude: np.ndarray, departure: np.ndarray, arrival: np.ndarray, kind: Interaction) -> Paths:
+        """Paths (segment, path) of amplitudes (path,) and ends (segment, path, 3, 3)."""
+        shape = departure.shape[:2]
         return Paths(
-            amplitude=torch.from_numpy(amplitude.astype(np.complex64)),
+            amplitude=torch.from_numpy(amplitude.astype(np.complex64)).expand(shape),
             departure=ApparentPoint.of(departure),
             arrival=ApparentPoint.of(arrival),
-            is_reciprocal=torch.full((len(amplitude),), kind is Interaction.BODY_ROOM),
-            interaction=torch.full((len(amplitude),), int(kind), dtype=torch.uint8),
+            is_reciprocal=torch.full(shape, kind is Interaction.BODY_ROOM),
+            interaction=torch.full(shape, int(kind), dtype=torch.uint8),
         )
 
     def _pairs(self, frame: int, direct_power: float) -> _Pairs:

@@ -56,9 +56,9 @@ class PeoplePaths:
     def paths(self, frame: int) -> list[Paths]:
         """All paths over people in one frame, a record (path,) for each time segment."""
         each = [one.paths(frame) for one in self.each]
-        for (a, b), between in self.between.items():
-            motions = zip(self.each[a].posed.motion[frame], self.each[b].posed.motion[frame], strict=True)
-            each.append([between.paths(frame, *both) for both in motions])
+        for between in self.between.values():
+            paths = between.paths(slice(frame, frame + 1))
+            each.append([paths[index] for index in range(self.num_segments)])
         return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
 
     def occlusions(self, frame: int) -> np.ndarray:

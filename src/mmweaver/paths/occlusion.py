@@ -40,14 +40,30 @@ def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
 
 
 def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
-    """Which unit vectors (frame, ray, 3) lie within the cone that the body fills, its flesh included, (frame, ray)."""
+    """Which unit vectors (frame, ray, 3) may meet the body, flesh included, (frame, ray): a cone, within a wedge."""
     ends = torch.cat(ends_m, dim=1)
     distance = ends.norm(dim=-1)
     unit = ends / distance[..., None]
-    middle = torch.nn.functional.normalize(unit.mean(dim=1), dim=-1)[..., None]
+    middle = torch.nn.functional.normalize(unit.mean(dim=1), dim=-1)
     flesh = torch.asin((WIDEST_M / distance.amin(dim=1)).clamp(max=1.0))
-    widest = torch.acos((unit @ middle)[..., 0].amin(dim=1).clamp(-1, 1)) + flesh
-    return (rays @ middle)[..., 0] > torch.cos(widest.clamp(max=torch.pi))[:, None]
+    widest = torch.acos((unit @ middle[..., None])[..., 0].amin(dim=1).clamp(-1, 1)) + flesh
+    in_cone = (rays @ middle[..., None])[..., 0] > torch.cos(widest.clamp(max=torch.pi))[:, None]
+    return in_cone & (rays @ _sides(ends, middle) >= 0).all(dim=-1)
+
+
+def _sides(ends_m: Tensor, middle: Tensor) -> Tensor:
+    """Inward normals (frame, 3, 2) of two vertical planes through the radar with the body between them.
+
+    Zero where the body fills half of the horizon or more.
+    """
+    ahead = middle[:, None, :2]
+    along, across = (ends_m[..., :2] * ahead).sum(-1), ends_m[..., 1] * ahead[..., 0] - ends_m[..., 0] * ahead[..., 1]
+    azimuth = torch.atan2(across, along) + torch.atan2(ahead[..., 1], ahead[..., 0])
+    flesh = torch.asin((WIDEST_M / ends_m[..., :2].norm(dim=-1).amin(dim=1)).clamp(max=1.0))
+    right, left = azimuth.amin(dim=1) - flesh, azimuth.amax(dim=1) + flesh
+    level = torch.zeros_like(left)
+    normals = (torch.stack([-right.sin(), right.cos(), level], -1), torch.stack([left.sin(), -left.cos(), level], -1))
+    return torch.stack(normals, dim=-1) * (left - right < torch.pi)[:, None, None]
 
 
 def _met(

@@ -105,16 +105,21 @@ class Paths(TensorRecord):
         )  # fmt: skip
 
     @staticmethod
-    def padded(segments: list["Paths"]) -> "Paths":
-        """Paths (path,) of each segment as one record (segment, path), padded at the end with amplitudes of zero."""
-        longest = max((len(one) for one in segments), default=0)
+    def padded(parts: list["Paths"]) -> "Paths":
+        """Paths (path,) of a segment each, or (segment, path) of several, as one record (segment, path).
+
+        Padded at the end with amplitudes of zero.
+        """
+        longest = max((one.amplitude.shape[-1] for one in parts), default=0)
+        axis = parts[0].amplitude.ndim - 1
 
         def filled(tensor: Tensor) -> Tensor:
-            out = tensor.new_zeros((longest, *tensor.shape[1:]))
-            out[: len(tensor)] = tensor
+            out = tensor.new_zeros((*tensor.shape[:axis], longest, *tensor.shape[axis + 1 :]))
+            out.narrow(axis, 0, tensor.shape[axis]).copy_(tensor)
             return out
 
-        return Paths.stack([one.map(filled) for one in segments])
+        each = [one if one.amplitude.shape[-1] == longest else one.map(filled) for one in parts]
+        return Paths.cat(each) if axis else Paths.stack(each)
 
     @classmethod
     def none(cls) -> "Paths":
@@ -126,8 +131,12 @@ class Paths(TensorRecord):
         if not bool(self.is_reciprocal.any()):
             return self
         forward = replace(self, is_reciprocal=torch.zeros_like(self.is_reciprocal))
-        amplitude = self.amplitude * self.is_reciprocal
-        back = replace(forward, amplitude=amplitude, departure=self.arrival, arrival=self.departure)
+        some = self[:, self.is_reciprocal.any(dim=0)]
+        amplitude = some.amplitude * some.is_reciprocal
+        back = Paths(
+            amplitude=amplitude, departure=some.arrival, arrival=some.departure,
+            is_reciprocal=torch.zeros_like(some.is_reciprocal), interaction=some.interaction,
+        )  # fmt: skip
         return Paths.cat([forward, back], dim=1)
 
     def __len__(self) -> int:
