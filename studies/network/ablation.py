@@ -187,7 +187,7 @@ def scores(learner: NetworkLearner, photo: Callable[[Case], StoredRoom], case: C
 
 def sampled_scores(method: Method, case: Case) -> dict[str, float]:
     """Scores of a signal with random phases against the ground truth."""
-    truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
+    truth, prediction = Representations(case.truth), Representations(method(case))
     return {name: METRICS[name].score(prediction, truth) for name in COLUMNS}
 
 

@@ -13,7 +13,7 @@ Intervals: bootstrap over rooms. A stopped run continues where it was.
 import argparse
 import json
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,35 +23,29 @@ from PIL import Image
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
-from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, SequenceSpec
+from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.recordings.captures import read_capture
-from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.capture_training import recipe_for, tune
 from studies.manifest import StudyRun
+from studies.network.learned_scores import OTHER, Case, simulated, true_cube
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "chamfer_m")
 REALIZATION = "realization"  # the simulator in the true room with other phases
-SAME_M = 1e-4
-OTHER = 1000  # added to a person's number for other skin
 Method = Callable[[int], RadarCube]
 
 
-def write_capture(folder: Path, room: StoredRoom, index: int, *, joints: bool) -> Path:
+def write_capture(folder: Path, room: StoredRoom, index: int, cube: RadarCube, *, joints: bool) -> Path:
     """One sequence as a capture folder of a user; the photo is in the parent folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    cube = room.cube(index)
     write_radar_npz(folder / "radar.npz", cube)
     (folder / "radar.json").write_text(room.config.to_json(), encoding="utf-8")
     if joints:
@@ -85,9 +79,10 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
     work = arguments.work / room.folder.name
     write_photo(work, room.photo)
     start = load_weights(arguments.weights)[0]
+    truths = {int(index): true_cube(room, int(index), plan_seed) for index in (*given, *asked)}
     networks = {"untuned": start}
     for name, joints in (("tuned_with_joints", True), ("tuned_without_joints", False)):
-        folders = [write_capture(work / name / f"take{k}", room, int(index), joints=joints)
+        folders = [write_capture(work / name / f"take{k}", room, int(index), truths[int(index)], joints=joints)
                    for k, index in enumerate(given)]  # fmt: skip
         for folder in folders:
             for file in ("rgb.png", "depth.npy", "camera.json"):
@@ -102,7 +97,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
                                   for name, network in networks.items()}  # fmt: skip
     takes = _together([read_capture(work / "tuned_with_joints" / f"take{k}").cube for k in range(len(given))])
     methods["captures_as_background"] = _learned(LearnedRoom(start, scene, room.config, background=takes), room)
-    methods["captures_mean"] = _mean(room, given)
+    methods["captures_mean"] = _mean([truths[int(index)] for index in given])
     realization = _realization(room, plan_seed)
     try:
         realization(int(asked[0]))
@@ -111,7 +106,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
         print(f"{work.name}: no other realization, {error}", flush=True)
     scores: dict[str, list[dict[str, float]]] = {}
     for index in asked:
-        truth = room.cube(int(index))
+        truth = truths[int(index)]
         for name, method in methods.items():
             card = scorecard(method(int(index)), truth)
             scores.setdefault(name, []).append({column: card.prediction[column] for column in COLUMNS})
@@ -139,33 +134,16 @@ def _together(cubes: list[RadarCube]) -> RadarCube:
     return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=cubes[0].scale)
 
 
-def _mean(room: StoredRoom, given: np.ndarray) -> Method:
-    mean = np.mean([room.cube(int(index)).values.mean(axis=0) for index in given], axis=0)
-
-    def method(index: int) -> RadarCube:
-        truth = room.cube(index)
-        values = np.repeat(mean[None], len(truth.values), axis=0).astype(np.complex64)
-        return RadarCube(values=values, grid=truth.grid, config=room.config, scale=1.0)
-
-    return method
+def _mean(captures: list[RadarCube]) -> Method:
+    mean = np.mean([cube.values.mean(axis=0) for cube in captures], axis=0)
+    still = np.repeat(mean[None], len(captures[0].values), axis=0).astype(np.complex64)
+    cube = replace(captures[0], values=still)
+    return lambda index: cube
 
 
 def _realization(room: StoredRoom, plan_seed: int) -> Method:
-    scene = make_room(room.kind, room.layout, plan_seed).scene(room.lighting)
-    simulator = Simulator(scene, room.config, micro_seed=1, propagation=ALL_PATHS)
-
-    def method(index: int) -> RadarCube:
-        spec = SequenceSpec(index=index, person=int(room.person[index]), activity=room.activity[index],
-                            text=room.text[index], seed=int(room.seed[index]), split="")  # fmt: skip
-        frames = room.joints_m.shape[1]
-        made = generate_sequence(
-            spec, scene, simulator, frames, subject=spec.person + OTHER, noise_seed=spec.seed + OTHER
-        )
-        if np.abs(made.joints_m - room.joints_m[index]).max() > SAME_M:
-            raise InputError("the data set's people move otherwise in this version; make it again")
-        return made.cube
-
-    return method
+    made = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
+    return lambda index: made(Case(room, index, room, plan_seed, room.lighting))
 
 
 def rows_of(scores: list[dict[str, list[dict[str, float]]]]) -> list[dict[str, Any]]:

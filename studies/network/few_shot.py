@@ -73,7 +73,7 @@ def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, Any]]:
     """{column: metric with mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
-        truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
+        truth, prediction = Representations(case.truth), Representations(method(case))
         for name in COLUMNS:
             values[name].append(METRICS[name].score(prediction, truth))
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]

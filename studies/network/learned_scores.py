@@ -10,7 +10,7 @@ Ground truth is the simulator in the true room, with all paths and clutter, and 
 `realization` is the same simulator with other surface micro-phases of room and person: the oracle for methods that
 cannot know them. `realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the
 room without the person. `static_mean` is that of the ground truth itself, `training_mean` and `nearest_training_pose`
-those of the rooms trained on, as the data set keeps them. `paper` is the paper's own network (study `train_paper`),
+those of the rooms trained on. `paper` is the paper's own network (study `train_paper`),
 `paper_power` the same idea with power as its target, also shown another room's photo, and before training; `energy_db`,
 the energy of a cube over that of the ground truth, shows whether it has collapsed. Intervals: bootstrap over rooms.
 """
@@ -55,6 +55,7 @@ COLUMNS = (
     "magnitude_nmse_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m",
 )  # fmt: skip
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
+WEAVER_ROWS = ("weaver", "weaver_with_background", "wrong_photo")
 POWER_ROWS = ("paper_power", "paper_power_wrong_photo", "paper_power_untrained")
 SAME_M = 1e-4
 OTHER = 1000  # added to a person's number for other skin
@@ -84,8 +85,8 @@ class Case:
 
     @cached_property
     def truth(self) -> RadarCube:
-        """The ground truth, with all paths: what the data set keeps may be geometry of first order."""
-        return _simulated(self, self.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None).cube
+        """The ground truth, with all paths."""
+        return true_cube(self.room, self.index, self.seed_of_plan)
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -93,6 +94,12 @@ class Case:
 
 
 Method = Callable[[Case], RadarCube]
+
+
+def true_cube(room: StoredRoom, index: int, seed_of_plan: int) -> RadarCube:
+    """One sequence simulated anew, with all paths: what the data set keeps may be geometry of first order."""
+    case = Case(room, index, room, seed_of_plan, room.lighting)
+    return _simulated(case, case.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None).cube
 
 
 def simulated(
@@ -142,7 +149,7 @@ def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) ->
     return radar_cube(simulator.run((), num_frames=num_frames, seed=seed).adc)
 
 
-def nearest(train: list[StoredRoom]) -> Method:
+def nearest(train: list[StoredRoom], seed_of_plan: int) -> Method:
     """The recorded training sequence whose joints are nearest in the frame of the radar."""
     pool = [(room, index) for room in train for index, split in enumerate(room.split) if split == "train"]
     joints = np.stack([room.joints_m[index] for room, index in pool])
@@ -150,18 +157,18 @@ def nearest(train: list[StoredRoom]) -> Method:
     def method(case: Case) -> RadarCube:
         gap = np.linalg.norm(joints - case.joints[0][None], axis=-1).mean(axis=(1, 2))
         room, index = pool[int(gap.argmin())]
-        return room.cube(index)
+        return true_cube(room, index, seed_of_plan)
 
     return method
 
 
-def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
+def training_mean(train: list[StoredRoom], seed_of_plan: int, most: int = 60) -> Method:
     """The mean of one sequence of each training room over frames and rooms: a static mean without the ground truth."""
     found = [(room, room.split.index("train")) for room in train if "train" in room.split][:most]
 
     @lru_cache(maxsize=1)
     def mean() -> np.ndarray:
-        each = np.stack([room.cube(index).values.mean(axis=0) for room, index in found])
+        each = np.stack([true_cube(room, index, seed_of_plan).values.mean(axis=0) for room, index in found])
         return each.mean(axis=0, dtype=np.complex128).astype(np.complex64)
 
     def method(case: Case) -> RadarCube:
@@ -287,8 +294,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         "weaver": learned(network, lambda case: case.room),
         "weaver_with_background": learned(network, lambda case: case.room, recorded=True),
         "wrong_photo": learned(network, lambda case: case.other),
-        "training_mean": training_mean(rooms),
-        "nearest_training_pose": nearest(rooms),
+        "training_mean": training_mean(rooms, plan["seed"]),
+        "nearest_training_pose": nearest(rooms, plan["seed"]),
         "generic_room_physics": simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1),
         "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
         "realization_skin": simulated(lambda case: case.true_scene, skin=OTHER),
@@ -308,10 +315,10 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     if options.only:
         methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    of = dict.fromkeys(POWER_ROWS, options.power) | {"paper": options.paper}
+    of = dict.fromkeys(WEAVER_ROWS, weights) | dict.fromkeys(POWER_ROWS, options.power) | {"paper": options.paper}
+    made_by = {name: digest(of[name]) if name in of else None for name in methods}
     caches = {
-        name: RoomCache(options.runs, {"data_plan": plan, "row": name, "weights": digest(of.get(name) or weights)})
-        for name in methods
+        name: RoomCache(options.runs, {"data_plan": plan, "row": name, "weights": made_by[name]}) for name in methods
     }
     table = scored(cases, methods, caches)
     rows = [_row(name, values, names, options.split) for name, values in table.items()]

@@ -72,7 +72,7 @@ def rows_of(
 
     def measured(case: Case) -> dict[str, list[float]]:
         made = {name: statistics(method(case)).tolist() for name, method in methods.items()}
-        return {TRUE: statistics(case.room.cube(case.index)).tolist(), **made}
+        return {TRUE: statistics(case.truth).tolist(), **made}
 
     each = [cache.figures(f"{case.room.folder.name}_{case.index}", partial(measured, case)) for case in cases]
     true, rows = np.array([one[TRUE] for one in each]), []

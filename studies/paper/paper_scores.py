@@ -50,7 +50,7 @@ def _name(case: Case) -> str:
 
 
 def _scores(case: Case, method: Callable[[Case], RadarCube]) -> Scores:
-    truth, cube = case.room.cube(case.index), method(case)
+    truth, cube = case.truth, method(case)
     card = scorecard(cube, truth)
     rows = {**card.baselines, PAPER: card.prediction}
     scores = {name: {column: values[column] for column in COLUMNS} for name, values in rows.items()}

@@ -48,7 +48,7 @@ def generated(network: SignalDiffusion, *, is_truth_given: bool, is_restored: bo
 
     def method(case: Case) -> RadarCube:
         unit = network.unit
-        one, truth = DiffusionRoom(case.room, case.spec.split), case.room.cube(case.index)
+        one, truth = DiffusionRoom(case.room, case.spec.split), case.truth
         signal = slow_time(truth.values) / unit[:, None]
         # one noise for all frames, so that what stands still may stay the same
         noise = white(stream(case.index, "diffusion start"), signal.shape[1:])[None].expand_as(signal)
@@ -82,8 +82,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         "diffusion_from_noise": generated(network, is_truth_given=False),
         "diffusion_truth_given": generated(network, is_truth_given=True),
         "truth_with_noise": generated(network, is_truth_given=True, is_restored=False),
-        "training_mean": training_mean(rooms),
-        "nearest_training_pose": nearest(rooms),
+        "training_mean": training_mean(rooms, plan["seed"]),
+        "nearest_training_pose": nearest(rooms, plan["seed"]),
         "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
     }
     cases = cases_of(rooms, options.split, 1, plan, 0, options.most)
@@ -106,7 +106,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
 
 def scores_of(case: Case, methods: dict[str, Method]) -> dict[str, dict[str, float]]:
     """{row: {column: value}} of one case."""
-    truth, scores = case.room.cube(case.index), {}
+    truth, scores = case.truth, {}
     for name, method in methods.items():
         card = scorecard(method(case), truth)
         scores.setdefault("zeros", {column: card.baselines["zeros"][column] for column in COLUMNS})

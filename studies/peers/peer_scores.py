@@ -103,7 +103,7 @@ def methods_of(network: Any, generic: Scene) -> dict[str, Method]:
 
 def all_zeros(case: Case) -> RadarCube:
     """The baseline that hears nothing."""
-    truth = case.room.cube(case.index)
+    truth = case.truth
     return replace(truth, values=np.zeros_like(truth.values))
 
 
@@ -143,7 +143,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     each: list[Scores] = []
     for name, case in zip(names, cases, strict=True):
-        truth = functools.cache(lambda case=case: Representations(case.room.cube(case.index)))
+        truth = functools.cache(lambda case=case: Representations(case.truth))
         each.append(
             {
                 row: cache.figures(f"{name}_{row}", partial(scores_of, case, truth, row, method))

@@ -153,8 +153,7 @@ def time_bar(axes: "Axes", colours: "Colormap", low_s: float, high_s: float) -> 
     limits = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim(), "aspect": axes.get_aspect()}
     ground: Any = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.75, "pad": 2.0}
     place: Any = {"transform": axes.transAxes, "fontsize": 8, "va": "bottom", "bbox": ground}
-    axes.text(left, top + 0.015, f"{low_s:.1f} s", ha="left", **place)
-    axes.text(right, top + 0.015, f"{high_s:.1f} s", ha="right", **place)
+    axes.text(left, top + 0.015, f"{low_s:.1f} to {high_s:.1f} s", ha="left", **place)
     axes.imshow(
         colours(np.linspace(0, 1, 128))[None], extent=(left, right, bottom, top), transform=axes.transAxes,
         origin="lower", zorder=3,

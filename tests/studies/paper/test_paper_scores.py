@@ -19,7 +19,7 @@ from tests.cubes import point_cube
 def _case(seed: int) -> Any:
     cube = point_cube(AWR1843, num_frames=3, seed=seed)
     room = SimpleNamespace(kind="office", layout=seed, folder=Path(f"office_{seed}"), cube=lambda index: cube)
-    return SimpleNamespace(room=room, index=0)
+    return SimpleNamespace(room=room, index=0, truth=cube)
 
 
 def test_a_method_that_writes_zeros_scores_as_zeros_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
