@@ -107,33 +107,38 @@ class CubeRenderer:
         config, count = self.config, len(self._segments)
         frames, paths = len(paths) // count, paths.one_way()
         values = torch.empty(
-            frames, config.num_range_bins, config.num_loops, config.num_antennas, dtype=torch.complex64
-        )
-        flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 doppler antenna)
+            frames, config.num_range_bins, config.num_antennas, config.num_loops, dtype=torch.complex64
+        )  # Doppler last: loops over few antennas cost more than they compute
+        flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 antenna doppler)
         for index, segment in enumerate(self._segments):
             self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
-        return self._elements.decoded(values)
+        return self._elements.decoded(values.transpose(2, 3).contiguous())
 
     def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
         """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
         config = self.config
         length_m, rate_mps = paths.length_m, paths.rate_mps
         array = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal).phase
-        array = (array * paths.amplitude[..., None, None])[:, :, None]  # (frame, path, 1, tx, rx)
+        array = (array * paths.amplitude[..., None, None])[..., None]  # (frame, path, tx, rx, 1)
         plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
-        antenna_bins = self._antenna_bins(paths)[:, :, None]
+        plain, late = plain[..., None, :], late[..., None, :]  # (frame, path, tx, 1, doppler)
+        antenna_bins = self._antenna_bins(paths)[..., None]
         shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
         place = (length_m + self._extra_m) / (2 * config.range_resolution_m) + shift_bin
         kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
-        kernel, slope = kernel * self._range_sign, slope * -self._range_sign
+        in_range = torch.cat([kernel * self._range_sign, slope * -self._range_sign], dim=1).transpose(1, 2)
+        count = length_m.shape[1]
+        cells = array.new_empty(FRAMES_AT_ONCE, 2 * count, *array.shape[2:4], config.num_loops)
         for first in range(0, len(values), FRAMES_AT_ONCE):
             some = slice(first, first + FRAMES_AT_ONCE)
-            slow = plain[some, ..., None] * array[some]  # (frame, path, doppler, tx, rx)
-            tilted = torch.addcmul(late[some, ..., None] * array[some], slow, antenna_bins[some])
-            for part, cells, beta in ((kernel, slow, 0 if is_first else 1), (slope, tilted, 1)):
-                right = torch.view_as_real(cells).flatten(2)
-                torch.baddbmm(values[some], part[some].transpose(1, 2), right, beta=beta, out=values[some])
+            here = cells[: len(values[some])]
+            slow, tilted = here[:, :count], here[:, count:]
+            torch.mul(plain[some], array[some], out=slow)
+            torch.mul(late[some], array[some], out=tilted)
+            tilted.addcmul_(slow, antenna_bins[some])
+            right = torch.view_as_real(here).flatten(2)
+            torch.baddbmm(values[some], in_range[some], right, beta=0 if is_first else 1, out=values[some])
 
     def _cycles(self, paths: Paths, length_m: Tensor, rate_mps: Tensor, time_s: Tensor) -> Tensor:
         """Phase at each chirp, in cycles, (frame, path, tx * loop), at times (tx * loop,)."""
@@ -225,9 +230,9 @@ class _SegmentDoppler(TensorRecord):
         return cls(time_s=time_s.flatten(), transform=torch.cat([own, own * time_s.float()[..., None]], dim=-1))
 
     def spectra(self, cycles: Tensor) -> tuple[Tensor, Tensor]:
-        """Doppler spectra (frame, path, doppler, tx) of phases (frame, path, tx * loop), and of them times time."""
+        """Doppler spectra (frame, path, tx, doppler) of phases (frame, path, tx * loop), and of them times time."""
         num_tx, loops, width = self.transform.shape
         chirps = phasor(cycles).unflatten(-1, (num_tx, loops)).flatten(0, 1).transpose(0, 1)  # (tx, ..., loop)
         both = (chirps @ self.transform).unflatten(1, cycles.shape[:2]).unflatten(-1, (2, width // 2))
-        plain, late = both.permute(3, 1, 2, 4, 0).contiguous()
+        plain, late = both.permute(3, 1, 2, 0, 4).contiguous()
         return plain, late

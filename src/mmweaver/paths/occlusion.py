@@ -10,7 +10,7 @@ from mmweaver.paths.body_model import average_body
 
 WIDEST_M = 0.2  # from a bone to the skin at most
 BEHIND_M = 0.1  # farther than the body at least
-FRAMES_AT_ONCE = 10  # stay in the cache
+FRAMES_AT_ONCE = 5  # stay in the cache
 CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer's bodies occlude
 
 
