@@ -73,17 +73,17 @@ def _met(
 
     Capsules (frame, capsule, 3), their radii (capsule, 2).
     """
-    along, begun, across_m = (rays @ part.mT for part in (axis_m, start_m, right))  # (frame, ray, capsule)
+    along, begun, across_m = (part @ rays.mT for part in (axis_m, start_m, right))  # (frame, capsule, ray)
 
     def dot(one: Tensor, other: Tensor) -> Tensor:
-        return (one * other).sum(-1)[:, None]
+        return (one * other).sum(-1, keepdim=True)
 
-    length2, slope = dot(axis_m, axis_m), dot(axis_m, start_m)
+    length2, slope, start2 = dot(axis_m, axis_m), dot(axis_m, start_m), dot(start_m, start_m)
     # the point of the bone nearest to the ray, both seen along the ray
     share = ((along * begun).sub_(slope) / (length2 - along.square()).clamp_(min=1e-9)).clamp_(0, 1)
-    gone = begun + share * along
-    sideways = dot(start_m, right) + share * dot(axis_m, right) - gone * across_m
-    gap2 = dot(start_m, start_m) + share * (2 * slope + share * length2) - gone.square()
-    reach = radius_m[:, 0] + share * (radius_m[:, 1] - radius_m[:, 0])
-    met = gap2 - sideways.square() * (1 - width**-2) < reach.square()
-    return (met & (gone > 0) & (gone < far_m[..., None])).any(dim=-1)
+    gone = (share * along).add_(begun)
+    sideways = (share * dot(axis_m, right)).add_(dot(start_m, right)).sub_(across_m.mul_(gone))
+    gap2 = (share * length2).add_(2 * slope).mul_(share).add_(start2).sub_(gone.square())
+    reach = share.mul_(radius_m[:, 1:] - radius_m[:, :1]).add_(radius_m[:, :1])
+    within = reach.square_().sub_(gap2).add_(sideways.square_().mul_(1 - width[:, None] ** -2))
+    return torch.minimum(within, torch.minimum(gone, far_m[:, None] - gone)).amax(dim=1) > 0
