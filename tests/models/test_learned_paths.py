@@ -154,7 +154,7 @@ def test_paths_of_second_order_are_those_of_physics_on_average(scene: Scene):
             joints_m = simulator._joints_at_nodes(pose, np.arange(1))
             people = PeoplePaths(simulator.room, [body_of(pose)], simulator.clock, [joints_m])
             own = second_order_paths(room.given.traced, [motion], room.renderer.clock)
-            powers += [_power_over_room(own), _power_over_room(people.scene(1).moving.one_way())]
+            powers += [_power_over_room(own), _power_over_room(people.scene(1).moving)]
         ratios_db.append(10 * np.log10(powers[0] / powers[1]))
     assert np.abs(ratios_db).max() < 3
 

@@ -27,7 +27,7 @@ SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's 
 
 
 def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
-    """Paths (frame * segment, path) of all people, each order a path of its own."""
+    """Paths (frame * segment, path) of all people."""
     seen = [_seen(room, motion, [one for one in motions if one is not motion], clock) for motion in motions]
     people = [BodyRoomPaths(one, SAMPLING) for one in seen]
     between = [BodyBodyPaths(*pair) for pair in combinations(people, 2)]
@@ -35,7 +35,7 @@ def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], cloc
     blocks = [slice(first, min(first + every, count)) for first in range(0, count, every)]
     sources = [one.over_room for one in people] + [pair.paths for pair in between] + [one.over_radar for one in people]
     each = [Paths.padded([source(block) for block in blocks]) for source in sources]
-    return Paths.cat(each, dim=1).one_way()
+    return Paths.cat(each, dim=1)
 
 
 def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:

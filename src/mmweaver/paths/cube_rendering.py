@@ -95,8 +95,6 @@ class CubeRenderer:
             static = torch.fft.fft(by_antenna, dim=0) * compensation
         self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
         self._static_doppler = static[self.static_bins]
-        tx, rx = (torch.tensor(place, dtype=torch.float64) for place in (config.tx_position_m, config.rx_position_m))
-        self._tx_bin, self._rx_bin = (place / (2 * config.range_resolution_m) for place in (tx, rx))
         fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
         by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
         by_tx = by_tx if chirps is None else by_tx * chirps.T[..., None]
@@ -105,7 +103,7 @@ class CubeRenderer:
     def moving(self, paths: Paths) -> Tensor:
         """Cube values of moving paths (frame * segment, path): complex64 (frame, range, doppler, antenna)."""
         config, count = self.config, len(self._segments)
-        frames, paths = len(paths) // count, paths.one_way()
+        frames = len(paths) // count
         values = torch.empty(
             frames, config.num_range_bins, config.num_antennas, config.num_loops, dtype=torch.complex64
         )  # Doppler last: loops over few antennas cost more than they compute
@@ -118,12 +116,13 @@ class CubeRenderer:
         """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
         config = self.config
         length_m, rate_mps = paths.length_m, paths.rate_mps
-        array = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal).phase
-        array = (array * paths.amplitude[..., None, None])[..., None]  # (frame, path, tx, rx, 1)
+        pairs = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal)
+        amplitude = paths.amplitude[..., None, None]
+        array = (pairs.phase * amplitude)[..., None]  # (frame, path, tx, rx, 1)
+        longer = (pairs.excess * amplitude)[..., None] / (2 * config.range_resolution_m)  # in bins, than the centre's
         plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
         plain, late = plain[..., None, :], late[..., None, :]  # (frame, path, tx, 1, doppler)
-        antenna_bins = self._antenna_bins(paths)[..., None]
         shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
         place = (length_m + self._extra_m) / (2 * config.range_resolution_m) + shift_bin
         kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
@@ -133,10 +132,8 @@ class CubeRenderer:
         for first in range(0, len(values), FRAMES_AT_ONCE):
             some = slice(first, first + FRAMES_AT_ONCE)
             here = cells[: len(values[some])]
-            slow, tilted = here[:, :count], here[:, count:]
-            torch.mul(plain[some], array[some], out=slow)
-            torch.mul(late[some], array[some], out=tilted)
-            tilted.addcmul_(slow, antenna_bins[some])
+            torch.mul(plain[some], array[some], out=here[:, :count])
+            torch.mul(late[some], array[some], out=here[:, count:]).addcmul_(plain[some], longer[some])
             right = torch.view_as_real(here).flatten(2)
             torch.baddbmm(values[some], in_range[some], right, beta=0 if is_first else 1, out=values[some])
 
@@ -147,13 +144,6 @@ class CubeRenderer:
         motion = torch.stack([length_m, rate_mps, paths.acceleration_mps2 / 2], dim=-1) / self.config.wavelength_m
         motion[..., 0] -= residual
         return motion @ torch.stack([torch.ones_like(time_s), time_s, time_s**2])
-
-    def _antenna_bins(self, paths: Paths) -> Tensor:
-        """How many range bins a path is longer for each pair than from the array's centre: (frame, path, tx, rx)."""
-        departure, arrival = (end.direction for end in (paths.departure, paths.arrival))
-        return -((departure @ self._tx_bin.T)[..., :, None] + (arrival @ self._rx_bin.T)[..., None, :]).to(
-            torch.complex64
-        )
 
     def static(self, paths: StaticPaths) -> StaticResponse:
         """What static paths (path,) leave at zero Doppler."""

@@ -4,7 +4,7 @@ The frame of reference is the radar's (x right, y away, z up, origin at the arra
 those at the receiver's port in sqrt(mW). The carrier's phase, exp(j 2 pi length / wavelength), is not in the amplitude.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -125,19 +125,6 @@ class Paths(TensorRecord):
     def none(cls) -> "Paths":
         """No paths, (0,)."""
         return cls.direct(torch.zeros(0, dtype=torch.complex64), ApparentPoint.of(np.zeros((0, 3, 3))))
-
-    def one_way(self) -> "Paths":
-        """The same with both orders of reciprocal paths as paths of their own, padded; (segment, path)."""
-        if not bool(self.is_reciprocal.any()):
-            return self
-        forward = replace(self, is_reciprocal=torch.zeros_like(self.is_reciprocal))
-        some = self[:, self.is_reciprocal.any(dim=0)]
-        amplitude = some.amplitude * some.is_reciprocal
-        back = Paths(
-            amplitude=amplitude, departure=some.arrival, arrival=some.departure,
-            is_reciprocal=torch.zeros_like(some.is_reciprocal), interaction=some.interaction,
-        )  # fmt: skip
-        return Paths.cat([forward, back], dim=1)
 
     def __len__(self) -> int:
         return len(self.amplitude)
