@@ -1,7 +1,5 @@
 """Declared tables of the learned method: unseen rooms, other radars, tuning, recognition, the paper's network."""
 
-from dataclasses import replace
-
 from studies.report.table_layouts import MatrixTable, PivotTable, RowTable
 
 BOTH = (("ra_ssim", "RA"), ("rd_ssim", "RD"))
@@ -13,7 +11,6 @@ SCORES = RowTable(
         "nearest_training_pose": "the nearest training pose's recording (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
         "wrong_photo": "the network, another room's photo (baseline)",
-        "paper": "the paper's network",
         "weaver": "**the network**",
         "physics_in_photographed_room": "physics in the photographed room",
         "realization": "physics in the true room, other phases (oracle)",
@@ -33,7 +30,6 @@ SCORES = RowTable(
         ("energy, dB", "{metrics.energy_db:fixed.1}"), ("CPU, s", "{metrics.cpu_s:fixed.2}"),
     ),
 )  # fmt: skip
-ALL_PATHS = replace(SCORES, sources=("learned_scores/all_paths",))
 POWER = RowTable(
     sources=("learned_scores/paper_power",),
     labels={
@@ -49,13 +45,12 @@ POWER = RowTable(
     columns=(("made by", "{label}"), ("rooms", "{n}"), *SCORES.columns[1:]),
 )
 SUMMARY = RowTable(
-    sources=("diffusion_scores/test_room", "peer_scores/test_room", "learned_scores/test_room"),
+    sources=("peer_scores/test_room", "learned_scores/test_room"),
     labels={
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
         "rf_genesis_as_released": "RF-Genesis as released ([peers](docs/peers.md))",
         "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room",
-        "diffusion_from_noise": "RF-Diffusion's kind, a small one, from noise, 16 other rooms",
         "weaver": "the network, from the photo",
         "physics_in_photographed_room": "physics, from the photo",
         "realization": "the true room, random phases (oracle for a photo)",
@@ -249,7 +244,7 @@ LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
     "diffusion_scores": DIFFUSION,
     "whole_room": WHOLE_ROOM, "radar_poses": RADAR_POSES,
-    "learned_scores": SCORES, "learned_all_paths": ALL_PATHS, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
+    "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
