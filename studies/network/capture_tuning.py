@@ -1,6 +1,6 @@
 """What fine-tuning on a few captures of one's own room gains, on other sequences of that room.
 
-    python -m studies run capture_tuning --data DATASET --weights FILE --work DIR
+    python -m studies run capture_tuning --data DATASET --work DIR --rooms 8
 
 Rooms are of kinds that the weights never saw. Of each, a few sequences are written as capture folders, as a user would
 have them, and fine-tuned on as by `mmweaver train weaver --captures`; other sequences of the room are scored.
@@ -29,7 +29,7 @@ from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
-from mmweaver.models.weights import WeightsCard, load_weights
+from mmweaver.models.weights import WeightsCard, load_weights, shipped_weights
 from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.capture_training import recipe_for, tune
@@ -167,7 +167,13 @@ def rows_of(scores: list[dict[str, list[dict[str, float]]]]) -> list[dict[str, A
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
-    parser.add_argument("--weights", type=Path, action=Reads, required=True)
+    parser.add_argument(
+        "--weights",
+        type=Path,
+        action=Reads,
+        default=shipped_weights(),
+        help="of recipe weaver (default: those included)",
+    )
     parser.add_argument("--work", type=Path, required=True, help="an empty folder for captures and runs")
     parser.add_argument("--rooms", type=int, default=6)
     parser.add_argument("--captures", type=int, default=4, help="of each room; the last is held out")

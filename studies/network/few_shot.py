@@ -1,6 +1,6 @@
 """An activity that was withheld from training, after tuning on a few sequences of it.
 
-    python -m studies run few_shot --data DATASET --weights FILE --runs RUNS
+    python -m studies run few_shot --data DATASET --runs RUNS --most 24
 
 Jumping is withheld. The network is tuned on 0, 5 and 20 jumps in half of the rooms and evaluated on jumps in the other
 half. `realization` (an oracle): the simulator in the true room with other micro-phases.
@@ -18,7 +18,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.weights import load_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.network_examples import RoomExamples
 from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, batch_sampler
 from mmweaver.training.trainer import Trainer
@@ -86,7 +86,13 @@ def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, Any]]:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
-    parser.add_argument("--weights", type=Path, action=Reads, required=True)
+    parser.add_argument(
+        "--weights",
+        type=Path,
+        action=Reads,
+        default=shipped_weights(),
+        help="of recipe weaver (default: those included)",
+    )
     parser.add_argument("--runs", type=Path, required=True, help="folder for the checkpoints")
     parser.add_argument("--most", type=int, default=30, help="rooms to be evaluated in")
 
