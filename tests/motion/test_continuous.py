@@ -109,3 +109,22 @@ def test_who_has_fallen_where_there_was_just_room_for_it_gets_up_there(way: str)
     narrow = room(boxes=((-3.0, -1.0, 0.0, 6.0), (1.2, 3.0, 0.0, 6.0)))
     falls, _, gets_up = carried_out(continuous(narrow, seed=3), (f"a person falls {way}", "waves", "gets up"))
     assert falls.pose.joints_m[-1, joint("pelvis"), 2] < gets_up.pose.joints_m[-1, joint("pelvis"), 2] - 0.5
+
+
+@pytest.mark.parametrize("text", ["does jumping jacks", "hops in place"])
+def test_who_is_interrupted_in_the_air_lands_on_the_floor(text: str):
+    """Cut at any frame of a jump; the next movement takes over feet that are still in the air."""
+    for cut in range(1, 9):
+        motion = continuous(seed=cut)
+        motion.act(parse(f"a person {text}"))
+        motion.cut(motion.go_on().first_frame + cut)
+        part = motion.act(parse("a person sweeps the floor"))
+        pose, seam_s = part.pose, part.first_frame * PERIOD_S
+        velocity = np.diff(pose.joints_m, axis=0) / np.diff(pose.time_s)[:, None, None]
+        steps = np.linalg.norm(np.diff(velocity, axis=0), axis=-1)[pose.time_s[1:-1] > seam_s]
+        assert steps.max() < 1.5  # 20 m/s where a share overshot, 1.9 where a sole went into the floor
+        controls = part.motion.controls
+        assert controls is not None
+        assert controls.foot_m[..., 2].min() > -5e-3  # 22 mm before
+        assert controls.contact.max() <= 1.0
+        assert -1e-9 <= controls.knee_room.min() <= controls.knee_room.max() <= 1.0

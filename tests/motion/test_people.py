@@ -59,3 +59,8 @@ def test_running_is_running_where_there_is_room():
     pelvis = act_out("a person runs to the left", seed=1).pose.joints_m[:, 0, :2]
     fastest = np.linalg.norm(np.diff(pelvis, axis=0), axis=1).max() * 120
     assert 2.5 < fastest < 4.0
+
+
+def test_who_is_held_is_not_who_holds():
+    assert described_person("she rocks a baby").age == ""
+    assert described_person("a baby crawls").age == "child"

@@ -55,6 +55,7 @@ def test_records_notes_and_steps_quote_the_sentence_as_it_was_given():
         ("a person claps above the head", "is shown as clapping; 'above the head' is not shown"),
         ("he scratches his head thinking", "'thinking' has no movement that is shown"),
         ("a person bows to the left and then to the right", "is shown as bowing; the side is not shown"),
+        ("a person rides an exercise bike", "is shown as riding an exercise bike; the bike is not shown"),
         ("a person climbs the stairs carrying a box", "'carrying a box' is not shown"),
     ],
 )
@@ -102,3 +103,10 @@ def test_a_clause_is_the_part_between_two_links() -> None:
 def test_where_and_how_long_need_no_other_words() -> None:
     plan = parse("a woman walks to the window, fiddles the knob for three seconds and walks back", in_part=True)
     assert plan.clauses[0].how == plan.clauses[-1].how == ""
+
+
+def test_what_somebody_who_stumbles_holds_on_to_is_said_to_be_left_out():
+    stumbles, catches = parse("he stumbles and catches himself on the table").clauses
+    assert stumbles.status == DONE
+    assert "holds on to" in catches.how
+    assert all(record.status == DONE for record in parse("she is pushed and catches herself").clauses)

@@ -29,6 +29,10 @@ INSTRUCTIONS = {
     "a man vacuums the carpet": "vacuum",
     "a person coughs": "cough",
     "she takes deep breaths": "breathe",
+    "he is shivering": "tremble",
+    "a man shakes with fear": "tremble",
+    "a mother rocks her baby to sleep": "cradle",
+    "she holds a crying baby in her arms": "cradle",
 }
 EXERCISES = {
     "a person does side lunges with the left leg": ("side_lunge", "left"),
@@ -38,6 +42,8 @@ EXERCISES = {
     "left limb extension": ("limb_extension", "left"),
     "a person extends the right arm and leg to the side": ("limb_extension", "right"),
     "someone does ten push-ups": ("push_ups", ""),
+    "a man does ten sit-ups": ("sit_ups", ""),
+    "a person pedals": ("pedal", ""),
     "a baby crawls on hands and knees": ("crawl", ""),
 }
 

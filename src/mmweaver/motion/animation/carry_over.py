@@ -14,6 +14,7 @@ from mmweaver.motion.animation.controls import TURNING, Array, Controls, whole_t
 from mmweaver.motion.animation.profiles import bump
 
 FADING_S = 0.6
+LANDING_S = 0.06  # of a sole that is still in the air, at least
 STEP_SHARE = 0.55  # of that time, in which one foot steps over
 STEP_HEIGHT_M, SHUFFLE_M = 0.05, 0.1  # of a step over much more than the second
 
@@ -65,24 +66,50 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
             gaps[0][..., TURNING] -= whole_turns(gaps[0][..., TURNING])
         values = getattr(controls, field.name)
         of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
-        shares = (_left(each if of_feet else u), *_moving(u))
+        shares = _moving_and_left(u, FADING_S)
+        shares = (_left(each), *shares[1:]) if of_feet else shares
         offset = sum(_over(share, values.ndim) * gap for share, gap in zip(shares, gaps, strict=True))
         changed[field.name] = values + offset
+        if field.name in ("contact", "knee_room"):  # shares, whose rates would lead them on beyond 0 and 1
+            known = np.stack([values, np.broadcast_to(getattr(before.value, field.name), values.shape)])
+            low, high = np.minimum(known.min(axis=0), 0.0), np.maximum(known.max(axis=0), 1.0)
+            changed[field.name] = np.clip(changed[field.name], low, high)
         if field.name == "foot_m":
+            changed["foot_m"][..., 2] = _landed(values[..., 2], time_s, [gap[..., 2] for gap in gaps])
             gap_m = np.linalg.norm(gaps[0][0, :, :2], axis=-1)
             changed["foot_m"][..., 2] += bump(each) * STEP_HEIGHT_M * np.tanh((gap_m / SHUFFLE_M) ** 2)
+        if field.name == "foot_rad":
+            changed["foot_rad"][..., 1] = _landed(values[..., 1], time_s, [gap[..., 1] for gap in gaps])
     return replace(controls, **changed)
+
+
+def _landed(own: Array, time_s: Float[Array, " n"], gaps: list[Array]) -> Array:
+    """Heights or pitches (n, 2) of feet with what is left of a flight; the shorter, the sooner it would be over.
+
+    Within the usual time a sole that comes down at speed would go into the floor, and the toes past level.
+    """
+    tried_s, u = np.linspace(FADING_S, LANDING_S, 28)[:, None], np.linspace(0.0, 1.0, 25)
+    landed = own.copy()
+    for side in range(own.shape[1]):
+        gap, rate, acceleration = (float(one[0, side]) for one in gaps)
+        left = gap * (1 + 3 * u + 6 * u**2) + rate * tried_s * (u + 3 * u**2) + acceleration * tried_s**2 / 2 * u**2
+        stays = (left * (1.0 if gap >= 0 else -1.0) >= -1e-9).all(axis=1)
+        lasts_s = float(tried_s[int(np.argmax(stays)) if stays.any() else -1, 0])
+        shares = _moving_and_left(time_s / lasts_s, lasts_s)
+        landed[:, side] += sum(share * one for share, one in zip(shares, (gap, rate, acceleration), strict=True))
+    return landed
+
+
+def _moving_and_left(u: Float[Array, " n"], lasts_s: float) -> tuple[Array, Array, Array]:
+    """What a gap, a rate and an acceleration of one at 0 leave until `lasts_s`."""
+    u = np.clip(u, 0.0, 1.0)
+    left = (1 - u) ** 3
+    return _left(u), left * (u + 3 * u**2) * lasts_s, left * u**2 / 2 * lasts_s**2
 
 
 def _left(u: Array) -> Array:
     """1 at 0, 0 from 1 on, smooth to the second derivative at both ends."""
     return np.asarray((1 - u) ** 3 * (1 + 3 * u + 6 * u**2))
-
-
-def _moving(u: Float[Array, " n"]) -> tuple[Array, Array]:
-    """What a rate and an acceleration of one at 0 leave, without any at 1."""
-    left = (1 - u) ** 3
-    return left * (u + 3 * u**2) * FADING_S, left * u**2 / 2 * FADING_S**2
 
 
 def _over(share: Array, ndim: int) -> Array:

@@ -39,7 +39,8 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         "leg legs foot feet knee knees thigh thighs ankle ankles shin shins heel heels toe toes tiptoe tiptoes",
         """
         kick stomp raise_leg one_leg hop_one_leg lunge side_lunge limb_extension kneel kneel_down kneel_up squat crouch
-        march limp tree_pose warrior_pose downward_dog stairs crawl push_ups jump leap hop jumping_jacks bend
+        march limp tree_pose warrior_pose downward_dog stairs crawl push_ups sit_ups jump leap hop jumping_jacks bend
+        pedal
         """,
     ),
     (
@@ -53,7 +54,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         "torso trunk chest stomach belly sternum breast",
         """
         twist lean bend bow hips dance golf cross_arms carry push push_hand pull_hand breathe cough yawn lie lie_down
-        lie_on_seat recline fall get_up push_ups plank crawl stumble raise_leg
+        lie_on_seat recline fall get_up push_ups sit_ups plank crawl stumble raise_leg
         """,
     ),
     (
@@ -66,7 +67,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         f"""
         stand_up get_up kneel_up sit_up raise_leg jump leap hop hop_one_leg stairs pick_up stretch jumping_jacks carry
         stand sit march push_ups one_leg knock_elbow draw_circle draw_z reach jacket_off wave {_LIFTED} {_UNDERFOOT}
-        arm_circles breathe yawn kick look_around lower_arm
+        sit_ups arm_circles breathe yawn kick look_around lower_arm
         """,
     ),
     (
@@ -74,7 +75,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         f"""
         sit_down lie lie_down kneel kneel_down crouch squat bend bow put_down lower_arm fall fall_off recline
         lie_on_seat lunge stairs pick_up jump leap hop hop_one_leg jumping_jacks raise_leg raise stomp downward_dog
-        push_ups sit raise knock_elbow arm_extension stand dance look_around type write {_UNDERFOOT}
+        push_ups sit_ups sit raise knock_elbow arm_extension stand dance look_around type write {_UNDERFOOT}
         """,
     ),
     (

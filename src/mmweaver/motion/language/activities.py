@@ -89,6 +89,8 @@ BODY: tuple[Activity, ...] = (
           counted_s=(1.3, 2.6, 0.1), clearance_m=0.9),
     _body("push_ups", "push-ups", "a person does push-ups", 1.0, 4.0, counted_s=(0.9, 1.8, 0.2), clearance_m=0.6,
           posture="floor"),
+    _body("sit_ups", "sit-ups", "a person does sit-ups", 1.6, 5.0, counted_s=(1.4, 2.4, 0.2), clearance_m=0.6,
+          posture="floor"),
     _body("lie_on_seat", "lying on furniture", "a person lies on the sofa", 0.4, 2.0, posture="couch", uses_seat=True),
     _body("recline", "lying down on furniture", "a person lies down on the bed", 1.6, 2.4, once=True, posture="couch",
           uses_seat=True),
@@ -103,6 +105,7 @@ BODY: tuple[Activity, ...] = (
     _body("downward_dog", "the downward dog", "a person does the downward dog", 1.8, 5.0, clearance_m=0.9),
     _body("plank", "holding a plank", "a person holds a plank", 0.6, 4.0, posture="floor"),
     _body("crawl", "crawling", "a person crawls to the left", 1.0, 3.0, clearance_m=0.5, moves=True, posture="knees"),
+    _body("pedal", "riding an exercise bike", "a person pedals on an exercise bike", 2.4, 6.0, clearance_m=0.6),
 )  # fmt: skip
 
 HANDS: tuple[Activity, ...] = (
@@ -169,6 +172,8 @@ HANDS: tuple[Activity, ...] = (
     _hands("vacuum", "vacuuming", "a person vacuums", 1.0, 3.0, clearance_m=0.8),
     _hands("jacket_off", "taking a jacket off", "a person takes off a jacket", 2.0, 3.6, once=True, clearance_m=0.7),
     _hands("cough", "coughing", "a person sits and coughs", 0.9, 2.2, counted_s=(0.9, 2.0, 0.2), clearance_m=0.4),
+    _hands("tremble", "trembling", "a person trembles with cold", 1.0, 3.0, clearance_m=0.4),
+    _hands("cradle", "rocking a baby", "a person rocks a baby", 1.2, 4.0, clearance_m=0.5),
     _hands("breathe", "breathing deeply", "a person sits and breathes deeply", 1.0, 5.0, clearance_m=0.35),
 )  # fmt: skip
 

@@ -48,6 +48,9 @@ def described_person(text: str) -> DescribedPerson:
     """
     folded = text.lower()
     found = _PERSON.search(folded)
+    subject = re.search(r"\b(?:he|she)\b", folded)
+    if found is not None and subject is not None and subject.start() < found.start():
+        found = None  # "she rocks a baby"
     if found is None or found["noun"] in _ANYBODY.split("|"):
         pronoun = _PRONOUN.search(folded)
         sex = "" if pronoun is None else "female" if pronoun[1] in ("she", "her", "herself") else "male"

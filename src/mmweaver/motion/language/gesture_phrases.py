@@ -46,6 +46,15 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?:the |his |her |their |its |both )*sides?\b", r" arm_extension \1 \2 arm "),
     (rf"\bwith {_OWN}hands (?:held |raised )?up\b", " while hands_up "),
     (r"\b(?:push|press)[- ]?ups?\b", " push_up "),
+    (r"\b(?:sit-ups?|situps?|sit ups|(?:ab(?:dominal)? )?crunch(?:es)?)\b", " sit_up_exercise "),
+    (r"\b(?:shak(?:es|ing)|trembl(?:es|ing)|shiver(?:s|ing)|quiver(?:s|ing)) (?:all over|(?:all over )?(?:with|from|for|in|because of) (?:the |his |her )?"
+     r"(?:cold|fear|fright|fever|anger|rage|excitement|exhaustion))\b", " tremble "),
+    (r"\b(?:has|with|having) (?:a |an )?(?:strong |slight )?tremors?\b", " tremble "),
+    (r"\b(?:the |his |her |its |their |both )+(?:hands?|arms?|body|limbs) (?:trembl|shiver|quiver|shak)(?:es|s|e|ing)\b", " trembles "),
+    (rf"\b(?:hold|carr|cradl|rock|sooth|comfort|nurs|lull|swing)(?:s|es|ies|ing|ying) {_OWN}(?:[a-z]+ )?(?:baby|infant|newborn)\b"
+     r"(?! (?:stroller|carriage|seat|to (?!sleep)|towards?|through|across|away|around|over|forwards?|up|down|into|out|upstairs|downstairs))"
+     r"(?: (?:to sleep|back and forth|to and fro|gently|softly|from side to side|(?:in|on) (?:his|her|their|the) (?:arms?|chest|lap))\b)*", " cradle "),
+    (r"\bwhile on (?:the |his |her )?phone\b", " while phone "),
     (r"\bcrawl(s|ing|ed)? (?:on|around on) (?:his |her |the |all )*(?:hands and knees|fours)\b|\bcreeps?\b", " crawls "),
     # Gestures of one arm; the arm may be what acts: "the right arm falls straight down"
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:is lifted|is raised|rises|goes) straight up"

@@ -45,6 +45,7 @@ _PARTS = (
             """
             kick stomp raise_leg one_leg hop_one_leg lunge side_lunge limb_extension kneel kneel_down kneel_up squat
             crouch march limp tree_pose warrior_pose downward_dog stairs crawl push_ups jump leap hop jumping_jacks bend
+            sit_ups pedal
             """
         ),
     ),
@@ -66,7 +67,7 @@ _PARTS = (
             """
             twist lean bend bow hips dance golf cross_arms arms_out carry hands_up push push_hand pull_hand raise
             pull stretch breathe cough yawn clap lie lie_down lie_on_seat recline fall get_up push_ups plank crawl
-            stumble raise_leg
+            stumble raise_leg sit_ups
             """
         ),
     ),

@@ -8,7 +8,7 @@ from mmweaver.motion.language.plan import Step
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
-ON_THE_BELLY = ("push_ups", "plank")
+LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back"}  # exercises of somebody who lies on that side
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -49,9 +49,9 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     anything_before = bool(before)
     if step.lower in ("recline", "lie_on_seat", "fall_off") or (posture, step.posture) == ("couch", "seat"):
         return _by_the_seat(step, posture, anything_before)
-    if step.lower in ON_THE_BELLY:
-        is_there = posture == "floor" and _lies_on(before) == "front"
-        down = Step(lower="lie_down", style="front", clause=step.clause)
+    if step.lower in LYING:
+        is_there = posture == "floor" and _lies_on(before) == LYING[step.lower]
+        down = Step(lower="lie_down", style=LYING[step.lower], clause=step.clause)
         return [step] if is_there or not before else [*_up_from(posture, step), down, step]
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
@@ -78,8 +78,8 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
 def _lies_on(before: list[Step]) -> str:
     """front | back | left | right: how somebody who is on the floor lies there."""
     for step in reversed(before):
-        if step.lower in ON_THE_BELLY:
-            return "front"
+        if step.lower in LYING:
+            return LYING[step.lower]
         if step.lower in ("lie_down", "fall") or (step.lower == "lie" and step.style):
             return step.style or "back"
     return "back"
@@ -124,13 +124,13 @@ def _styled(steps: list[Step]) -> list[Step]:
     """Lying on back or belly as the person went down; kneeling on the knee that was named."""
     style, foot = "", ""
     for k, step in enumerate(steps):
-        if step.lower in ON_THE_BELLY:
-            style = "front"
+        if step.lower in LYING:
+            style = LYING[step.lower]
         if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
             foot = step.foot or foot
-        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *ON_THE_BELLY):
+        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *LYING):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot)

@@ -41,6 +41,7 @@ LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 JUMPING = ("jump", "leap", "hop")
+_HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
@@ -246,6 +247,8 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
         last = found[-1].steps[-1]
         found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
+        if last.lower == "stumble" and _HELD_ON_TO.search(parsed.text):
+            parsed.lost.append("what the person holds on to is not shown")
     elif not parsed.is_empty:
         raise InputError(not_known(parsed.text))
 

@@ -84,6 +84,8 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     "side_lunge": ("side_lunge", ""),
     "limb_extension": ("limb_extension", ""),
     "push_up": ("push_ups", ""),
+    "sit_up_exercise": ("sit_ups", ""),
+    "pedal": ("pedal", ""),
     "fall_off": ("fall_off", ""),
     "step_up_and_down": ("stairs", ""),
     "tree_pose": ("tree_pose", ""),
@@ -106,6 +108,8 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     "jacket_off": ("", "jacket_off"),
     **_all("cough", "", "cough"),
     "breathe_deeply": ("", "breathe"),
+    **_all("tremble shiver quiver", "", "tremble"),
+    "cradle": ("", "cradle"),
 }  # fmt: skip
 
 # Words that follow a push and only say that the person recovers.

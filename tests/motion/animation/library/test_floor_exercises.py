@@ -1,4 +1,4 @@
-"""On hands and feet."""
+"""On hands and feet, and on the back."""
 
 import numpy as np
 
@@ -33,3 +33,15 @@ def test_crawling_goes_on_with_the_trunk_level_and_low():
     assert joints[:, joint("left_knee"), 2].max() < 0.25
     stride = (joints[:, joint("left_ankle"), :2] - joints[:, 0, :2]) @ (gone / np.hypot(*gone))
     assert np.ptp(stride) > 0.15
+
+
+def test_sit_ups_raise_the_trunk_as_often_as_said_and_leave_the_feet_where_they_are():
+    for seed in range(3):
+        joints = _heights("does three sit-ups", seed)
+        neck = joints[:, joint("neck"), 2]
+        assert (np.diff((neck > neck.min() + 0.6 * np.ptp(neck)).astype(int)) == 1).sum() == 3
+        assert neck.min() < 0.25
+        assert neck.max() > 0.45
+        assert np.ptp(joints[:, joint("left_ankle")], axis=0).max() < 0.05
+        assert np.ptp(joints[:, 0], axis=0).max() < 0.1
+        assert joints[..., 2].min() > -0.05

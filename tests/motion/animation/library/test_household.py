@@ -43,3 +43,20 @@ def test_a_deep_breath_is_slow_and_small():
     moved = np.linalg.norm(chest - chest[0], axis=1)
     assert 0.01 < moved.max() < 0.12
     assert np.linalg.norm(np.diff(chest, axis=0), axis=1).max() * 120 < 0.2
+
+
+def test_who_trembles_shakes_several_times_a_second_and_hardly_moves():
+    joints = _joints("trembles with cold for four seconds")[60:-120]
+    wrist = joints[:, joint("left_wrist")] - joints[:, joint("spine3")]
+    fast = wrist - np.apply_along_axis(lambda one: np.convolve(one, np.ones(25) / 25, "same"), 0, wrist)
+    power = (np.abs(np.fft.rfft(fast[12:-12] * np.hanning(len(fast) - 24)[:, None], axis=0)) ** 2).sum(axis=1)
+    rate_hz = np.fft.rfftfreq(len(fast) - 24, 1 / 120)
+    assert 5 < rate_hz[int(power.argmax())] < 11
+    assert 1e-3 < fast[12:-12].std(axis=0).max() < 2e-2
+
+
+def test_a_baby_is_held_before_the_chest_and_rocked():
+    joints = _joints("rocks a baby")
+    wrists = joints[:, [joint("left_wrist"), joint("right_wrist")]]
+    assert (np.linalg.norm(wrists - joints[:, [joint("spine3")]], axis=-1) < 0.45).all()
+    assert np.ptp(joints[:, joint("neck"), :2], axis=0).max() > 0.02

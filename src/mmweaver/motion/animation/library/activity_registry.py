@@ -10,6 +10,7 @@ from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library import (
     arm_gestures,
     bending,
+    cycling,
     dancing,
     floor_exercises,
     gait,
@@ -74,7 +75,9 @@ POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
         ("side_lunge", rehabilitation.side_lunging),
         ("limb_extension", rehabilitation.limb_extension),
         ("push_ups", floor_exercises.push_ups),
+        ("sit_ups", floor_exercises.sit_ups),
         ("crawl", floor_exercises.crawling),
+        ("pedal", cycling.pedalling),
         ("lie_on_seat", on_furniture.lying_on_seat),
         ("recline", on_furniture.reclining),
         ("sit_up", on_furniture.sitting_up),
@@ -139,6 +142,8 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
         ("jacket_off", household.taking_jacket_off),
         ("cough", household.coughing),
         ("breathe", household.breathing_deeply),
+        ("tremble", household.trembling),
+        ("cradle", throwing_and_carrying.cradling),
     ],
 )
 

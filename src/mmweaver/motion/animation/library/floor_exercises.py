@@ -1,4 +1,4 @@
-"""On hands and feet: push-ups and crawling. On the floor already, as in the middle of the exercise."""
+"""On the floor: push-ups, sit-ups and crawling. Down there already, as in the middle of the exercise."""
 
 import numpy as np
 from jaxtyping import Float
@@ -6,8 +6,16 @@ from jaxtyping import Float
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.kinematics import ankle_from_foot
 from mmweaver.motion.animation.library.gait import cruise_mps
-from mmweaver.motion.animation.library.movement_primitives import cycles, mix_arm, shift_foot, shift_pelvis, vary
-from mmweaver.motion.animation.library.on_the_floor import KNEELING_M
+from mmweaver.motion.animation.library.movement_primitives import (
+    cycles,
+    hand_to,
+    mix_arm,
+    place,
+    shift_foot,
+    shift_pelvis,
+    vary,
+)
+from mmweaver.motion.animation.library.on_the_floor import KNEELING_M, lying
 from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, STAND_STRETCH, upright
 from mmweaver.motion.animation.profiles import rise
 from mmweaver.motion.animation.step_context import StepContext
@@ -51,6 +59,22 @@ def _on_hands(context: StepContext, down: Float[np.ndarray, " n"]) -> Controls:
     bent = np.tile([-0.25, 0.45, 0.0, 1.95], (len(down), 1))
     for side in (LEFT, RIGHT):
         mix_arm(controls, side, straight + down[:, None] * (bent - straight), np.ones_like(down))
+    return controls
+
+
+def sit_ups(context: StepContext) -> Controls:
+    """On the back, knees bent, arms crossed on the chest: the trunk curls up until it is upright, and goes down."""
+    rate, end = cycles(context, context.tempo(0.28, 0.42, 0.6), 0.25, 0.8)
+    until = np.minimum(context.time_s, end) if context.step.count else context.time_s  # a count ends lying
+    up = 0.5 - 0.5 * np.cos(2 * np.pi * rate * (until - context.start_s))
+    controls, n = lying(context), len(up)
+    rise_rad = min(vary(context, 1.2, 0.05), 1.3)
+    controls.pelvis_rad[:, 1] += rise_rad * up
+    controls.spine_rad[:, 1] += 0.7 * np.sin(0.5 * np.pi * up)
+    controls.head_rad[:, 0] += 0.25
+    shift_pelvis(controls, 0.0, 0.0, 0.012 * context.body.height_m * up)
+    for side, ahead in ((LEFT, 0.13), (RIGHT, 0.105)):
+        hand_to(controls, context.body, side, place(ahead, -0.05, 0.03, n), np.ones(n), (-0.1, 0.8, -1.0))
     return controls
 
 

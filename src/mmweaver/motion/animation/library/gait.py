@@ -16,6 +16,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
+SHORT_REST_S, REST_SMOOTH_S = 0.6, 0.06  # between two movements of the root, in which nobody comes to rest
 SOLE_DOWN_S = 0.07  # at the least, from the strike of the heel until the sole is flat
 ELBOW_LAG = 0.15  # of a step, behind the shoulder
 NOD = 0.4  # share of the pelvis's surge that the neck does not follow
@@ -208,7 +209,19 @@ def _moving(context: StepContext, time_s: Float[Array, " n"], jog: bool) -> Floa
         return np.asarray(start * end)
     turning = np.abs(context.path.facing_rad(time_s + 1e-3) - context.path.facing_rad(time_s - 1e-3)) / 2e-3
     going = context.path.speed_mps(time_s) / max(0.8 * cruise_mps(context), 0.7)
-    return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
+    return _without_dips(time_s, np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0))))
+
+
+def _without_dips(time_s: Float[Array, " n"], moving: Float[Array, " n"]) -> Float[Array, " n"]:
+    """The same without short rests, as between a turn and the walk after it: who straightens the legs while the feet
+    are apart drops at once."""
+    from scipy import ndimage
+
+    rate_hz = (len(time_s) - 1) / max(float(time_s[-1] - time_s[0]), 1e-9)
+    filled = ndimage.grey_closing(moving, size=2 * int(0.5 * SHORT_REST_S * rate_hz) + 1)
+    share = np.clip((filled - moving) / np.maximum(1 - moving, 1e-6), 0.0, 1.0)
+    smooth = ndimage.gaussian_filter1d(share, REST_SMOOTH_S * rate_hz)
+    return np.asarray(1 - (1 - moving) * (1 - smooth))
 
 
 def _write_foot(

@@ -1,4 +1,4 @@
-"""Work about the house: sweeping, vacuuming, taking a jacket off; coughing and breathing deeply."""
+"""Work about the house: sweeping, vacuuming, taking a jacket off; coughing, breathing deeply and trembling."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
     spline_through,
     vary,
 )
-from mmweaver.motion.animation.profiles import bump, plateau
+from mmweaver.motion.animation.profiles import bump, plateau, wander
 from mmweaver.motion.animation.step_context import StepContext
 
 
@@ -99,4 +99,26 @@ def breathing_deeply(context: StepContext, controls: Controls) -> Controls:
     controls.spine_rad[:, 1] -= vary(context, 0.09, 0.2) * full
     controls.head_rad[:, 0] -= 0.05 * full
     controls.arm_rad[:, :, 1] += (0.06 * full)[:, None]
+    return controls
+
+
+def trembling(context: StepContext, controls: Controls) -> Controls:
+    """Arms drawn to the chest; they shake six to nine times a second in bouts, and the trunk and the head with them.
+
+    Rates as of shivering and of enhanced physiological tremor (6 to 12 Hz; Deuschl et al., "Consensus statement of the
+    Movement Disorder Society on tremor", 1998); some 1 cm at the hands.
+    """
+    time_s, n, rng = context.time_s, len(context.time_s), context.rng
+    on = plateau(time_s, context.start_s - 0.1, context.end_s + 0.2, 0.5, 0.5)
+    rate = 2 * np.pi * context.tempo(6.0, 7.5, 9.0) * (time_s - context.start_s)
+    bout = on * np.clip(0.65 + 0.35 * wander(time_s, rng, slow_hz=0.2, fast_hz=0.7), 0.2, 1.2)
+    for side in (LEFT, RIGHT):
+        shake = vary(context, 0.005, 0.2) * bout * np.sin(rate + rng.uniform(0, 2 * np.pi))
+        target = place(0.1, 0.03, 0.02 + shake, n)
+        hand_to(controls, context.body, side, target, on, (-0.2, 0.5, -1.0))
+        controls.arm_rad[:, side, 3] += 2.0 * shake
+    whole = bout * np.sin(rate + rng.uniform(0, 2 * np.pi))
+    controls.spine_rad[:, 1] += 0.14 * on + 0.006 * whole
+    controls.spine_rad[:, 2] += 0.008 * bout * np.sin(rate + rng.uniform(0, 2 * np.pi))
+    controls.head_rad[:, 0] += 0.1 * on + 0.008 * whole
     return controls

@@ -1,10 +1,11 @@
-"""Arm activities that involve the whole trunk: throwing, pushing, pulling, carrying, reaching, a golf swing."""
+"""Arm activities that involve the trunk: throwing, pushing, pulling, carrying, rocking a baby, reaching, golf."""
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library.movement_primitives import (
+    cycles,
     hand_to,
     mix_arm,
     one_side,
@@ -95,6 +96,23 @@ def carrying(context: StepContext, controls: Controls) -> Controls:
     for side in (LEFT, RIGHT):
         hand_to(controls, context.body, side, target, np.ones(n), (-0.7, 0.35, -1.0))
     controls.spine_rad[:, 1] -= 0.05
+    return controls
+
+
+def cradling(context: StepContext, controls: Controls) -> Controls:
+    """A baby before the chest: its head in the crook of one elbow, the other hand under it; the trunk rocks it."""
+    n = len(context.time_s)
+    head = LEFT if sides(context)[0] == RIGHT else RIGHT  # most people keep the hand they use free
+    rate, _ = cycles(context, context.tempo(0.25, 0.4, 0.6), 0.2, 0.9)
+    rock = np.sin(2 * np.pi * rate * (context.time_s - context.start_s))
+    hand_to(controls, context.body, head, place(0.15, -0.03, -0.03, n), np.ones(n), (-0.3, 0.5, -1.0))
+    hand_to(controls, context.body, 1 - head, place(0.165, 0.0, -0.1, n), np.ones(n), (-0.5, 0.4, -1.0))
+    sign = 1.0 if head == LEFT else -1.0
+    controls.spine_rad[:, 0] += vary(context, 0.07, 0.2) * rock
+    controls.spine_rad[:, 2] += vary(context, 0.12, 0.2) * rock
+    controls.spine_rad[:, 1] -= 0.04
+    controls.head_rad[:, 0] += 0.3
+    controls.head_rad[:, 1] += 0.25 * sign
     return controls
 
 
