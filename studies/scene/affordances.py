@@ -69,6 +69,9 @@ class Tally:
     clear: list[bool] = field(default_factory=list)  # placements without trunk, legs or head in anything
     arms_clear: list[bool] = field(default_factory=list)
     refused: int = 0
+    sitters: int = 0
+    stools: int = 0  # that were invented
+    pulled: int = 0  # chairs taken as pulled out
     seconds: float = 0.0
 
 
@@ -177,7 +180,12 @@ def _measure_placements(room: ProceduralRoom, scene: Scene, tally: Tally) -> Non
         seated = any(step.lower in ("sit", "sit_down", "stand_up") for step in motion.plan.steps)
         pelvis = motion.pose.joints_m[:, 0]
         lowest = pelvis[np.argmin(pelvis[:, 2])] - np.array([0.0, 0.0, 0.1])
-        met = contact(room, motion.pose, lowest if seated else None)
+        if motion.chair is not None:  # taken as pulled out: what stood where it was is gone
+            lowest = np.array([*motion.chair.place_m, lowest[2]])
+            tally.pulled += 1
+        met = contact(room, motion.pose, lowest if seated else None, is_moved=motion.chair is not None)
+        tally.stools += any(" stool " in note for note in motion.assumptions)
+        tally.sitters += seated
         tally.clear.append(met.body_m <= 0)
         tally.arms_clear.append(met.arms_m <= 0)
 
@@ -217,7 +225,8 @@ def _add(total: Tally, one: Tally) -> None:
     for name in ("marks", "false_marks"):
         for kind, values in getattr(one, name).items():
             getattr(total, name).setdefault(kind, []).extend(values)
-    total.refused += one.refused
+    for name in ("refused", "sitters", "stools", "pulled"):
+        setattr(total, name, getattr(total, name) + getattr(one, name))
     total.seconds += one.seconds
 
 
@@ -275,6 +284,7 @@ def _row(name: str, split: str, number: int, tally: Tally) -> dict[str, Any]:
     _add_share(metrics, "arms_clear", tally.arms_clear, "the same of the arms")
     return {
         "dataset": {"name": name, "split": split}, "n": number, "seeds": [FIRST_SEED], "refused": tally.refused,
+        "sitters": tally.sitters, "stools": tally.stools, "pulled_out": tally.pulled,
         "seconds": {"reconstruct_cpu": round(tally.seconds / number, 3)}, "metrics": metrics,
     }  # fmt: skip
 

@@ -44,17 +44,22 @@ def sampled(pose: PoseSequence, along: np.ndarray) -> Iterator[tuple[Capsule, np
         yield capsule, points, radius
 
 
-def contact(room: ProceduralRoom, pose: PoseSequence, seat_m: np.ndarray | None = None) -> Contact:
+def contact(
+    room: ProceduralRoom, pose: PoseSequence, seat_m: np.ndarray | None = None, *, is_moved: bool = False
+) -> Contact:
     """Capsules of the body against all boxes and walls, 15 times a second.
 
-    `seat_m`: where the person sits, if so; the piece under it (found within 0.4 m) may be sunk into.
+    `seat_m`: where the person sits, if so; the piece under it (found within 0.4 m) may be sunk into, or is left out
+    where it is taken as moved away from there.
     """
     boxes = _solid(room)
     own = _piece_under(boxes, seat_m)
     worst = {"body": (0.0, ""), "arms": (0.0, "")}
     for capsule, points, radius in sampled(pose, _ALONG):
         depth = radius[:, None] - boxes.distance_m(points) - ALLOWED_M
-        if capsule.start in _SEATED and own is not None:
+        if own is not None and is_moved:
+            depth[:, own] = -np.inf
+        elif capsule.start in _SEATED and own is not None:
             depth[:, own] -= ON_SEAT_M - ALLOWED_M
         into_wall = radius - _wall_distance_m(room, points) - ALLOWED_M
         deepest = np.append(depth.max(axis=0), into_wall.max())

@@ -10,7 +10,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
-from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.more_room import with_more_room
@@ -31,6 +31,7 @@ class Motion:
     person: Person | None = None  # None of a recorded motion
     end: BodyState | None = None  # how it ends; None of a recorded motion
     controls: Controls | None = None  # at the times of the pose; None of a recorded motion
+    chair: PulledChair | None = None  # that is taken as pulled out
 
     @property
     def clauses(self) -> tuple[ClauseRecord, ...]:
@@ -119,10 +120,11 @@ def compose(
     plan, best, room_notes = with_more_room(plan, floor, compose_on)
     described = (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
-    end = best.placement.end_state(plan, body)
+    placed = best.placement
     return Motion(
-        pose=best.pose, plan=plan, assumptions=notes, person=person, end=end, controls=controls[id(best.placement)]
-    )
+        pose=best.pose, plan=plan, assumptions=notes, person=person, end=placed.end_state(plan, body),
+        controls=controls[id(placed)], chair=placed.chair,
+    )  # fmt: skip
 
 
 def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:

@@ -20,11 +20,15 @@ from tests.rooms import standing_person
 class _Known(CollisionMap):
     """A wall's face at y = 2 m: a body is as deep in it as its pelvis is behind that."""
 
-    def penetration_m(self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0):
+    def penetration_m(
+        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0, chair=None
+    ):
         assert isinstance(pose, BodySamples)
         return max(float(pose.pelvis_m[1]) - 2.0 + margin_m, 0.0)
 
-    def estimates_m(self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float):
+    def estimates_m(
+        self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float, chairs=()
+    ):
         return np.array([self.penetration_m(body, margin_m=margin_m) for body in bodies])
 
 
@@ -95,7 +99,9 @@ def test_a_trunk_behind_the_back_of_a_seat_that_was_found_costs_little():
 class _Open(CollisionMap):
     """Nothing stands there."""
 
-    def penetration_m(self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0):
+    def penetration_m(
+        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0, chair=None
+    ):
         return 0.0
 
 

@@ -1,20 +1,27 @@
 """How a seat of the scene is sat on."""
 
+import dataclasses
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     Sitting,
     centred_to_lie,
+    pulled_out,
     random_subset,
     turned,
     usable_seats,
     usual_variation,
 )
+from mmweaver.scene.procedural.lighting import LIGHTINGS
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
 from tests.motion.rooms import WINDOW_M, room, seat
 
 
@@ -90,3 +97,31 @@ def test_who_turns_on_a_seat_moves_ahead_past_its_corner():
     assert square.with_clear_knees() is square
     assert aslant.knees_m >= aslant.edge_m + 0.05 - 1e-9
     assert np.hypot(*(aslant.seat_m - square.seat_m)) > 0.05
+
+
+def test_a_chair_is_pulled_back_from_what_is_ahead_of_it_where_there_is_floor_behind():
+    floor = FloorMap(room(seats=(seat(),), boxes=((-0.3, 0.3, 2.3, 2.9),)), WINDOW_M, 1.75)
+    (sitting,) = usable_seats(floor, SkeletonProportions(1.75))
+    pulled = pulled_out(sitting, floor, 0.3)
+    assert pulled is not None
+    assert pulled.chair is not None
+    np.testing.assert_allclose(pulled.seat_m - sitting.seat_m, [0.0, 0.3], atol=1e-9)  # it faces the radar
+    np.testing.assert_allclose(pulled.feet_m - pulled.seat_m, sitting.feet_m - sitting.seat_m, atol=1e-9)
+    assert pulled.cost > sitting.cost
+    assert pulled.chair.covers(sitting.seat_m)
+    assert not pulled.chair.covers(pulled.seat_m + np.array([0.0, 0.3]))
+    against_a_wall = FloorMap(room(seats=(seat(),), boxes=((-2.0, 2.0, 2.3, 5.0),)), WINDOW_M, 1.75)
+    assert pulled_out(sitting, against_a_wall, 0.3) is None
+    assert pulled_out(replace(sitting, width_m=1.6), floor, 0.3) is None  # nobody pulls a couch
+
+
+def test_a_chair_at_a_desk_is_pulled_out_rather_than_a_stool_invented():
+    """A procedural office whose chair stands under the desk: the same seat is used, further from the desk, and said."""
+    office = make_room("office", layout=0, seed=40000)
+    scene = reconstruct(dataclasses.replace(office.photo(next(iter(LIGHTINGS)), noise=True), classes=None))
+    motion = compose(plan_motion("she walks, then sits down", 3.0), scene, seed=2, range_window_m=(0.70, 3.48))
+    assert motion.chair is not None
+    assert any("pulled out" in note for note in motion.assumptions)
+    assert not any("stool" in note for note in motion.assumptions)
+    pelvis = motion.pose.joints_m[np.argmin(motion.pose.joints_m[:, 0, 2]), 0, :2]
+    assert np.hypot(*(pelvis - np.array(motion.chair.place_m))) < motion.chair.by_m + 0.1

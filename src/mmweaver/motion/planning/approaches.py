@@ -5,6 +5,7 @@ They depend on the room alone, so they are found once for a floor map and kept.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from jaxtyping import Float
@@ -19,7 +20,14 @@ from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.seating import Sitting, are_reachable, preferred, turned, usable_seats
+from mmweaver.motion.planning.seating import (
+    Sitting,
+    are_reachable,
+    preferred,
+    pulled_out,
+    turned,
+    usable_seats,
+)
 from mmweaver.motion.planning.trajectory import (
     TURN_OVERHEAD_S,
     TURN_RATE_RADPS,
@@ -43,8 +51,9 @@ _WAYS_A_SEAT, _MOST_STARTS = 4, 200
 _SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
 _WALK_MPS = (0.45, 1.6)
 _USUAL_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
-_DEEPEST_M, _DEEP_COST_PER_M = 0.03, 20.0  # how deep it may get into what is near a seat
+_DEEPEST_M, _MARGIN_M, _DEEP_COST_PER_M = 0.03, 0.02, 30.0  # how deep it may get into what is near a seat
 _MOST_TESTED = 24  # ways to sit on one seat that are tested closely
+_PULLED_M, _PULLED_TURNS_RAD = (0.15, 0.3, 0.45, 0.6), (0.0, -0.3, 0.3, -0.6, 0.6)  # of chairs that are pulled out
 _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
 
 
@@ -159,7 +168,7 @@ def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[
 
 def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
     """Ways to sit where somebody who sits down gets no deeper into furniture than is reported, the best first."""
-    sittings = [one for one in _sittings(seat) if floor.clearance_at(one.feet_m) > CLOSEST_FEET_M]
+    sittings = [one for one in _sittings(seat, floor) if _has_room_for_feet(one, floor)]
     if not sittings:
         return []
     obstacles = CollisionMap.of(floor.scene)
@@ -178,12 +187,12 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
         for one in sittings
     ]
     seats = [((float(one.seat_m[0]), float(one.seat_m[1])),) for one in sittings]
-    rough_m = obstacles.estimates_m(bodies, seats, margin_m=0.0)
+    rough_m = obstacles.estimates_m(bodies, seats, margin_m=_MARGIN_M, chairs=[one.chair for one in sittings])
     order = np.argsort([one.cost + _DEEP_COST_PER_M * depth for one, depth in zip(sittings, rough_m, strict=True)])
     found: list[Sitting] = []
     for k in order[:_MOST_TESTED]:
-        depth_m = obstacles.penetration_m(bodies[k], seats[k])
-        if depth_m <= _DEEPEST_M:
+        depth_m = obstacles.penetration_m(bodies[k], seats[k], margin_m=_MARGIN_M, chair=sittings[k].chair)
+        if depth_m <= _DEEPEST_M + _MARGIN_M:
             found.append(replace(sittings[k], cost=sittings[k].cost + _DEEP_COST_PER_M * depth_m))
     kept: list[Sitting] = []
     for one in sorted(found, key=lambda one: one.cost):
@@ -192,14 +201,20 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
     return kept
 
 
+def _has_room_for_feet(sitting: Sitting, floor: FloorMap) -> bool:
+    """Whether the floor before a seat is free, or only the chair stands on it that is pulled out."""
+    was_chair = sitting.chair is not None and bool(sitting.chair.covers(sitting.feet_m))
+    return was_chair or bool(floor.clearance_at(sitting.feet_m) > CLOSEST_FEET_M)
+
+
 def _is_alike(one: Sitting, other: Sitting) -> bool:
     """Whether two ways to sit differ by a little shift only."""
     apart_m = float(np.hypot(*(one.seat_m - other.seat_m)))
     return apart_m < _SHIFT_M / 2 and abs(one.facing_rad - other.facing_rad) < 0.01
 
 
-def _sittings(seat: Sitting) -> Iterator[Sitting]:
-    """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it."""
+def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
+    """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it, on a chair pulled out."""
     aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
     spare_m = max(0.0, (seat.width_m - _SEAT_WIDTH_M) / 2)
     along_m = np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M)))
@@ -212,6 +227,9 @@ def _sittings(seat: Sitting) -> Iterator[Sitting]:
             cost = _SHIFT_COST * float(np.hypot(shift_m, ahead_m))
             cost += 0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0
             yield replace(turned(moved, turn_rad), cost=cost)
+    pulled = [one for by_m in _PULLED_M if (one := pulled_out(seat, floor, by_m)) is not None]
+    for one, turn_rad in product(pulled, _PULLED_TURNS_RAD):
+        yield turned(one, turn_rad)
 
 
 def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:

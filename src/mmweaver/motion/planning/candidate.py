@@ -35,10 +35,13 @@ from mmweaver.motion.planning.seating import (
     fitting,
     long_enough_to_lie_on,
     preferred,
+    pulled_note,
+    pulled_out,
     random_subset,
     stool_at,
     stool_fits,
     stool_note,
+    turned,
     usable_seats,
     usual_variation,
 )  # fmt: skip
@@ -63,6 +66,7 @@ FAVOURITE_COST_PER_M = 0.7
 _SAME_PLACE_M = 0.1
 _SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
+_PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chairs are tried pulled out, how far
 _STRAIGHT = ("left", "right", "towards", "away", "")
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
@@ -129,6 +133,9 @@ class CandidateSampler:
                 trajectory.invents_seat = bool(self._approaches) and bool(trajectory.notes)
                 trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
             trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
+            if sitting is not None and sitting.chair is not None:
+                trajectory.chair = sitting.chair
+                trajectory.notes.append(pulled_note(sitting.chair))
             if sitting is not None:
                 trajectory.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
                 trajectory.cost += sitting.cost
@@ -165,7 +172,14 @@ class CandidateSampler:
         if self.attempt > 1 and not (named and fitting(seats, named, self.floor.scene)):
             return []
         subset = random_subset(preferred(seats, named, self.floor.scene), self.rng)
-        return [any_variation(seat, self.rng) for seat in subset]
+        return [self._pulled(seat) or any_variation(seat, self.rng) for seat in subset]
+
+    def _pulled(self, seat: Sitting) -> Sitting | None:
+        """Often the same chair pulled out, where there is room for that."""
+        if self.rng.random() > _PULLED:
+            return None
+        pulled = pulled_out(seat, self.floor, float(self.rng.uniform(*_PULLED_M)))
+        return None if pulled is None else turned(pulled, float(self.rng.uniform(-1, 1) * _PULLED_TURN_RAD))
 
     @cached_property
     def _approaches(self) -> list[Approach]:
@@ -314,7 +328,7 @@ class CandidateSampler:
         falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
         if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
             sitting = near[int(self.rng.integers(len(near)))]
-            is_blocked = not self.floor.clearance_at(sitting.feet_m) > 0
+            is_blocked = sitting.chair is None and not self.floor.clearance_at(sitting.feet_m) > 0
             cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
         else:
             first = self.plan.steps[0]

@@ -34,12 +34,34 @@ _SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no 
 _MOST_POINTS = 34_000
 _LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
 _LOW_DOWN_M = (0.05, 0.1, 0.15, 0.2, 0.25)
+_HALF_CHAIR_M, _BACK_BEHIND_M, _CHAIR_TOP_M = 0.32, 0.05, 1.1
+_NEAR_CHAIR_M = 1.3  # of what is looked at with the chair away
 _WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
 _THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
 # The part of the room that is tabulated: what lies farther is out of any radar's window that the floor map covers.
 _SIDE_M, _AWAY_M, _HIGHEST_M = 3.4, (-0.3, 5.4), 2.5
 
 _latest: list["CollisionMap"] = []
+
+
+@dataclass(frozen=True)
+class PulledChair:
+    """A chair that is taken as pulled out: where it stands in the photo, (x, y) in metres, and where it faces."""
+
+    place_m: Place
+    facing_rad: float
+    by_m: float
+
+    def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
+        """Which points belong to it where it stands in the photo."""
+        return self.covers(points_m[:, :2]) & (points_m[:, 2] < floor_z_m + _CHAIR_TOP_M)
+
+    def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
+        """Which places (x, y) it stands on in the photo."""
+        away = places_m - np.array(self.place_m)
+        cos, sin = np.cos(self.facing_rad), np.sin(self.facing_rad)
+        along, aside = away[..., 0] * cos + away[..., 1] * sin, away[..., 1] * cos - away[..., 0] * sin
+        return np.asarray((np.abs(along + _BACK_BEHIND_M) < _HALF_CHAIR_M) & (np.abs(aside) < _HALF_CHAIR_M))
 
 
 @dataclass(frozen=True)
@@ -92,6 +114,19 @@ class CollisionMap:
 
     @cached_property
     def _near_seats(self) -> dict[tuple[int, int], tuple[Array, Array, Array]]:
+        return {}
+
+    def _without(self, chair: PulledChair) -> Float[Array, "solid 3"]:
+        """Everything solid around a chair but the chair itself; kept, as many ways to sit on it are compared."""
+        if chair not in self._without_chair:
+            solid, tops, legs = (_about(points, chair.place_m, _NEAR_CHAIR_M) for points in self._hard_m)
+            others = solid[~chair.holds(solid, self.scene.floor_z_m)]
+            below = tops - np.array([0.0, 0.0, _THICK_M])
+            self._without_chair[chair] = np.concatenate([others, tops, below, legs])
+        return self._without_chair[chair]
+
+    @cached_property
+    def _without_chair(self) -> dict[PulledChair, Array]:
         return {}
 
     @cached_property
@@ -154,23 +189,28 @@ class CollisionMap:
         return distance_field(points_m, low, high)
 
     def penetration_m(
-        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0
-    ) -> float:
+        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0,
+        chair: PulledChair | None = None,
+    ) -> float:  # fmt: skip
         """Greatest penetration depth in metres of the body, thickened by a margin, into anything; 0 where it is clear.
 
-        Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead.
+        Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead. `chair`
+        is not where the photo shows it.
         """
         samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).without_repeats()
-        worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m)[0])
-        return max(worst, self.beyond_seats_m(samples, seats_m, margin_m=margin_m))
+        worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m, chairs=[chair])[0])
+        return max(worst, self.beyond_seats_m(samples, seats_m, margin_m=margin_m, chair=chair))
 
-    def beyond_seats_m(self, body: BodySamples, seats_m: Sequence[Place], *, margin_m: float) -> float:
+    def beyond_seats_m(
+        self, body: BodySamples, seats_m: Sequence[Place], *, margin_m: float, chair: PulledChair | None = None
+    ) -> float:
         """`penetration_m` into what is near the seats of a sitter but no part of them."""
-        return max((self._beyond_seat_m(body, seat, margin_m) for seat in dict.fromkeys(seats_m)), default=0.0)
+        return max((self._beyond_seat_m(body, seat, margin_m, chair) for seat in dict.fromkeys(seats_m)), default=0.0)
 
     def estimates_m(
-        self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float
-    ) -> Float[Array, " body"]:
+        self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float,
+        chairs: Sequence[PulledChair | None] = (),
+    ) -> Float[Array, " body"]:  # fmt: skip
         """`penetration_m` of many bodies at once, where what is ahead of a sitter counts as part of the seat."""
         points = np.concatenate([body.points_m for body in bodies])
         radius = np.concatenate([body.radius_m for body in bodies])
@@ -180,22 +220,40 @@ class CollisionMap:
         distance = np.where(at_seat, self._solid.at(points), self._standing.at(points)) if at_seat.any() else (
             self._standing.at(points)
         )  # fmt: skip
+        ends = np.cumsum([len(body.points_m) for body in bodies])
+        for chair, end, body in zip(chairs, ends, bodies, strict=False):
+            if chair is not None:
+                own = slice(int(end) - len(body.points_m), int(end))
+                distance[own] = self._with_chair_moved_m(chair, points[own], distance[own])
         depth = radius - distance - allowed
         for plane in self._walls:
             depth = np.maximum(depth, _into_wall_m(plane, points, radius - allowed))
-        ends = np.cumsum([len(body.points_m) for body in bodies])
         return np.maximum(np.maximum.reduceat(depth, np.concatenate([[0], ends[:-1]])), 0.0)
 
     @cached_property
     def _walls(self) -> tuple[Plane, ...]:
         return tuple(plane for plane in self.scene.planes if plane.kind == "wall")
 
-    def _beyond_seat_m(self, body: BodySamples, seat: Place, margin_m: float) -> float:
+    def _with_chair_moved_m(
+        self, chair: PulledChair, points: Float[Array, "point 3"], distance_m: Float[Array, " point"]
+    ) -> Float[Array, " point"]:
+        """Distances of a body's points, those about the chair without it."""
+        near = np.hypot(*(points[:, :2] - np.array(chair.place_m)).T) < _NEAR_CHAIR_M - FARTHEST_M
+        out = distance_m.copy()
+        out[near] = np.minimum(_distances_m(points[near], self._without(chair)), FARTHEST_M)
+        return out
+
+    def _beyond_seat_m(
+        self, body: BodySamples, seat: Place, margin_m: float, chair: PulledChair | None = None
+    ) -> float:
         """How deep a sitter is in what is near the seat but no part of it.
 
         That is what lies ahead of the seat and above its surface, and tables behind it.
         """
         solid, tops, legs = (_about(points, seat, _SEAT_REACH_M + FARTHEST_M) for points in self._hard_near(seat))
+        if chair is not None:
+            solid = _about(self._without(chair), seat, _SEAT_REACH_M + FARTHEST_M)
+            legs = legs[~chair.holds(legs, self.scene.floor_z_m)]
         along, height = (solid[:, :2] - np.array(seat)) @ body.ahead, solid[:, 2] - body.pelvis_m[2]
         ahead_of = (along > _SEAT_AHEAD_M) & (height > -_SEAT_BELOW_M)
         next_to = (along > 0.0) & (height > _ABOVE_ARMRESTS_M)

@@ -155,8 +155,10 @@ class _Ranking:
             return []
         bodies = [self._sketch(placement).along(placement.path) for placement in placements]
         seats = [placement.seats_m for placement in placements]
-        depths_m = self._obstacles.estimates_m(bodies, seats, margin_m=MARGIN_M) - MARGIN_M
-        trunk_m, legs_m = self._occlusion_costs_m(bodies, seats)
+        depths_m = self._obstacles.estimates_m(
+            bodies, seats, margin_m=MARGIN_M, chairs=[placement.chair for placement in placements]
+        ) - MARGIN_M  # fmt: skip
+        trunk_m, legs_m = self._occlusion_costs_m(bodies, placements)
         costs = zip(placements, depths_m, trunk_m, legs_m, bodies, strict=True)
         estimates = [
             _Tested(
@@ -187,22 +189,27 @@ class _Ranking:
         """An estimate that counts what is ahead of a sitter, too; of others it has all there is."""
         if estimate.samples is None or not estimate.placement.seats_m:
             return estimate
-        ahead_m = self._obstacles.beyond_seats_m(estimate.samples, estimate.placement.seats_m, margin_m=MARGIN_M)
+        ahead_m = self._obstacles.beyond_seats_m(
+            estimate.samples, estimate.placement.seats_m, margin_m=MARGIN_M, chair=estimate.placement.chair
+        )  # fmt: skip
         return replace(estimate, penetration_m=max(estimate.penetration_m, ahead_m - MARGIN_M))
 
     def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence) -> _Tested:
         # Beyond the margin all are equally good.
-        penetration_m = self._obstacles.penetration_m(samples, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
-        trunk_m, legs_m = self._occlusion_costs_m([samples], [placement.seats_m])
+        penetration_m = self._obstacles.penetration_m(
+            samples, placement.seats_m, margin_m=MARGIN_M, chair=placement.chair
+        ) - MARGIN_M  # fmt: skip
+        trunk_m, legs_m = self._occlusion_costs_m([samples], [placement])
         return _Tested(
             placement=placement, penetration_m=penetration_m, trunk_cost_m=float(trunk_m[0]),
             legs_cost_m=float(legs_m[0]), pose=pose,
         )  # fmt: skip
 
     def _occlusion_costs_m(
-        self, bodies: Sequence[BodySamples], seats: Sequence[Sequence[tuple[float, float]]]
+        self, bodies: Sequence[BodySamples], placements: Sequence[Placement]
     ) -> tuple[Float[np.ndarray, " body"], Float[np.ndarray, " body"]]:
         """What the occluded trunks and legs of sitters cost."""
+        seats = [one.seats_m if one.chair is None else (one.chair.place_m,) for one in placements]
         sits = np.array([bool(each) for each in seats])
         if not sits.any():
             return np.zeros(len(bodies)), np.zeros(len(bodies))

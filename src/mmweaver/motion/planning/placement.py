@@ -16,6 +16,7 @@ from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
+from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
@@ -43,6 +44,7 @@ class Placement:
     seats_m: tuple[tuple[float, float], ...]  # where the person sits
     assumptions: tuple[str, ...]
     invents_seat: bool = False  # though the room has a seat that can be reached
+    chair: PulledChair | None = None  # that is taken as pulled out
 
     @property
     def is_still(self) -> bool:
@@ -57,7 +59,8 @@ class Placement:
         sitting, height_m = None, self._last_seat_height_m()
         if height_m is not None:
             behind_m = pelvis_behind_feet_m(body, height_m) * np.array([np.cos(heading_rad), np.sin(heading_rad)])
-            sitting = Sitting(feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m)
+            sitting = Sitting(feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m,
+                              chair=self.chair)  # fmt: skip
         return BodyState(
             position_m=(float(feet_m[0]), float(feet_m[1])), heading_rad=heading_rad, posture=last.posture,
             style=last.style, foot=last.foot, sitting=sitting,
@@ -166,6 +169,7 @@ def _placement(trajectory: Trajectory, plan: MotionPlan) -> Placement:
         seats_m=tuple(trajectory.seats_m),
         assumptions=tuple(dict.fromkeys(trajectory.notes)),
         invents_seat=trajectory.invents_seat,
+        chair=trajectory.chair,
     )
 
 

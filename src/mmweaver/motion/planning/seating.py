@@ -9,7 +9,7 @@ from mmweaver.core.records import Scene, Seat
 from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behind_feet_m
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
-from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -26,6 +26,8 @@ _BODY_WIDTH_M = 0.4  # what of a seat's width and depth the body itself takes
 _LEFT_OUT = 0.4  # share of the seats that `random_subset` leaves out
 _BACK_M, _DEEP_SEAT_M = 0.05, 0.4  # how far back one can sit, and on which depth of a seat
 _KNEE_M, _ON_SEAT_M = 0.05, 0.12  # from a seat's edge to the middle of the knees, and to the pelvis at least
+PULLED_COST = 0.5  # of a chair that is pulled out first
+_CHAIR_BEHIND_M, _CHAIR_ASIDE_M = 0.27, 0.2  # from a chair's middle: the back of it, and half its width
 _STRAIGHT_TO_SEAT_M = 0.6  # the last part of the walk to a seat, where the seat's own edge is near
 
 
@@ -42,6 +44,7 @@ class Sitting:
     edge_m: float = 0.2  # from `seat_m` ahead to the seat's edge
     knees_m: float = 1.0  # from `seat_m` ahead to the sitter's knees
     cost: float = 0.0  # of unusual ways to sit
+    chair: PulledChair | None = None  # where the seat is no longer where the photo shows it
 
     def moved_ahead(self, by_m: float) -> "Sitting":
         """The same farther ahead on the seat."""
@@ -161,6 +164,23 @@ def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     return turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
+def pulled_out(sitting: Sitting, floor: FloorMap, by_m: float) -> Sitting | None:
+    """On the same chair pulled back from what is ahead of it; None for a couch or bed, or without floor behind."""
+    if sitting.width_m >= _COUCH_M or _on_bed(sitting, floor.scene):
+        return None
+    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    aside = np.array([-ahead[1], ahead[0]])
+    place = (float(sitting.seat_m[0]), float(sitting.seat_m[1]))
+    moved = sitting.seat_m - by_m * ahead
+    behind = moved - _CHAIR_BEHIND_M * ahead + np.array([[-1.0], [0.0], [1.0]]) * _CHAIR_ASIDE_M * aside
+    if not (floor.clearance_at(behind) > 0).all() or not bool(floor.sees(moved)):
+        return None
+    chair = PulledChair(place, sitting.facing_rad, by_m)
+    return replace(
+        sitting, seat_m=moved, feet_m=sitting.feet_m - by_m * ahead, chair=chair, cost=sitting.cost + PULLED_COST + by_m
+    )
+
+
 def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
     """A random subset of the seats, never empty unless there are none."""
     kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
@@ -177,7 +197,7 @@ def turned(sitting: Sitting, turn: float) -> Sitting:
         feet_m=sitting.seat_m + across @ reach,
         facing_rad=sitting.facing_rad + turn,
         edge_m=sitting.edge_m * float(np.cos(turn)) + corner_m * abs(float(np.sin(turn))),
-        cost=0.3 + _TURN_COST * abs(turn),
+        cost=0.3 + _TURN_COST * abs(turn) + (PULLED_COST + sitting.chair.by_m if sitting.chair else 0.0),
     ).with_clear_knees()
 
 
@@ -195,6 +215,15 @@ def stool_fits(stool: Sitting, floor: FloorMap, *, is_bed: bool = False) -> bool
     return bool((floor.clearance_at(places) >= 0.2).all()) and bool(floor.sees(stool.seat_m))
 
 
+def pulled_note(chair: PulledChair) -> str:
+    """What is reported about a chair that is pulled out."""
+    x, y = chair.place_m
+    return (
+        f"the chair at x {x:.2f} m, y {y:.2f} m is taken as pulled out by {chair.by_m:.1f} m for who sits on it; the"
+        " radar sees it where the photo shows it"
+    )
+
+
 def stool_note(stool: Sitting, *, none_at_all: bool, is_bed: bool = False) -> str:
     """What is reported about an assumed stool or bed."""
     why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be used for this"
@@ -207,4 +236,7 @@ def are_reachable(floor: FloorMap, places_m: Float[Array, "place 2"], sitting: S
     """Whether the straight paths to a seat are free; near the seat, where its own edge is, with less clearance."""
     lines_m = places_m[:, None] + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - places_m)[:, None]
     near = np.hypot(*np.moveaxis(lines_m - sitting.feet_m, -1, 0)) < _STRAIGHT_TO_SEAT_M
-    return (floor.can_stand(lines_m) | (near & (floor.clearance_at(lines_m) > 0.0))).all(axis=1)
+    is_free = floor.clearance_at(lines_m) > 0.0
+    if sitting.chair is not None:
+        is_free |= sitting.chair.covers(lines_m)
+    return (floor.can_stand(lines_m) | (near & is_free)).all(axis=1)

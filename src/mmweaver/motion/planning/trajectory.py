@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
 from mmweaver.motion.language.plan import HOPPING, Step
+from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -65,6 +66,7 @@ class Trajectory:
     notes: list[str] = field(default_factory=list)
     seat_height_m: list[float] = field(default_factory=list)  # by step
     seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
+    chair: PulledChair | None = None  # on which the person sits
     cost: float = 0.0
     last_direction_rad: float | None = None
     invents_seat: bool = False  # though the room has a seat that can be reached
