@@ -59,6 +59,13 @@ def test_without_the_residual_the_layers_are_the_same(encoder: ChunkEncoder):
     assert "scatterers" in whole.mode_name()
 
 
+def test_what_follows_a_stream_is_ignored(encoder: ChunkEncoder):
+    """Files that hold next to nothing are filled up, some by other than whole words."""
+    data = encoder.encode(0.5, POINTS, 4).data
+    found = [decode_chunk(data + bytes(more), SMALL).cube_values() for more in (0, 1, 4, 6)]
+    assert all(np.array_equal(found[0], one) for one in found[1:])
+
+
 def test_cells_without_signal_are_left_to_the_noise_layer(encoder: ChunkEncoder):
     coded = encoder.encode(0.01, ChunkMode(noise_step=0.02), 0)
     again = decode_chunk(coded.data, SMALL)

@@ -176,13 +176,18 @@ def test_cubes_that_cannot_be_stored_are_refused():
 
 
 def plain_cube(config, num_frames: int, kind: str = "noise") -> RadarCube:
-    """A cube of a radar, without simulation: noise with a steady echo, zeros, or one nonzero cell."""
+    """A cube of a radar, without simulation: noise with a steady echo, one number everywhere, or few that are not 0."""
     grid = CubeGrid.of(config, num_frames)
     values = np.zeros(grid.shape, np.complex64)
     if kind == "noise":
         draw = stream(0, "cube").normal(size=(2, *grid.shape)).astype(np.float32)
         values = draw[0] + 1j * draw[1]
         values[:, grid.shape[1] // 2] += 100 * np.exp(1j * np.arange(num_frames) / 9)[:, None, None]
+    if kind == "constant":
+        values[...] = 7 + 1j
+    if kind == "ten":
+        draw = stream(0, "cube")
+        values.flat[draw.integers(0, values.size, 10)] = draw.normal(size=10) + 1j
     if kind == "one":
         values.flat[values.size // 2] = 3 - 4j
     return RadarCube(values=values.astype(np.complex64), grid=grid, config=config, scale=float("nan"))
@@ -228,6 +233,21 @@ def test_nearly_empty_cubes_are_kept(name: str, kind: str, tmp_path: Path):
     if kind == "zeros":
         assert errors_db(data, cube) == {"signal_error_db": EXACT_DB, "all_error_db": EXACT_DB}
     assert np.abs(read_cube(tmp_path / "a.mmw").values - cube.values).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("kind", "num_frames", "num_bytes"),
+    [("ten", 21, 256), ("ten", 2, 700), ("constant", 2, 700), ("constant", 21, 700)],
+)
+def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, num_bytes: int, tmp_path: Path):
+    """Antennas without any echo, and matrices that alone would be larger than the file."""
+    cube = plain_cube(SMALL, num_frames, kind)
+    data = compress_cube(cube, num_bytes=num_bytes)
+    (tmp_path / "a.mmw").write_bytes(data)
+    left_db = error_db(read_cube(tmp_path / "a.mmw").values, cube.values)
+    assert len(data) <= num_bytes
+    assert len(data) >= 0.97 * num_bytes or left_db < -118  # the last digits of float32
+    assert left_db < -10
 
 
 @pytest.mark.parametrize(

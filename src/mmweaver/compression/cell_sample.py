@@ -1,7 +1,7 @@
 """What cells would cost at any step, estimated from some of them and without coding (encoder side)."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,11 @@ class Estimate:
         return weighted + PRICE * step**2 * 8 * self.num_bytes
 
 
+def _magnitude(coefficients: Array) -> Array:
+    """(beam, cell) -> (cell, number)."""
+    return np.abs(np.concatenate([coefficients.real, coefficients.imag])).T.copy()
+
+
 @dataclass(frozen=True, kw_only=True)
 class CellSample:
     """Coefficients of some cells, and what is coded besides cells.
@@ -43,6 +48,7 @@ class CellSample:
     front_bytes: int | float = 0
     front_values: int = 0
     front_step: float = 1.0
+    coefficients: Array | None = None  # (beam, cell)
     largest: Array = field(init=False)  # (cell,) magnitude
     energy: Array = field(init=False)  # (cell,)
     _known: dict[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict, repr=False)
@@ -66,11 +72,17 @@ class CellSample:
             weak = rest[places[places < len(rest)]]
             chosen = np.concatenate([strong, weak])
             weight = np.concatenate([np.ones(len(strong)), np.full(len(weak), len(rest) / len(weak))])
-        some = flat[:, chosen].T
+        some = flat.take(chosen, axis=1)
         return cls(
-            magnitude=np.abs(np.concatenate([some.real, some.imag], axis=1)), is_active=active[chosen], weight=weight,
-            front_bytes=front_bytes, **front,
+            magnitude=_magnitude(some), is_active=active[chosen], weight=weight, front_bytes=front_bytes,
+            coefficients=some, **front,
         )  # fmt: skip
+
+    def turned(self, matrix: Array, front_bytes: int | float) -> "CellSample":
+        """The same cells after a unitary transform (beam, beam) of their coefficients."""
+        assert self.coefficients is not None
+        some = matrix.astype(self.coefficients.dtype) @ self.coefficients
+        return replace(self, magnitude=_magnitude(some), coefficients=some, front_bytes=front_bytes, _known={})
 
     def front_at(self, step: float) -> float:
         """Bytes of what is coded besides cells."""

@@ -16,7 +16,7 @@ from mmweaver.compression.cell_choice import active_cells
 from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
-from mmweaver.compression.coded_chunk import ChunkDraft, ChunkMode, CodedChunk
+from mmweaver.compression.coded_chunk import ChunkDraft, ChunkLayers, ChunkMode, CodedChunk
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
@@ -49,6 +49,7 @@ STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
+NEAR = 0.4  # difference of log(step) within which counted scatterers are taken for those of another step
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
@@ -110,18 +111,21 @@ class ChunkEncoder:
     noise_power: float
     active_power: float | None = None  # above it a cell is active; None = 12 dB above the median
     layers: Layers | None = None
-    _coefficients: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)
+    _transforms: dict[tuple[bool, bool], ChunkTransform] = field(default_factory=dict)
     _samples: dict[TransformChoice, CellSample] = field(default_factory=dict)
     _refined_points: tuple[int, Points] | None = None
     _adaptive_bits: float | None = None  # of a scatterer coded before, but for those that are counted
+    _rank_bits: float | None = None  # of factors coded before, over those estimated
     _noise: tuple[ChunkMode, bool, NoiseLayer] | None = None
     _quiet: dict[ChunkMode, np.ndarray] = field(default_factory=dict)  # coefficients of what has no signal
     _noise_sample: CellSample | None = None
     _components: Components | None = None
+    _counted_points: ChunkLayers | None = None  # of the last step at which they were
 
     def __post_init__(self) -> None:
         self.beams = beams_of(self.frames.config)
         self.is_active = active_cells(self.target, self.active_power)
+        self._plain = ChunkLayers(step=1.0, target=self.target, near=np.zeros(self.target.shape[:3], np.int64))
 
     def with_layers(self, layers: Layers) -> None:
         """Takes fitted scatterers for the modes that use them."""
@@ -137,7 +141,7 @@ class ChunkEncoder:
         `price`: see `quantized`. `only_size`: its size is estimated, and nothing coded that takes long.
         """
         draft = self.draft(step, mode, coarser, only_size=only_size)
-        step, stream, flags, front = draft.step, draft.stream, draft.flags, draft.front
+        step, stream, flags, front = draft.step, draft.stream, draft.flags + IS_NEW, draft.front
         cell_bytes = 0.0
         cells = quantized(draft.coefficients, step, coarser, draft.is_active, price, draft.energy)
         is_open = cells.classes > 0
@@ -168,37 +172,40 @@ class ChunkEncoder:
         )  # fmt: skip
 
     def draft(self, step: float, mode: ChunkMode, coarser: int, *, only_size: bool = False) -> ChunkDraft:
-        """The chunk with its layers coded, and its cells not; with `only_size` no noise layer is coded either."""
+        """The chunk with its layers coded, and its cells not; with `only_size` layers are counted."""
         step = float(np.float32(step))
-        stream, flags, front, num_values = Encoder(), IS_NEW, b"", 0
-        uncoded_bytes = noise_bytes = 0.0
-        target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
-        if mode.with_points and self.layers is not None:
-            target, near, more, front, num_values, uncoded_bytes = self._points(stream, step, only_size=only_size)
-            flags += more
-        noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
-        factors = self._factors(step, noise_power) if mode.with_rank else None
-        if factors is not None:
-            flags += HAS_RANK
-            factors.code(stream)
-            num_values += factors.num_values
-            target = (target - factors.values(step, target.shape)).astype(target.dtype)
+        layers = self._layers(step, mode, coarser, only_size=only_size)
+        stream, flags, front, target = layers.stream, layers.flags, layers.front, layers.target
+        uncoded_bytes = layers.uncoded_bytes + layers.num_values / 8 * math.log2(layers.step / step)
+        noise_bytes = 0.0
         if mode.noise_step:
             noise = self._noise_layer(mode, target, only_size=only_size)
             flags += HAS_NOISE
             front += noise.packed
             noise_bytes = noise.num_bytes
             uncoded_bytes += noise_bytes - len(noise.packed)
-            target = target - noise.values
-        transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
+            layers = replace(layers, target=target - noise.values, transformed={})
+        transform, coefficients = self._transformed(mode.transform, layers)
         return ChunkDraft(
             step=step, stream=stream, flags=flags, front=front, uncoded_bytes=uncoded_bytes,
             noise_bytes=noise_bytes,
             front_bytes=PREFIX.size + len(front) + len(transform.packed) + len(stream.to_bytes()) + uncoded_bytes,
-            near=near, rank=0 if factors is None else factors.rank, num_values=num_values, transform=transform,
+            near=layers.near, rank=layers.rank, num_values=layers.num_values, transform=transform,
             coefficients=coefficients,
             is_active=transform.spread(self.is_active), energy=cell_energy(coefficients),
         )  # fmt: skip
+
+    def _layers(self, step: float, mode: ChunkMode, coarser: int, *, only_size: bool) -> ChunkLayers:
+        """Layers of a mode at a step; where only sizes matter, scatterers may be those of a step near by."""
+        if mode.with_rank:
+            return self._with_rank(step, coarser, only_size=only_size)
+        if not mode.with_points or self.layers is None:
+            return replace(self._plain, step=step, stream=Encoder())
+        before = self._counted_points
+        if not only_size or before is None or abs(math.log(step / before.step)) > NEAR:
+            before = self._points(step, only_size=only_size)
+            self._counted_points = before if only_size else self._counted_points
+        return before
 
     def exact(self, values: CubeValues) -> bytes:
         """The chunk without any loss, as float32."""
@@ -210,9 +217,15 @@ class ChunkEncoder:
     def sample(self, choice: TransformChoice) -> CellSample:
         """Some coefficients of a transform of the frames themselves, for estimates."""
         if choice not in self._samples:
-            transform, coefficients = self._transformed(choice, self.target, is_plain=True)
-            mask = transform.spread(self.is_active)
-            self._samples[choice] = CellSample.of(coefficients, mask, PREFIX.size + len(transform.packed))
+            transform = self._transform(choice)
+            front = PREFIX.size + len(transform.packed)
+            if choice.antenna_klt:  # changes the coefficients of a cell, but not its power
+                turn = transform.antennas @ self.beams.conj().T
+                found = self.sample(replace(choice, antenna_klt=False)).turned(turn, front)
+            else:
+                _, coefficients = self._transformed(choice, self._plain)
+                found = CellSample.of(coefficients, transform.spread(self.is_active), front)
+            self._samples[choice] = found
         return self._samples[choice]
 
     def noise_sample(self) -> CellSample:
@@ -233,27 +246,43 @@ class ChunkEncoder:
             self._noise = mode, only_size, layer
         return self._noise[2]
 
-    def _factors(self, step: float, noise_power: float) -> RankFactors | None:
+    def _with_rank(self, step: float, coarser: int, *, only_size: bool) -> ChunkLayers:
         if self._components is None:
             self._components = components_of(self.target)
-        return RankFactors.of_components(self._components, self.target.shape, step, noise_power)
+        noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
+        factors = RankFactors.of_components(self._components, self.target.shape, step, noise_power)
+        if factors is None:
+            return replace(self._plain, step=step, stream=Encoder())
+        stream, uncoded_bytes = Encoder(), 0.0
+        if only_size and self._rank_bits is not None:
+            uncoded_bytes = self._rank_bits * factors.estimated_bits() / 8
+        else:
+            factors.code(stream)
+            self._rank_bits = 8 * len(stream.to_bytes()) / max(factors.estimated_bits(), 1.0)
+        return ChunkLayers(
+            step=step, target=(self.target - factors.values(step, self.target.shape)).astype(self.target.dtype),
+            near=self._plain.near, stream=stream, flags=HAS_RANK, uncoded_bytes=uncoded_bytes, rank=factors.rank,
+            num_values=factors.num_values,
+        )  # fmt: skip
 
-    def _transformed(self, choice, target, *, is_plain: bool) -> tuple[ChunkTransform, np.ndarray]:
-        if is_plain and choice in self._coefficients:
-            return self._coefficients[choice]
-        transform = ChunkTransform.of(choice, target, self.beams)
-        found = transform, transform.forward(target)
-        if is_plain:
-            self._coefficients[choice] = found
-        return found
+    def _transformed(self, choice: TransformChoice, layers: ChunkLayers) -> tuple[ChunkTransform, np.ndarray]:
+        if choice not in layers.transformed:
+            is_plain = layers.target is self.target
+            transform = self._transform(choice) if is_plain else ChunkTransform.of(choice, layers.target, self.beams)
+            layers.transformed[choice] = transform, transform.forward(layers.target)
+        return layers.transformed[choice]
 
-    def _points(
-        self, stream: Encoder, step: float, *, only_size: bool
-    ) -> tuple[np.ndarray, np.ndarray, int, bytes, int, float]:
-        """Codes static layer and scatterers; returns what remains, nearness, flags, the packed gains, the number of
-        values, and the bytes of layers that were not coded, since some have been."""
+    def _transform(self, choice: TransformChoice) -> ChunkTransform:
+        """The transform of a choice that suits the frames; matrices are the same whatever the DCTs."""
+        key = choice.antenna_klt, choice.doppler_klt
+        if key not in self._transforms:
+            self._transforms[key] = ChunkTransform.of(choice, self.target, self.beams)
+        return self._transforms[key].over(choice)
+
+    def _points(self, step: float, *, only_size: bool) -> ChunkLayers:
+        """Static layer and scatterers; with `only_size` they are counted, once some have been coded."""
         assert self.layers is not None
-        window = self.frames.fit_window()
+        window, stream = self.frames.fit_window(), Encoder()
         layers = self.layers
         with torch.inference_mode():
             static = self._static_levels(layers, window, step)
@@ -263,7 +292,6 @@ class ChunkEncoder:
             coded = quantize(points, steps, window.axes, window.response.num_directions, LEAST_SIZE)
             layers = replace(layers, points=_dequantize(coded, window, steps))
             target = self.target - rendered(layers, window.response, window.axes).numpy()
-        num_values = int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response)
         uncoded_bytes, point_bits = 0.0, uniform_bits(coded, steps, window.response.num_directions)
         if only_size and self._adaptive_bits is not None:
             uncoded_bytes = (_static_bits(static) + point_bits + self._adaptive_bits * len(coded)) / 8
@@ -275,10 +303,12 @@ class ChunkEncoder:
                 _point_coder(self.frames, window, steps).code(stream, coded)
                 self._adaptive_bits = (8 * (len(stream.to_bytes()) - before) - point_bits) / len(coded)
         has_gains = bool((layers.calibration != 1).any())
-        flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains
-        near = nearness(coded, self.target.shape[:3])
-        front = _pack_gains(layers.calibration) if has_gains else b""
-        return target, near, flags, front, num_values, uncoded_bytes
+        return ChunkLayers(
+            step=step, target=target, near=nearness(coded, self.target.shape[:3]), stream=stream,
+            flags=HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains,
+            front=_pack_gains(layers.calibration) if has_gains else b"", uncoded_bytes=uncoded_bytes,
+            num_values=int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response),
+        )  # fmt: skip
 
     def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
         values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)

@@ -8,7 +8,7 @@ windows spread over neighbouring cells, noise too, and pays where most cells hav
 
 import math
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Complex
@@ -44,13 +44,16 @@ class TransformChoice:
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkTransform:
-    """Matrices of a choice, as the decoder has them; `correlated`: neighbours along (range, Doppler) predict signs."""
+    """Matrices of a choice, as the decoder has them.
+
+    `signs`: whether neighbouring values along range and along Doppler have like ones.
+    """
 
     choice: TransformChoice
     antennas: Complex[Array, "beam antenna"]
     doppler: Complex[Array, "index doppler"] | None
-    correlated: tuple[bool, bool]
-    packed: bytes  # header and the words of the KLTs
+    signs: tuple[bool, bool]
+    words: bytes  # of the KLTs
 
     @classmethod
     def of(
@@ -68,15 +71,24 @@ class ChunkTransform:
             flat = np.moveaxis(values, 2, 3).reshape(-1, values.shape[2])
             doppler, more = _klt(flat.T @ flat.conj(), WORD)
             words += more
-        correlated = (
-            not choice.range_dct and _is_correlated(values, 1),
-            doppler is None and _is_correlated(values, 2),
-        )
-        header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * correlated[0] + 32 * correlated[1]
-        header += 64 * choice.range_dct
-        return cls(
-            choice=choice, antennas=antennas, doppler=doppler, correlated=correlated, packed=bytes([header]) + words
-        )
+        signs = _is_correlated(values, 1), _is_correlated(values, 2)
+        return cls(choice=choice, antennas=antennas, doppler=doppler, signs=signs, words=words)
+
+    def over(self, choice: TransformChoice) -> "ChunkTransform":
+        """The same matrices with a choice that differs in the DCTs."""
+        return replace(self, choice=choice)
+
+    @property
+    def correlated(self) -> tuple[bool, bool]:
+        """Whether neighbouring coefficients along range and along Doppler predict each other's sign."""
+        return self.signs[0] and not self.choice.range_dct, self.signs[1] and self.doppler is None
+
+    @property
+    def packed(self) -> bytes:
+        """Header and the words of the KLTs."""
+        choice, (rows, columns) = self.choice, self.correlated
+        header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * rows + 32 * columns
+        return bytes([header + 64 * choice.range_dct]) + self.words
 
     @classmethod
     def unpack(cls, data: bytes, beams: Complex[Array, "beam antenna"], num_doppler: int) -> "ChunkTransform":
@@ -93,8 +105,8 @@ class ChunkTransform:
         if choice.doppler_klt:
             doppler, at = _unpack_klt(data, at, num_doppler, WORD)
         return cls(
-            choice=choice, antennas=antennas, doppler=doppler, correlated=(bool(header & 16), bool(header & 32)),
-            packed=data[:at],
+            choice=choice, antennas=antennas, doppler=doppler, signs=(bool(header & 16), bool(header & 32)),
+            words=data[HEADER.size : at],
         )  # fmt: skip
 
     def forward(self, values: Complex[Array, "frame range doppler antenna"]) -> Complex[Array, "beam time range index"]:

@@ -28,6 +28,25 @@ class ChunkMode:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ChunkLayers:
+    """Layers of a chunk, coded or counted at a step, and the `target` that they leave (frame, range, doppler, antenna).
+
+    `front`: bytes before the stream; `uncoded_bytes` of layers were only counted; `num_values` real numbers are in all.
+    """
+
+    step: float
+    target: np.ndarray
+    near: np.ndarray
+    stream: Encoder = field(default_factory=Encoder)
+    flags: int = 0
+    front: bytes = b""
+    uncoded_bytes: float = 0.0
+    rank: int = 0
+    num_values: int = 0
+    transformed: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)  # the target
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChunkDraft:
     """A chunk whose cells are still to be coded. `front`: bytes before the stream, but for prefix and transform.
 

@@ -109,7 +109,8 @@ class Decoder(BitStream):
         model, queue = _constriction()
         self.version = version
 
-        self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
+        # streams are whole words; some files had other bytes after the last one
+        self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4", len(data) // 4).astype(np.uint32))
         self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
         self._one_model, self._categorical = model.Categorical, model.Categorical(perfect=False)
 

@@ -10,12 +10,14 @@ from jaxtyping import Complex, Int
 
 from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.level_coder import LevelCoder
+from mmweaver.compression.level_size import estimated_bits
 
 Array = np.ndarray
 Components = tuple[Array, Array, Array]  # left (row, component), strength (component,), right (component, column)
 MOST_RANK = 255
 ROUNDING = 0.4
 LEAST_GAIN = 0.3  # squared steps per bit that a component must remove
+CORRELATED = True, False  # neighbouring rows of a factor predict each other's sign
 WIDER = 3.0  # noise of windowed cells is correlated: its strongest components exceed those of white noise
 
 
@@ -77,7 +79,16 @@ class RankFactors:
         """Encodes the factors, or fills them in when decoding."""
         for levels in (self.left, self.right):
             every = np.ones(levels.shape[2:], np.int64)
-            LevelCoder(levels.shape[1:], (True, False)).code(stream, levels.reshape(2, levels.shape[1], -1), every)
+            LevelCoder(levels.shape[1:], CORRELATED).code(stream, levels.reshape(2, levels.shape[1], -1), every)
+
+    def estimated_bits(self) -> float:
+        """About the bits of `code`."""
+        bits = 0.0
+        for levels in (self.left, self.right):
+            every, one = np.ones(levels.shape[2:], np.int64), np.ones(1)
+            coder = LevelCoder(levels.shape[1:], CORRELATED)
+            bits += estimated_bits(coder, levels.reshape(2, 1, -1), every, one)
+        return bits
 
     @classmethod
     def empty(cls, rank: int, shape: tuple[int, int, int, int]) -> "RankFactors":

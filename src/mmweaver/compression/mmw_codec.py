@@ -55,7 +55,8 @@ def compress_cube(
     budget = None if num_bytes is None else num_bytes - framing
     chunks = encoded_chunks(segment, num_bytes=budget, quality_db=quality_db, progress=progress)
     missing = cube.values.nbytes // MAX_RATIO + 1 - sum(map(len, chunks))
-    chunks[-1] += bytes(max(0, missing))  # readers distrust files that promise more; decoders ignore what follows
+    # readers distrust files that promise more; decoders ignore words of four bytes that follow
+    chunks[-1] += bytes(4 * max(0, -(-missing // 4)))
     return _packed(header, segment, chunks)
 
 

@@ -14,6 +14,7 @@ import math
 import struct
 import zlib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -293,13 +294,17 @@ def _packed_radar(config: RadarConfig) -> dict[str, Any]:
     """The preset, with what differs from it, or the whole radar, whichever is shorter."""
     whole = config.to_values()
     best: dict[str, Any] = whole
-    for name, preset in PRESETS.items():
-        usual = preset.to_values()
+    for name, usual in _preset_values().items():
         changes = {key: value for key, value in whole.items() if usual.get(key) != value}
         packed = {"preset": name, "changes": changes} if changes else {"preset": name}
         if usual.keys() == whole.keys() and len(json.dumps(packed)) < len(json.dumps(best)):
             best = packed
     return best
+
+
+@cache
+def _preset_values() -> dict[str, dict[str, Any]]:
+    return {name: preset.to_values() for name, preset in PRESETS.items()}
 
 
 def _radar_of(values: dict[str, Any]) -> RadarConfig:

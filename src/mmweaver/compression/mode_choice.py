@@ -17,7 +17,9 @@ from mmweaver.fields.scatterers.layers import Layers, fit_static, static_respons
 
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_A_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many each, as many in all
-FIT_STAGES, LAST_STEPS, LEAST_GAIN = 16, 3, 12.0
+LEAST_GAIN = 12.0
+# stages, last steps and growth of a fit, of few frames and of more
+FEW_FRAMES, FIT_OF_FEW_FRAMES, FIT = 4, (16, 3, 1.0), (22, 1, 1.3)
 DEVIATIONS, MARGIN = 3.5, 3  # of noise, by which cells that scatterers are fitted to exceed it; cells around them
 FINER_SHARE, MAP_BITS = 0.05, 6.0  # of the bytes that finer steps of moving cells may have; bits to say where one is
 WEAKER, ENOUGH = 2.5, 2.5e-4  # power of active cells over that of weak moving ones; their error that is low enough
@@ -31,12 +33,17 @@ EFFORTS = {"full": (), "fast": ("scatterers",)}  # what is not tried: the fit ta
 class ModeChooser:
     """Decides on the mode of a chunk that costs least near a step, by estimates, and encodes in it.
 
-    `without`: names of FREE_MODES that are left out, for ablations.
+    `without`: names of FREE_MODES that are left out, for ablations. `most_bytes`: about as many as the chunk will have.
     """
 
-    def __init__(self, encoder: ChunkEncoder, *, without: tuple[str, ...] = ()):
-        self.encoder, self.without = encoder, without
-        self.plain = ChunkMode(transform=choices_of(encoder.target.shape)[0])
+    def __init__(self, encoder: ChunkEncoder, *, without: tuple[str, ...] = (), most_bytes: float = math.inf):
+        self.encoder, self.most_bytes, self.had_points = encoder, most_bytes, False
+        self.start_again(without)
+
+    def start_again(self, without: tuple[str, ...]) -> None:
+        """Forgets what was decided, and leaves out other modes."""
+        self.without = without
+        self.plain = ChunkMode(transform=choices_of(self.encoder.target.shape)[0])
         self.mode: ChunkMode | None = None
         self.sample: CellSample | None = None  # of the mode decided on, at the step of the decision
 
@@ -58,7 +65,9 @@ class ModeChooser:
         choices = choices_of(self.encoder.target.shape)
         if "transforms" in self.without or not np.any(self.encoder.target):
             choices = choices[:1]
-        best = min(choices, key=lambda choice: self.encoder.sample(choice).at(step, coarser).cost(step, coarser))
+        samples = {choice: self.encoder.sample(choice) for choice in choices}
+        fit = [choice for choice in choices if samples[choice].front_bytes < self.most_bytes] or choices[:1]
+        best = min(fit, key=lambda choice: samples[choice].at(step, coarser).cost(step, coarser))
         self.plain = ChunkMode(transform=best)
 
     @property
@@ -73,10 +82,11 @@ class ModeChooser:
         if np.any(self.encoder.target):
             modes += self._layered(step, coarser)
         samples = [self.encoder.sample(self.plain.transform)]
-        samples += [self.encoder.draft(step, mode, coarser).sample() for mode in modes[1:]]
+        samples += [self.encoder.draft(step, mode, coarser, only_size=True).sample() for mode in modes[1:]]
         costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
         best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
         mode, self.sample = modes[best], samples[best]
+        self.had_points |= mode.with_points
         self.mode = replace(mode, finer=self._finer(step, self.sample.at(step, coarser).num_bytes))
 
     def _finer(self, step: float, num_bytes: float) -> int:
@@ -123,10 +133,11 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
     # a single frame cannot separate static clutter from slow motion
     each, most = POINTS_OF_FEW_FRAMES
     num_points = max(POINTS_A_FRAME * frames, min(each * frames, most))
+    stages, last_steps, growth = FIT if window.num_working_frames > FEW_FRAMES else FIT_OF_FEW_FRAMES
     recipe = FitRecipe(
         num_points=min(num_points, int(num_bytes / BYTES_A_POINT)), with_static=frames > 1,
-        with_calibration=True, stages=FIT_STAGES, last_steps=LAST_STEPS, least_gain=LEAST_GAIN,
-        most_noise=encoder.noise_power,
+        with_calibration=True, stages=stages, last_steps=last_steps, growth=growth,
+        least_gain=LEAST_GAIN, most_noise=encoder.noise_power,
     )  # fmt: skip
     response, axes = window.response, window.axes
     at_rest, moving = static_response(response, axes), encoder.target.copy()

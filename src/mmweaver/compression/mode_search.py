@@ -5,7 +5,6 @@ All is decided by counted chunks, whose errors are exact and whose sizes are est
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from mmweaver.compression.coded_chunk import ChunkMode
@@ -26,37 +25,45 @@ MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 12, 7
 NOISE_COUNTS, SAME_NOISE = 2, 0.05  # counts of a noise layer; share of the signal's bytes that an estimate may mistake
 AS_GOOD = 0.97  # of the product of errors as counted first: what a file without a layer must have to be decided on
+SURELY = 0.8  # of the errors that are planned, which the bytes of counted files mistake by some percent
 CLEARLY_BETTER = 0.8  # of the product of errors: with this advantage by estimates, no file without layers is counted
 
-# layers that a file is counted without, too: a sample of the cells may mistake what they are worth
-LAYERS: dict[str, Callable[[ChunkMode], bool]] = {
-    "low rank": lambda mode: mode.with_rank,
-    "scatterers": lambda mode: mode.with_points,
-}
 
+def best_plans(segment: SegmentEncoder, num_bytes: int) -> list[Plan]:
+    """The best file found, and where it has scatterers and is not clearly better, the best one without: both are coded.
 
-def best_plan(segment: SegmentEncoder, num_bytes: int) -> Plan:
-    """The best of the files with all layers that pay by estimates, and of those without each of them.
-
-    These are counted first as they begin: only where they are about as good then, the rest is decided.
+    Files without a layer are counted first as they begin: only where they are about as good then, the rest is decided.
+    Where scatterers were considered and left, the file is the one that is found without.
     """
-    best, first = _plan(segment, num_bytes)
-    for layer, has_layer in LAYERS.items():
-        if not any(has_layer(chunk.mode) for chunk in best.found.coded):
-            continue
-        if layer == "scatterers" and _is_clear(segment, num_bytes):
-            continue
-        segment.leave_out(layer)
-        other = _first(segment, num_bytes)
-        if _as_begun(segment, num_bytes, other) * AS_GOOD > _as_begun(segment, num_bytes, first):
-            continue
-        plan, _ = _plan(segment, num_bytes, other)
-        best, first = min((best, first), (plan, other), key=lambda one: one[0].badness)
-    return best
+    best, first = _best(segment, num_bytes)
+    has_points = any(chunk.mode.with_points for chunk in best.found.coded)
+    if not segment.had_points or (has_points and _is_clear(segment, num_bytes)):
+        return [best]
+    segment.start_again("scatterers")
+    begun = _first(segment, num_bytes)
+    is_behind = _as_begun(segment, num_bytes, begun).is_behind(_as_begun(segment, num_bytes, first), AS_GOOD)
+    if has_points and is_behind:
+        return [best]
+    other, _ = _best(segment, num_bytes, "scatterers", begun=begun)
+    if not has_points or best.is_behind(other, SURELY):
+        return [other]
+    return [best] if other.is_behind(best, SURELY) else [best, other]
 
 
-def _as_begun(segment: SegmentEncoder, num_bytes: int, first: Found) -> float:
-    return Plan.of(first, num_bytes, segment.bounds).badness
+def _best(segment: SegmentEncoder, num_bytes: int, *left_out: str, begun: Found | None = None) -> tuple[Plan, Found]:
+    """The best of the files with all layers that pay by estimates and without low rank, and its first count."""
+    plan, first = _plan(segment, num_bytes, begun)
+    if not any(chunk.mode.with_rank for chunk in plan.found.coded):
+        return plan, first
+    segment.start_again(*left_out, "low rank")
+    other = _first(segment, num_bytes)
+    if _as_begun(segment, num_bytes, other).badness * AS_GOOD > _as_begun(segment, num_bytes, first).badness:
+        return plan, first
+    return min((plan, first), _plan(segment, num_bytes, other), key=lambda one: one[0].badness)
+
+
+def _as_begun(segment: SegmentEncoder, num_bytes: int, first: Found) -> Plan:
+    return Plan.of(first, num_bytes, segment.bounds)
 
 
 def _is_clear(segment: SegmentEncoder, num_bytes: int) -> bool:

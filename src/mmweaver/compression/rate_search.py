@@ -13,7 +13,7 @@ import numpy as np
 from mmweaver.compression.cell_choice import active_cells
 from mmweaver.compression.chunk import decode_chunk
 from mmweaver.compression.coded_chunk import CodedChunk
-from mmweaver.compression.mode_search import best_plan
+from mmweaver.compression.mode_search import best_plans
 from mmweaver.compression.residual_stream import PRICE
 from mmweaver.compression.segment import SegmentEncoder
 from mmweaver.compression.step_search import AIM, LEAST_ERROR, Found, Plan, step_of_error, step_of_size, sum_at
@@ -41,13 +41,23 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
         exact = segment.exact()
         if sum(map(len, exact)) <= num_bytes:
             return exact
-    plan = best_plan(segment, num_bytes)
+    plans = best_plans(segment, num_bytes)
     progress("coding")
-    found = _finest(segment, num_bytes, plan, progress)
+    found = _best([_finest(segment, num_bytes, plan, progress) for plan in plans], num_bytes)
     if found.num_bytes > num_bytes:
         more = math.ceil(found.num_bytes - num_bytes)
         raise InputError(f"the bytes are too few for this recording; give at least {more} more")
     return [chunk.data for chunk in found.coded]
+
+
+def _best(files: list[Found], num_bytes: int) -> Found:
+    """The first file, unless the second one fits and is better in active cells or in the product of the errors."""
+    first, *others = files
+    for other in others:
+        is_ahead = first.active_error <= other.active_error and first.badness <= other.badness
+        if other.num_bytes <= num_bytes < first.num_bytes or (other.num_bytes <= num_bytes and not is_ahead):
+            return other
+    return first
 
 
 def _finest(segment: SegmentEncoder, num_bytes: int, plan: Plan, progress: Progress) -> Found:

@@ -41,6 +41,7 @@ class SegmentEncoder:
         self.cube, self.scale, self.coarser, self.without = cube, scale, coarser, without
         self.parts: list[range] = []
         self._choosers: list[ModeChooser] = []
+        self._num_bytes = math.inf
 
     def plan(self, step: float) -> list[range]:
         """Decides how long chunks are: short ones, or as long as memory allows, whichever cost less."""
@@ -61,6 +62,7 @@ class SegmentEncoder:
 
     def plan_for(self, num_bytes: int | None) -> list[range]:
         """The plan for a size, or for the usual quality."""
+        self._num_bytes = math.inf if num_bytes is None else num_bytes
         return self.plan(USUAL_QUALITY_STEP if num_bytes is None else first_step(num_bytes / len(self.cube.values)))
 
     @property
@@ -95,10 +97,15 @@ class SegmentEncoder:
         for chooser, mode in zip(self._choosers, modes, strict=True):
             chooser.mode = mode
 
-    def leave_out(self, mode: str) -> None:
-        """From now on one of FREE_MODES is not decided on."""
+    @property
+    def had_points(self) -> bool:
+        """Whether scatterers were decided on at any step."""
+        return any(chooser.had_points for chooser in self._choosers)
+
+    def start_again(self, *left_out: str) -> None:
+        """Forgets what was decided; from now on some more of FREE_MODES are left out."""
         for chooser in self._choosers:
-            chooser.without = (*chooser.without, mode)
+            chooser.start_again((*self.without, *left_out))
 
     def encode(
         self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
@@ -150,7 +157,8 @@ class SegmentEncoder:
         ]
 
     def _chooser(self, part: range, without: tuple[str, ...]) -> ModeChooser:
-        return ModeChooser(chunk_encoder(some_frames(self.cube, part), self.scale), without=without)
+        encoder = chunk_encoder(some_frames(self.cube, part), self.scale)
+        return ModeChooser(encoder, without=without, most_bytes=self._num_bytes * len(part) / len(self.cube.values))
 
 
 def chunk_encoder(cube: RadarCube, scale: Scale) -> ChunkEncoder:

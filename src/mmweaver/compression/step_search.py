@@ -40,6 +40,11 @@ class Found:
         """Energy of the error in all cells."""
         return sum(chunk.all_error for chunk in self.coded)
 
+    @property
+    def badness(self) -> float:
+        """Product of the errors in active and in all cells."""
+        return self.active_error * self.all_error
+
     @cached_property
     def samples(self) -> list[CellSample]:
         """Of the chunks."""
@@ -68,7 +73,10 @@ class Plan:
 
     @classmethod
     def of(cls, found: Found, num_bytes: int | float, bounds: Bounds) -> "Plan":
-        """Chunks like these, with so many bytes."""
+        """Chunks like these, with so many bytes; their errors are infinite where they are larger at any step."""
+        if found.num_bytes > num_bytes and found.step >= bounds[1]:
+            return cls(found=found, step=found.step, noise_step=found.noise_step, active_error=math.inf,
+                       all_error=math.inf)  # fmt: skip
         return cls.at(found, found.step_of_size(COUNT_AIM * num_bytes, bounds))
 
     @classmethod
@@ -87,6 +95,10 @@ class Plan:
     def badness(self) -> float:
         """Product of the errors in active and in all cells."""
         return self.active_error * self.all_error
+
+    def is_behind(self, other: "Plan", share: float) -> bool:
+        """Whether `share` of the errors in active cells and of their product with those in all exceed another's."""
+        return self.active_error * share > other.active_error and self.badness * share > other.badness
 
 
 def sum_at(samples: list[CellSample], step: float, coarser: int) -> Estimate:
@@ -114,7 +126,7 @@ def step_of_error(
 
     def room(step: float) -> float:
         found = error_of(sum_at(samples, step, coarser))
-        return -math.log(max(found, LEAST_ERROR) / max(error, LEAST_ERROR))
+        return math.log(max(error, LEAST_ERROR)) - math.log(max(found, LEAST_ERROR))  # an error may be infinite
 
     return _step_where(room, *bounds, _known(samples, coarser))
 

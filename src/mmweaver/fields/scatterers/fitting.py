@@ -26,6 +26,9 @@ from mmweaver.fields.scatterers.refinement import Damping, refined_factors
 Array = np.ndarray
 
 DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
+LEAST_SHARE = (
+    0.05  # power of an antenna's echoes over that of the strongest, and of what was received in phase with them
+)
 CALIBRATED_EVERY = 4  # stages: gains change slowly
 NOISE_CELLS = 10_000  # of which the median tells the power of the noise
 WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
@@ -46,6 +49,7 @@ class FitRecipe:
     with_static: bool = True
     with_calibration: bool = False
     stages: int = 30
+    growth: float = 1.0  # points after a share of the stages are that share of all to this power
     steps_a_stage: int = 1
     last_steps: int = 8
     swaps: int = 0  # rounds in which the weakest points are replaced
@@ -85,7 +89,7 @@ class _Fit:
             if recipe.num_values is not None and stage >= DENSE_SHARE * recipe.stages:
                 self.active_beams = self._worthwhile_beams()
                 self._update_static()
-            self._fill(round(self._most_points() * (stage + 1) / recipe.stages))
+            self._fill(round(self._most_points() * ((stage + 1) / recipe.stages) ** recipe.growth))
             self._refine(recipe.steps_a_stage)
         for _ in range(recipe.swaps):
             self._keep(round(self._most_points() * (1 - recipe.swapped_share)))
@@ -172,12 +176,17 @@ class _Fit:
         return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
 
     def _calibrate(self) -> None:
-        """Least-squares gain of each antenna; the mean gain stays 1."""
+        """Least-squares gain of each antenna; the mean gain stays 1. Antennas without echoes keep theirs."""
         model = self.received - self.residual
         flat, received = (values.reshape(-1, values.shape[-1]) for values in (model, self.received))
-        power = np.square(np.abs(flat)).sum(axis=0)
-        gain = np.einsum("ca,ca->a", flat.conj(), received) / np.maximum(power, 1e-30)
-        gain = (gain / np.maximum(np.abs(gain).mean(), 1e-6)).astype(np.complex64)
+        power = np.einsum("caq,caq->a", *(2 * [flat.view(np.float32).reshape(*flat.shape, 2)]))
+        product = np.einsum("ca,ca->a", flat.conj(), received)
+        has_echo = (power > LEAST_SHARE * power.max()) & (np.abs(product) > LEAST_SHARE * power)
+        if not has_echo.any():
+            return
+        gain = np.ones(len(power), np.complex64)
+        gain[has_echo] = product[has_echo] / power[has_echo]
+        gain[has_echo] /= np.abs(gain[has_echo]).mean()
         self.calibration = self.calibration * gain
         self.static = self.static / gain
         self.received = self.target * (1 / self.calibration)
