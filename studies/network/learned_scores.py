@@ -31,13 +31,14 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence
+from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence, pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import load_network, load_weights, read_card, shipped_weights
+from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation
 from mmweaver.paths.unresolved_clutter import seed_of_room
@@ -92,6 +93,15 @@ class Case:
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
         return self.room.joints_m[self.index], self.room.joint_velocity_mps[self.index]
 
+    @property
+    def motion(self) -> FrameMotion:
+        """Of the person with other skin: the joints that the data set keeps, in long frames those of every segment."""
+        (joints_m, velocity_mps), subject, config = self.joints, OTHER + self.spec.person, self.room.config
+        if len(FrameClock(config).segments) == 1:
+            return FrameMotion(joints_m=joints_m, velocity_mps=velocity_mps, subject=subject)
+        pose = pose_of(self.spec, self.true_scene, config, len(joints_m))
+        return FrameMotion.of(replace(pose, subject=subject), config, len(joints_m))
+
 
 Method = Callable[[Case], RadarCube]
 
@@ -136,9 +146,7 @@ def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, reco
         if recorded:
             empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
         learned_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, background=empty)
-        joints, velocity = case.joints
-        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
-        return learned_room.cube([motion], seed=case.index)
+        return learned_room.cube([case.motion], seed=case.index)
 
     return method
 

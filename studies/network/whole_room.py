@@ -25,7 +25,6 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
@@ -155,9 +154,7 @@ def learned(network: WeaverNetwork, scene_of: Callable[[Case], Scene]) -> Method
 
     def method(case: Case) -> Any:
         room = LearnedRoom(network, scene_of(case), case.room.config, room_seed=1)
-        joints, velocity = case.joints
-        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
-        return room.cube([motion], seed=case.index)
+        return room.cube([case.motion], seed=case.index)
 
     return method
 

@@ -20,7 +20,7 @@ from mmweaver.paths.body_model import body_of
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, Paths
-from mmweaver.paths.random_phases import sample_moving
+from mmweaver.paths.random_phases import sample_moving, sample_moving_segments
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import FIRST_ORDER
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -92,6 +92,24 @@ def test_a_gliding_body_turns_the_phase_as_its_doppler_says(room: LearnedRoom):
     turned = np.angle((signal[1:] / signal[:-1]).numpy())
     wanted = np.angle(np.exp(4j * np.pi * velocity * step_s / AWR1843.wavelength_m))
     assert np.allclose(np.exp(1j * turned), np.exp(1j * wanted), atol=0.02)
+
+
+def test_spots_of_long_frames_add_up_to_those_of_short_ones():
+    """At the middle of a segment: the same sum of phases, at the same range."""
+    count = 3
+    echoes = MeanEchoes(
+        range_m=2.0 + 0.1 * torch.arange(4 * count).view(4, count), velocity_mps=torch.full((4, count), 0.7),
+        direction=torch.zeros(4, count, 2), cross_section_m2=torch.full((4, count), 0.1),
+    )  # fmt: skip
+    turning_rad = torch.linspace(0, 0.3, 4)
+    aspect = 2 * torch.stack([turning_rad.cos(), turning_rad.sin(), torch.zeros(4)], dim=-1)
+    one = sample_moving(echoes, aspect, HUPR, 0)
+    segments = echoes.map(lambda tensor: tensor[None])
+    spots = sample_moving_segments(segments, aspect[None], 0.01 * torch.arange(4), HUPR, 0)
+    assert torch.allclose(spots.amplitude.unflatten(1, (count, -1)).sum(dim=-1), one.amplitude, rtol=1e-4)
+    assert torch.allclose(spots.length_m.unflatten(1, (count, -1)), one.length_m[..., None])
+    turning = (spots.rate_mps - 2 * 0.7).abs()
+    assert 0.05 < float(turning.mean()) < 10  # 10 rad/s
 
 
 def test_an_empty_floor_has_no_more_than_its_own_echoes():

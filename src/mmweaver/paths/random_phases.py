@@ -61,16 +61,16 @@ def sample_moving_segments(
     """The same of frames with long chirps: echoes (frame, segment, echo), a path for each spot of skin.
 
     `aspect` (frame, segment, 3), `time_s` (segment,) the middles of the segments. Spots are paths of their own, whose
-    lengths follow the turning body: a sum of them, constant within a segment, would jump from one to the next. Returns
-    paths (frame * segment, echo * spot).
+    phases follow the turning body: a sum of them, constant within a segment, would jump from one to the next. All are
+    at their echo's range, as above. Returns paths (frame * segment, echo * spot).
     """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("gtc,esc->gtes", aspect, offset_m)
-    range_m = moving.range_m[..., None] + along_m
     turning_mps = torch.gradient(along_m, spacing=(time_s.float(),), dim=1)[0]
     velocity_mps = moving.velocity_mps[..., None] + turning_mps
     acceleration = torch.gradient(velocity_mps, spacing=(time_s.float(),), dim=1)[0]
-    amplitude = points_of(moving, _response(config)).amplitude[..., None] * level
+    range_m = moving.range_m[..., None].expand_as(along_m)
+    amplitude = points_of(moving, _response(config)).amplitude[..., None] * level * carrier(along_m, config)
     spots = moving.map(lambda tensor: tensor[:, :, :, None].expand(-1, -1, -1, SPOTS, *tensor.shape[3:]))
     return Paths.direct(amplitude, _scatterers(spots, range_m, velocity_mps, acceleration)).map(
         lambda tensor: tensor.flatten(0, 1).flatten(1, 2)
