@@ -5,8 +5,9 @@
 Of every activity 0, 1, 5 and 20 recordings train, sampled anew for each seed, as `mmweaver recognise train --labelled`
 does it. Those of `TRAINING` may train where the data set tells people or takes apart, and all others are the test set;
 else whichever does not train is tested. MARS has one take of an exercise to train on and one to test, so there a
-recording is a stretch of one window. The baselines are trees on the same recordings alone, and chance. A data set with
-too few recordings has fewer rows.
+recording is a stretch of one window. The baselines are trees on the same recordings alone, and chance. The difference
+of both is a mean over the same samples, with Student's interval over samples. A data set with too few recordings has
+fewer rows.
 """
 
 import argparse
@@ -16,8 +17,9 @@ from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
+from scipy.stats import t as student
 
-from mmweaver.recognition.labelled_training import labelled_alone, own_trees
+from mmweaver.recognition.labelled_training import OWN_LEAF, labelled_alone, own_trees
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.task_recordings import windows_of
@@ -28,7 +30,7 @@ from studies.recognition.blind_recognition import add_task_options, task_data
 from studies.recognition.zero_shot_curve import chosen_recordings
 from studies.schema import metric
 
-EACH, SEEDS = (0, 1, 5, 20), (0, 1, 2)
+EACH, SEEDS = (0, 1, 5, 20), tuple(range(10))
 TREES = 150
 TRAINING = {"mhomeges": "80[0-5]_", "mars_exercises": ".* validate"}  # how names of recordings that may train begin
 
@@ -43,7 +45,7 @@ def accuracy(
         own, options = own_trees(made, features[trains], labels[trains], each, options)
         training = with_recorded(made, features[trains], labels[trains], options.labelled_weight)
     elif trains.any():
-        training = labelled_alone(made, features[trains], labels[trains])
+        training, options = labelled_alone(made, features[trains], labels[trains]), replace(options, leaf_size=OWN_LEAF)
     trees = joined_trees(trees_of(training, options), own)
     guess = trees.probabilities(features[tested]).argmax(axis=1)
     return balanced_accuracy(labels[tested], guess)
@@ -61,7 +63,8 @@ def curve(
     most = int(np.bincount(kinds[allowed]).min()) - (1 if may_train is None else 0)
     rows = []
     for each in (number for number in EACH if number <= most):
-        for generated in (True, False) if each else (True,):
+        alone: list[float] = []
+        for generated in (False, True) if each else (True,):
             began = time.process_time()
             scores = []
             for seed in SEEDS if each else SEEDS[:1]:
@@ -72,8 +75,10 @@ def curve(
                 "real_recordings_each": each, "generated": generated, "seeds": list(SEEDS[: len(scores)]),
                 "n": len(scores),
                 "seconds": {"all": round(time.process_time() - began, 1)}, "scores": scores,
+                "alone": alone if generated else [],
             })  # fmt: skip
-            print(each, generated, scores)
+            alone = scores
+            print(each, generated, np.round(scores, 3), flush=True)
     return rows
 
 
@@ -104,10 +109,23 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
 
 def row_of(row: dict[str, Any], data: dict[str, Any], classes: int) -> dict[str, Any]:
     """A row of the schema of results."""
-    scores = row.pop("scores")
+    scores, alone = row.pop("scores"), row.pop("alone")
     found = metric(
         float(np.mean(scores)), "share", "balanced accuracy of windows, mean over samples of the recordings that train",
         baseline={"chance": 1 / classes},
     )  # fmt: skip
     spread = {"lowest": round(min(scores), 4), "highest": round(max(scores), 4)}
-    return {"dataset": data, **row, "metrics": {"window": found | spread}}
+    metrics = {"window": found | spread | {"samples": [round(score, 4) for score in scores]}}
+    if alone:
+        metrics["gain"] = gain(np.subtract(scores, alone))
+    return {"dataset": data, **row, "metrics": metrics}
+
+
+def gain(differences: np.ndarray) -> dict[str, Any]:
+    """Mean difference with its interval over the samples (sample,)."""
+    mean, error = float(differences.mean()), float(differences.std(ddof=1)) / len(differences) ** 0.5
+    half = float(student.ppf(0.975, len(differences) - 1)) * error
+    return metric(
+        round(mean, 4), "share", "balanced accuracy with generated windows less that without, same samples",
+        baseline={"none": 0.0}, interval_95=(round(mean - half, 4), round(mean + half, 4)),
+    )  # fmt: skip

@@ -334,7 +334,9 @@ ELSEWHERE = RowTable(sources=("recognised_elsewhere/*",), columns=BLIND.columns)
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
-    cells=CURVE.cells, missing="",
+    cells={"False": CURVE.cells["False"],
+           "True": (*CURVE.cells["True"], ("difference", "{metrics.gain:signed_interval.3}"))},
+    missing="",
 )  # fmt: skip
 
 ZERO_SHOT_POSE = RowTable(

@@ -21,9 +21,21 @@ def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Trained for two steps on drawn sequences."""
     monkeypatch.setattr(train_pose, "generate_sequences", lambda _, each, *__: [moving_arm(k) for k in range(each)])
     (tmp_path / "task.toml").write_text(TASK)
-    words = ["train", "pose", str(tmp_path / "task.toml"), "--out", str(tmp_path / "model"), "--sequences", "3"]
-    assert main([*words, "--steps", "2", "--batch", "2", "--quiet"]) == 0
+    assert main([*training_words(tmp_path), "--quiet"]) == 0
     return tmp_path / "model"
+
+
+def training_words(place: Path) -> list[str]:
+    words = ["train", "pose", str(place / "task.toml"), "--out", str(place / "model"), "--sequences", "3"]
+    return [*words, "--steps", "2", "--batch", "2"]
+
+
+def test_a_training_names_every_file_of_weights(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    files = [str(model / name) for name in ("weights.safetensors", "weights_2.safetensors")]
+    assert main([*training_words(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["weights"] == files
+    assert main(training_words(tmp_path)) == 0
+    assert capsys.readouterr().out.startswith(", ".join(files) + ": 2 steps")
 
 
 def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

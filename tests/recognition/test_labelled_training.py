@@ -49,6 +49,21 @@ def test_generated_people_are_worth_what_they_recognise():
     assert generated_worth(np.eye(2)[labels], labels) == pytest.approx(3.0)
 
 
+def test_with_five_recordings_half_of_their_trees_look_at_what_tells_generated_people_apart():
+    """Two features tell the labelled windows apart, of which one is noise for generated people."""
+    rng, label = np.random.default_rng(0), np.tile([0, 1], 50)
+    made = TrainingWindows(
+        features=np.stack([rng.normal(0, 1, 100), label + rng.normal(0, 0.1, 100)], axis=1), label=label,
+        person=np.arange(100), is_copy=np.zeros(100, bool), names=("noise", "known"),
+    )  # fmt: skip
+    own, _ = own_trees(made, np.array([[0.0, 0.0], [1.0, 1.0]] * 4), np.tile([0, 1], 4), 5, OPTIONS)
+    assert own is not None
+    first = own.feature[own.root]
+    assert len(first) == 19
+    assert (first[:10] == 1).mean() > 0.8
+    assert 0 < (first[10:] == 1).mean() < 1
+
+
 def test_joined_trees_vote_as_both_do_and_are_read_back(made: TrainingWindows, tmp_path):
     features, labels = np.tile([[0.0], [1.0]], (10, 1)), np.tile([0, 1], 10)
     own, others = own_trees(made, features, labels, 3, OPTIONS)

@@ -19,7 +19,7 @@ HOW = {"leaf_size": 2, "feature_share": 0.5, "seed": 3}
 
 
 def ensemble() -> TreeEnsemble:
-    return grow_trees(FEATURES, LABELS, np.ones(200), 5, trees=7, **HOW)
+    return grow_trees(FEATURES, LABELS, np.ones(200), 5, trees=7, **HOW)[0]
 
 
 def test_votes_are_those_of_scikit_learn():

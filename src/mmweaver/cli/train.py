@@ -124,7 +124,9 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(summary))
     elif not is_quiet:
         where = summary.get("evaluated_on", "unseen rooms")
-        print(f"{summary['weights']}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
+        weights = summary["weights"]
+        files = weights if isinstance(weights, str) else ", ".join(weights)
+        print(f"{files}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
         for who, of_data in summary.get("scores", {}).items():
             print(f"{who}: " + ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in of_data.items()))
     return 0

@@ -46,7 +46,7 @@ def train_on_task(
         arguments.task, arguments.out, training, listener=listener, compute=place, **options
     )
     return {
-        "weights": ", ".join(map(str, files)), "steps": trainers[0].step,
+        "weights": [str(file) for file in files], "steps": trainers[0].step,
         "validation_loss": sum(one.best.value for one in trainers) / len(trainers),
         "evaluated_on": "generated people held out",
     }  # fmt: skip

@@ -1,6 +1,6 @@
 """Labelled recordings train along: they join what was generated, and grow a share of the trees by themselves.
 
-Decisions 270 and 281.
+Decisions 270, 281 and 283.
 """
 
 from collections import Counter
@@ -10,14 +10,18 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Int
 
+from mmweaver.core.seeding import stream
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of
-from mmweaver.recognition.tree_ensemble import TreeEnsemble
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, weighed_trees_of
+from mmweaver.recognition.tree_ensemble import TreeEnsemble, joined_trees
 
 MOST_WORTH = 3.0  # recordings of every activity that generated people are worth, where they recognise all of these
 LEAST_KNOWN = 0.1  # of the way from chance to all
 ASKED_TREES = 100
+OWN_LEAF = 1  # windows; labelled ones are few, and none is wrong
+GUIDED = 5.0  # recordings with which half of the trees on labelled windows look at drawn features
+TREES_A_DRAW = 5
 
 
 def fewest_recordings(windows: Sequence[PointRecording], labels: Sequence[str]) -> int:
@@ -33,15 +37,32 @@ def own_trees(
     """Trees on labelled windows alone, None where an activity has none, and the options of all other trees.
 
     Their share is fewest / (fewest + worth), `fewest` being the recordings of the activity that has fewest, and `worth`
-    how many recordings what was generated is worth.
+    how many recordings what was generated is worth. The fewer, the more of them look at the features that tell
+    generated people's activities apart.
     """
     if fewest == 0:
         return None, options
-    votes = trees_of(made, options, num_trees=min(ASKED_TREES, options.trees)).probabilities(features)
-    share = fewest / (fewest + generated_worth(votes, labels))
-    count = min(max(round(options.trees * share), 1), options.trees - 1)
-    own = trees_of(labelled_alone(made, features, labels), replace(options, trees=count))
-    return own, replace(options, trees=options.trees - count)
+    asked, importance = weighed_trees_of(made, replace(options, trees=min(ASKED_TREES, options.trees)))
+    worth = generated_worth(asked.probabilities(features), labels)
+    count = min(max(round(options.trees * fewest / (fewest + worth)), 1), options.trees - 1)
+    alone = labelled_alone(made, features, labels)
+    own = replace(options, leaf_size=OWN_LEAF)
+    guided = round(count * GUIDED / (fewest + GUIDED))
+    trees = trees_of(alone, replace(own, trees=count - guided)) if guided < count else None
+    for first in range(0, guided, TREES_A_DRAW):
+        share = replace(own, trees=min(TREES_A_DRAW, guided - first), seed=options.seed + first + 1)
+        trees = joined_trees(_on_drawn(alone, importance, share), trees)
+    return trees, replace(options, trees=options.trees - count)
+
+
+def _on_drawn(
+    alone: TrainingWindows, importance: Float[np.ndarray, " feature"], options: TrainingOptions
+) -> TreeEnsemble:
+    """Trees on as many features as there are, drawn by importance, with replacement."""
+    count = len(importance)
+    drawn = stream(options.seed, "features drawn").choice(count, size=count, p=importance / importance.sum())
+    trees = trees_of(replace(alone, features=alone.features[:, drawn]), options)
+    return replace(trees, feature=drawn[trees.feature].astype(trees.feature.dtype))
 
 
 def generated_worth(votes: Float[np.ndarray, "other label"], labels: Int[np.ndarray, " other"]) -> float:

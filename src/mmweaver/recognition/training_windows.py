@@ -75,9 +75,16 @@ def trees_of(
     made: TrainingWindows, options: TrainingOptions, *, which: np.ndarray | None = None, num_trees: int | None = None
 ) -> TreeEnsemble:
     """Trees on all windows, or on those of a mask (window,)."""
+    chosen = options if num_trees is None else replace(options, trees=num_trees)
+    return weighed_trees_of(made, chosen, which=which)[0]
+
+
+def weighed_trees_of(
+    made: TrainingWindows, options: TrainingOptions, *, which: np.ndarray | None = None
+) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
+    """Trees, and the importance of each feature to them."""
     which = np.ones(len(made.label), bool) if which is None else which
     return grow_trees(
         made.features[which], made.label[which], made.weights[which], int(made.label.max()) + 1,
-        trees=num_trees or options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share,
-        seed=options.seed,
+        trees=options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share, seed=options.seed,
     )  # fmt: skip

@@ -47,8 +47,11 @@ class TreeEnsemble:
 def grow_trees(
     features: Features, labels: Int[np.ndarray, " window"], weights: Float[np.ndarray, " window"], classes: int, *,
     trees: int, leaf_size: int, feature_share: float, seed: int,
-) -> TreeEnsemble:  # fmt: skip
-    """Trains on features (window, feature), nan = unknown. Raises InputError where scikit-learn is missing."""
+) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:  # fmt: skip
+    """Trains on features (window, feature), nan = unknown; with the importance of each: impurity its splits take away.
+
+    Raises InputError where scikit-learn is missing.
+    """
     try:
         from sklearn.ensemble import ExtraTreesClassifier
     except ImportError:
@@ -73,13 +76,14 @@ def grow_trees(
     whole = np.zeros((len(votes), classes), np.float32)
     whole[:, grown.classes_] = votes / votes.sum(axis=1, keepdims=True)
     is_leaf = joined("children_left") == np.arange(len(votes))
-    return TreeEnsemble(
+    ensemble = TreeEnsemble(
         root=root, left=joined("children_left").astype(np.int32), right=joined("children_right").astype(np.int32),
         feature=np.where(is_leaf, 0, joined("feature")).astype(np.int16),
         threshold=np.where(is_leaf, 0.0, joined("threshold")),
         unknown_left=joined("missing_go_to_left").astype(np.int8),
         votes=np.where(is_leaf[:, None], whole, 0.0).astype(np.float16),
     )  # fmt: skip
+    return ensemble, grown.feature_importances_
 
 
 def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:

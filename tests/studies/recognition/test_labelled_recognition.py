@@ -7,7 +7,7 @@ pytest.importorskip("sklearn")
 
 from mmweaver.recognition.training_windows import TrainingWindows
 from studies.recognition import labelled_recognition
-from studies.recognition.labelled_recognition import curve, row_of
+from studies.recognition.labelled_recognition import curve, gain, row_of
 from studies.schema import _row_violations
 
 
@@ -24,11 +24,11 @@ def test_a_curve_begins_with_what_was_generated_alone(monkeypatch: pytest.Monkey
     )  # fmt: skip
     rows = [row_of(row, {"name": "drawn", "sha256": "0"}, 2) for row in curve(made, features, labels, owner, kinds)]
     assert [(row["real_recordings_each"], row["generated"]) for row in rows] == [
-        (0, True), (1, True), (1, False), (5, True), (5, False)
+        (0, True), (1, False), (1, True), (5, False), (5, True)
     ]  # fmt: skip
     values = [row["metrics"]["window"]["value"] for row in rows]
-    assert values[0] < 0.8 < values[3]
-    assert values[4] > 0.9
+    assert values[0] < 0.8 < values[4]
+    assert values[3] > 0.9
     assert not [line for row in rows for line in _row_violations(row)]
 
 
@@ -44,6 +44,21 @@ def test_only_what_may_train_does_and_the_others_are_tested(monkeypatch: pytest.
         is_copy=np.zeros(18, bool), names=("one",),
     )  # fmt: skip
     rows = curve(made, features, labels, owner, kinds, may_train)
-    assert [(row["real_recordings_each"], row["generated"]) for row in rows][-2:] == [(5, True), (5, False)]
+    assert [(row["real_recordings_each"], row["generated"]) for row in rows][-2:] == [(5, False), (5, True)]
     assert np.mean(rows[0]["scores"]) == 1.0
     assert [np.mean(row["scores"]) for row in rows if not row["generated"]] == [0.0, 0.0]
+
+
+def test_a_difference_is_paired_by_samples():
+    """The spread of the samples is not that of the difference."""
+    found = gain(np.array([0.01, 0.02, 0.03]))
+    assert found["value"] == 0.02
+    assert found["interval_95"] == pytest.approx([0.02 - 0.0248, 0.02 + 0.0248], abs=1e-4)
+    rows = [
+        {"real_recordings_each": 1, "generated": generated, "seeds": [0, 1], "n": 2, "seconds": {"all": 0.0},
+         "scores": scores, "alone": alone}
+        for generated, scores, alone in ((False, [0.5, 0.9], []), (True, [0.6, 0.9], [0.5, 0.9]))
+    ]  # fmt: skip
+    alone, both = (row_of(row, {"name": "drawn", "sha256": "0"}, 2)["metrics"] for row in rows)
+    assert "gain" not in alone
+    assert both["gain"]["value"] == pytest.approx(0.05)
