@@ -308,11 +308,13 @@ MOTIONGPT = RowTable(
     ),
     footer=(("chance", "8 %", "25 %", ""),),
 )  # fmt: skip
+CURVE_CELLS: dict[str, tuple[tuple[str, str], ...]] = {
+    name: ((head, "{metrics.window:.3f} ({metrics.window.lowest:.3f} to {metrics.window.highest:.3f})"),)
+    for name, head in (("True", "with generated windows"), ("False", "without"))
+}
 CURVE = PivotTable(
     sources=("zero_shot/curve",), rows=(("real recordings of each", "{real_recordings_each}"),), across="{generated}",
-    cells={name: ((head, "{metrics.window:.3f} ({metrics.window.lowest:.3f} to {metrics.window.highest:.3f})"),)
-           for name, head in (("True", "with generated windows"), ("False", "without"))},
-    missing="0.200 (chance)",
+    cells=CURVE_CELLS, missing="0.200 (chance)",
 )  # fmt: skip
 LIMBS = PivotTable(
     sources=("zero_shot/limbs",), rows=(("", "{limb:limb}"),), across="{dataset.name:last_words}",
@@ -334,8 +336,8 @@ ELSEWHERE = RowTable(sources=("recognised_elsewhere/*",), columns=BLIND.columns)
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
-    cells={"False": CURVE.cells["False"],
-           "True": (*CURVE.cells["True"], ("difference", "{metrics.gain:signed_interval.3}"))},
+    cells={"False": CURVE_CELLS["False"],
+           "True": (*CURVE_CELLS["True"], ("difference", "{metrics.gain:signed_interval.3}"))},
     missing="",
 )  # fmt: skip
 
