@@ -25,3 +25,15 @@ def test_exit_status_and_words(tmp_path: Path, capsys: pytest.CaptureFixture[str
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.count("\n") == 1
+
+
+def test_a_stream_that_was_killed_is_not_taken_for_an_old_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """As after a kill: whole parts and their list, no checksums next to them."""
+    part = tmp_path / "live" / "parts" / "00000000"
+    with staged_folder(part) as stage:
+        (stage / "radar.npz").write_text("cube")
+    (tmp_path / "live" / "parts.jsonl").write_text('{"first_frame": 0, "frames": 1}\n')
+    assert main(["verify", str(tmp_path / "live")]) == 0
+    said = capsys.readouterr().out
+    assert "the stream goes on or was killed" in said
+    assert "earlier version" not in said

@@ -44,10 +44,16 @@ def run(arguments: argparse.Namespace) -> int:
         for command in found.commands:
             print(f"make it anew with: {command}")
         for name in found.unchecked[:MOST_SHOWN]:
-            print(f"{name} has no checksums: an earlier version of mmweaver wrote it")
+            print(f"{name} has no checksums: {_why_unchecked(found.kind, Path(name) == arguments.path)}")
         count = f"{found.checked} file{'' if found.checked == 1 else 's'}"
         if found.is_sound:
             print(f"{arguments.path} ({found.kind}): {count} checked, all as written")
         else:
             print(f"{arguments.path} ({found.kind}): {len(found.damaged)} of {count} damaged or missing")
     return 0 if found.is_sound else DAMAGED
+
+
+def _why_unchecked(kind: str, is_whole: bool) -> str:
+    if kind == "stream" and is_whole:
+        return "the stream goes on or was killed; only its parts have some"
+    return "an earlier version of mmweaver wrote it"

@@ -80,3 +80,8 @@ def test_what_no_step_shows_is_said_of_its_clause():
     records = parse("a person walks to the door, then dances to the left").clauses
     assert [record.how for record in records] == ["", "is shown as dancing; the side is not shown"]
     assert not parse("a person walks to the left with the right hand raised").clauses[0].how
+
+
+def test_poses_that_are_said_stand_for_yoga():
+    steps = parse("she does yoga, first the tree pose and then the warrior pose").steps
+    assert [step.lower for step in steps] == ["stand", "tree_pose", "warrior_pose"]
