@@ -109,6 +109,7 @@ def test_a_chair_is_pulled_back_from_what_is_ahead_of_it_where_there_is_floor_be
     np.testing.assert_allclose(pulled.feet_m - pulled.seat_m, sitting.feet_m - sitting.seat_m, atol=1e-9)
     assert pulled.cost > sitting.cost
     assert pulled.chair.covers(sitting.seat_m)
+    assert replace(pulled.chair, by_m=0.5) == pulled.chair  # what is there without it is kept once
     assert not pulled.chair.covers(pulled.seat_m + np.array([0.0, 0.3]))
     against_a_wall = FloorMap(room(seats=(seat(),), boxes=((-2.0, 2.0, 2.3, 5.0),)), WINDOW_M, 1.75)
     assert pulled_out(sitting, against_a_wall, 0.3) is None

@@ -1,7 +1,7 @@
 """Collision test of a moving body with the photographed room: its limbs against measured points and walls."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -50,7 +50,7 @@ class PulledChair:
 
     place_m: Place
     facing_rad: float
-    by_m: float
+    by_m: float = field(compare=False)  # what is there without it is the same, however far it is pulled
 
     def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
         """Which points belong to it where it stands in the photo."""
