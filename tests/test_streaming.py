@@ -112,3 +112,12 @@ def test_what_cannot_be_streamed_is_refused(weaver: Weaver, room: Room):
     with pytest.raises(InputError, match="first_frame"):
         Weaver(old_method).stream(room, [])  # type: ignore[arg-type]
     assert list(weaver.stream(room, [])) == []
+
+
+def test_the_first_frames_of_a_chunk_are_a_chunk(chunks: list[StreamChunk]):
+    whole = chunks[0]
+    some = whole.first(4)
+    assert some.num_frames == len(some.pose.joints_m) == len(some.cube.grid.frame_time_s) == 4
+    np.testing.assert_array_equal(some.cube.values, whole.cube.values[:4])
+    assert some.points.frame.max(initial=0) < 4
+    assert some.first_frame == whole.first_frame

@@ -63,6 +63,17 @@ class StreamChunk(ShownByFacts):
         """The person's joints densely in time."""
         return self.motions[0]
 
+    def first(self, count: int) -> "StreamChunk":
+        """Its first frames; the dense motions stay whole."""
+        some = slice(0, count)
+        grid = replace(self.cube.grid, frame_time_s=self.cube.grid.frame_time_s[some])
+        return replace(
+            self, cube=replace(self.cube, values=self.cube.values[some], grid=grid),
+            points=self.points.select(self.points.frame < count),
+            adc=None if self.adc is None else replace(self.adc, samples=self.adc.samples[some]),
+            poses=tuple(replace(pose, time_s=pose.time_s[some], joints_m=pose.joints_m[some]) for pose in self.poses),
+        )  # fmt: skip
+
     def facts(self) -> dict[str, str]:
         """Which frames, and what happens in them."""
         return {

@@ -73,6 +73,8 @@ def run_stream(
                 folder = StreamFolder(out, meta, iq_order=arguments.iq_order)
             if chunk.refused:
                 print(f"skipped: {chunk.refused}", file=sys.stderr)
+            left = chunk.num_frames if most is None else min(most - folder.frames, chunk.num_frames)
+            chunk = chunk if left == chunk.num_frames else chunk.first(left)
             said = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}
             folder.add(chunk.cube, chunk.points, chunk.poses, chunk.adc, said)
             if most is not None and folder.frames >= most:
