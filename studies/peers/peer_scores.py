@@ -28,16 +28,14 @@ import numpy as np
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.datasets.room_generation import generate_sequence, pose_of
+from mmweaver.datasets.room_generation import pose_of
 from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
 from studies.network.clutter import CLUTTER, clutter_of, third_of
-from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned
+from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
 from studies.peers.rf_genesis import RfGenesis, Triangles
 from studies.result_rows import complete_rows, dataset_of
@@ -53,16 +51,6 @@ CLUTTER_ROWS = (
     "realization",
 )  # fmt: skip
 Scores = dict[str, dict[str, float]]
-
-
-def simulated(scene: Scene, case: Case, micro_seed: int) -> RadarCube:
-    """Our simulator in a scene, with other skin and noise than the ground truth and the same kinds of paths."""
-    simulator = Simulator(scene, case.room.config, micro_seed=micro_seed, propagation=ALL_PATHS)
-    spec = case.spec
-    made = generate_sequence(
-        spec, case.true_scene, simulator, len(case.joints[0]), subject=spec.person + OTHER, noise_seed=spec.seed + OTHER
-    )
-    return made.cube
 
 
 def with_best_gain(cube: RadarCube, truth: RadarCube) -> RadarCube:
@@ -91,9 +79,9 @@ def methods_of(network: Any, generic: Scene) -> dict[str, Method]:
     return {
         "zeros": all_zeros,
         "weaver": learned(network, lambda case: case.room),
-        "physics_in_photographed_room": lambda case: simulated(reconstruct(case.room.photo), case, 1),
-        "generic_room_physics": lambda case: simulated(generic, case, 1),
-        "realization": lambda case: simulated(case.true_scene, case, 1),
+        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
+        "generic_room_physics": simulated(lambda case: generic, skin=OTHER, micro_seed=1),
+        "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
         "rf_genesis_as_released": lambda case: peer(RfGenesis(), case),
         "rf_genesis_repaired_body": lambda case: peer(repaired, case),
         "rf_genesis_repaired_generic_room": lambda case: peer(repaired, case, generic),
