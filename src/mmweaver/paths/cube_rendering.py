@@ -50,9 +50,11 @@ class StaticResponse(TensorRecord):
         """The sums of the chosen paths (frame, path), complex (frame, range, antenna)."""
         in_range = torch.cat([self.at_range, self.range_slope])
         antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
-        rows = (torch.nonzero(one.repeat(2))[:, 0] for one in chosen)  # with their slopes
-        each = torch.stack([in_range[row].T @ antennas[row] for row in rows])
-        return torch.view_as_complex(each.unflatten(2, (-1, 2)))
+        share = chosen.float().repeat(1, 2)  # with their slopes
+        changes = torch.cat([share[:1], share.diff(dim=0)])  # few are hidden anew from frame to frame
+        rows = [one.nonzero()[:, 0] for one in changes]
+        each = [in_range[row].T @ (antennas[row] * one[row, None]) for row, one in zip(rows, changes, strict=True)]
+        return torch.view_as_complex(torch.stack(each).cumsum(dim=0).unflatten(2, (-1, 2)))
 
     def each(self) -> Tensor:
         """Every path's own, complex (range * antenna, path)."""

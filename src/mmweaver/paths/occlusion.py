@@ -25,9 +25,10 @@ def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
     starts, axes, rotations = (torch.from_numpy(part).float() for part in (posed.start_m, posed.axis_m, posed.rotation))
     radius = CORNERS * torch.from_numpy(body.radii_m).float()
     width = torch.from_numpy(body.widths).float()
-    ends = ends_m.cpu().float().expand(len(starts), *ends_m.shape[-2:])
+    ends = ends_m.cpu().float()
     distance = ends.norm(dim=-1)
-    rays = ends / distance.clamp(min=1e-6)[..., None]
+    rays = (ends / distance.clamp(min=1e-6)[..., None]).expand(len(starts), -1, -1)
+    distance = distance.expand(len(starts), -1)
     near = _towards(rays, starts, starts + axes)
     out = torch.zeros_like(near)
     for first in range(0, len(rays), FRAMES_AT_ONCE):
