@@ -31,6 +31,7 @@ _EDGE_M = 0.02  # and to what is ahead: of an edge the last points that are seen
 _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
 _SHIN_M = 0.45  # height of foot and shin of somebody who sits
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
+_ABOUT_SEAT_M = 0.15  # of a place to sit, whose height is measured
 _SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no mattress
 _MOST_POINTS = 34_000
 _LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
@@ -167,6 +168,14 @@ class CollisionMap:
         above = self._low_m[:, 2] - self.scene.floor_z_m
         np.maximum.at(heights, (row[inside], column[inside]), above[inside])
         return heights
+
+    def low_surface_m(self, place_m: Float[Array, "2"]) -> float:
+        """How high above the floor low furniture is about a place (x, y); 0 where most of it is none."""
+        column, row = np.floor((place_m + np.array([_SIDE_M, -_AWAY_M[0]])) / CELL_M).astype(int)
+        reach = int(_ABOUT_SEAT_M / CELL_M)
+        around = self._low_tops_m[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1]
+        heights = around[around > _SHIN_TOP_M]
+        return float(np.median(heights)) if 2 * heights.size > max(around.size, 1) else 0.0
 
     def has_room_for_shins(self, knees_m: Float[Array, "2"], feet_m: Float[Array, "2"], seat_height_m: float) -> bool:
         """Whether what a seat belongs to ends before a sitter's shins, from the knees to the feet, (x, y) in metres.
