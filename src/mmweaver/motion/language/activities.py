@@ -98,7 +98,7 @@ BODY: tuple[Activity, ...] = (
           uses_seat=True),
     _body("sit_up", "sitting up on furniture", "a person lying on the bed sits up", 1.6, 2.2, once=True, posture="seat",
           uses_seat=True),
-    _body("roll_in_bed", "rolling onto a side and back in bed", "a person rolls over in bed", 1.6, 3.4,
+    _body("roll_in_bed", "rolling onto a side and back on furniture", "a person rolls over in bed", 1.6, 3.4,
           counted_s=(1.6, 3.2, 0.1), posture="couch", uses_seat=True),
     _body("fall_off", "falling off a seat", "a person falls off the chair", 1.1, 1.5, once=True, posture="floor",
           uses_seat=True),

@@ -1,5 +1,7 @@
 """Phrases that mean one activity, angle or direction, replaced by one token before words are looked up."""
 
+from mmweaver.motion.language.described_person import BUILDS, PERSON_NOUNS
+
 _OWN = r"(?:his |her |its |their |the |both |own )*"
 _BE = r"(?:is|are|was|were|be|been|being|beeing|gets?|got|getting|has been|having been)"
 _LITTLE = (
@@ -9,6 +11,7 @@ _BODY = r"(?:person|man|woman|human|user|guy|girl|boy|subject|somebody|someone|f
 
 # Replaced in this order, before lexicon.PHRASES: several words that mean one activity become one token.
 ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
+    (rf"\b(?:{BUILDS})(?: and|,)? (?=(?:(?:{BUILDS}|old|young|elderly|tall|short|little) )*(?:{PERSON_NOUNS})\b)", ""),  # `described_person` has it
     (r"\b((?:drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?)(?: [a-z]+){0,4}?)"
      r" (?:while )?standing up\b", r"\1 while standing "),
     (r"\bninety\b", " 90 "), (r"\bforty[- ]five\b", " 45 "), (r"\b(?:one |a )?hundred (?:and )?eighty\b", " 180 "),

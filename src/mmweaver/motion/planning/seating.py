@@ -26,6 +26,7 @@ _BODY_WIDTH_M = 0.4  # what of a seat's width and depth the body itself takes
 _LEFT_OUT = 0.4  # share of the seats that `random_subset` leaves out
 _BACK_M, _DEEP_SEAT_M = 0.05, 0.4  # how far back one can sit, and on which depth of a seat
 _EDGES_RAD, _EDGE_STEP_M, _FARTHEST_EDGE_M = (0.0, np.pi / 2, -np.pi / 2), 0.1, 1.5  # of wide surfaces
+_KNEES_APART_M = 0.14  # from the middle to the outer side of a knee
 _BED_WIDTH_M = 0.7  # what of an edge one sitter has
 _KNEE_M, _ON_SEAT_M = 0.05, 0.12  # from a seat's edge to the middle of the knees, and to the pelvis at least
 PULLED_COST = 0.5  # of a chair that is pulled out first
@@ -53,6 +54,10 @@ class Sitting:
         shift_m = by_m * np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
         edge_m = self.edge_m - by_m
         return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
+
+    def moved(self, by_m: Float[Array, "2"]) -> "Sitting":
+        """The same elsewhere, (x, y)."""
+        return replace(self, feet_m=self.feet_m + by_m, seat_m=self.seat_m + by_m)
 
     def with_clear_knees(self) -> "Sitting":
         """So far ahead that the backs of the knees are past the seat's edge, as people sit on beds and deep couches."""
@@ -141,7 +146,8 @@ def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> l
                 sitting, feet_m=feet_m, facing_rad=facing, height_m=height, seat_m=place, width_m=_BED_WIDTH_M,
                 edge_m=_BODY_WIDTH_M / 2, knees_m=knees_m,
             ).with_clear_knees()  # fmt: skip
-            if _has_room_for_shins(edge, floor.scene):
+            aside = _KNEES_APART_M * np.array([-ahead[1], ahead[0]])
+            if all(_has_room_for_shins(edge.moved(side * aside), floor.scene) for side in (-1.0, 0.0, 1.0)):
                 found += [edge] if bool(floor.sees(edge.seat_m)) else []
                 break
     return found
