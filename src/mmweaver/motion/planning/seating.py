@@ -147,7 +147,9 @@ def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> l
                 edge_m=_BODY_WIDTH_M / 2, knees_m=knees_m,
             ).with_clear_knees()  # fmt: skip
             aside = _KNEES_APART_M * np.array([-ahead[1], ahead[0]])
-            if all(_has_room_for_shins(edge.moved(side * aside), floor.scene) for side in (-1.0, 0.0, 1.0)):
+            ways = [edge.moved(side * aside) for side in (-1.0, 0.0, 1.0)]
+            is_floor = floor.is_seen_floor(np.stack([way.feet_m for way in ways])).all()
+            if is_floor and all(_has_room_for_shins(way, floor.scene) for way in ways):
                 found += [edge] if bool(floor.sees(edge.seat_m)) else []
                 break
     return found
