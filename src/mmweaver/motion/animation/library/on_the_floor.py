@@ -93,7 +93,7 @@ def rolled(context: StepContext, controls: Controls) -> Controls:
         is_upper = (foot == RIGHT) == (side == "left") and not on_belly
         shift_foot(controls, foot, 0.0, 0.0, (0.1 if is_upper else 0.02) * h * over)
         controls.arm_rad[:, foot, 0] += 0.9 * over
-        controls.arm_rad[:, foot, 1] -= 0.35 * over
+        controls.arm_rad[:, foot, 1] -= (0.8 if is_upper else 0.35) * over  # the upper arm lies ahead
         controls.arm_rad[:, foot, 3] += 0.7 * over
     if not on_belly:
         controls.knee_up_rad[:] -= 0.5 * np.pi * over
