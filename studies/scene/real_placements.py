@@ -112,7 +112,7 @@ def room_row(folder: Path) -> dict[str, Any]:
                 refused += 1
                 continue
             chair = motion.chair
-            if chair not in trees:
+            if chair is not None and chair not in trees:
                 trees[chair] = KDTree(measured[~chair.holds(measured, scene.floor_z_m)])
             body_m, arms_m = deepest_m(trees[chair], motion.pose, _seat_of(motion))
             clear.append(body_m <= 0)
