@@ -1,4 +1,4 @@
-"""How many prompts of other text-to-motion projects are understood, and how many correctly? Seven draws, read once.
+"""How many sentences of others are understood, and how many correctly? Eight draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -11,12 +11,14 @@ labels in BABEL's form, from characters 40,000 and 800,000).
 FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 1,400,000); those from 150,000, 250,000,
 400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. `captions_third`: 210 further ones (from 90,000,
 320,000 and 1,470,000), after those from 900,000, 980,000, 1,050,000, 1,100,000, 1,250,000 and 1,330,000 had been read
-to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. Each prompt
+to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. `strangers`:
+the 150 sentences of studies/motion/sentences/strangers_second.txt, written for a radar by a language model that had not
+seen the grammar: short ones, everyday ones and hard ones. Each prompt
 counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79 and 5af3c0b before the last two); what was understood was evaluated by hand, once,
-as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named by the
-prompts' sha256.
+3755052 before the next two, abf0c79, 5af3c0b and eb79a6a before the last three); what was understood was evaluated by
+hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named
+by the prompts' sha256.
 """
 
 import argparse
@@ -37,6 +39,7 @@ from studies.study import Reads
 DRAWS = {  # -> ending of the names of their files
     "first": "", "second": "_second", "captions": "_captions", "third": "_third",
     "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
+    "strangers": "_strangers",
 }  # fmt: skip
 
 

@@ -101,7 +101,8 @@ def room_row(folder: Path) -> dict[str, Any]:
     scene = reconstruct(photo, assumptions=assumptions)
     marks = json.loads(MARKS.read_text(encoding="utf-8"))[folder.name][FLOOR_MARKS]
     error_m, num_marks = floor_error_m(scene, photo, marks)
-    tree = KDTree(measured_m(scene, photo))
+    measured = measured_m(scene, photo)
+    trees = {None: KDTree(measured)}  # and without each chair that is taken as pulled out
     clear, arms_clear, refused = [], [], 0
     for text in SENTENCES[folder.name]:
         for seed in SEEDS:
@@ -110,7 +111,10 @@ def room_row(folder: Path) -> dict[str, Any]:
             except InputError:
                 refused += 1
                 continue
-            body_m, arms_m = deepest_m(tree, motion.pose, _seat_of(motion))
+            chair = motion.chair
+            if chair is not None and chair not in trees:
+                trees[chair] = KDTree(measured[~chair.holds(measured, scene.floor_z_m)])
+            body_m, arms_m = deepest_m(trees[chair], motion.pose, _seat_of(motion))
             clear.append(body_m <= 0)
             arms_clear.append(arms_m <= 0)
     floor_error = {"value": round(error_m, 4), "unit": "m", "version": 1, "of": num_marks,

@@ -105,6 +105,18 @@ def test_mcap(result: StoredResult, result_folder: Path, tmp_path: Path):
     assert max(time for _, _, time in seen) == round(1e9 * result.cube.grid.frame_time_s[-1])
 
 
+def test_a_file_may_be_named_instead_of_a_folder(result_folder: Path, tmp_path: Path):
+    from scipy.io import loadmat
+
+    file = tmp_path / "walk.mat"
+    export_result(result_folder, "mat", file)
+    assert "cube" in loadmat(file)
+    assert [one.name for one in tmp_path.iterdir()] == ["walk.mat"]
+    with pytest.raises(InputError, match="exists"):
+        export_result(result_folder, "mat", file)
+    export_result(result_folder, "mat", file, overwrite=True)
+
+
 @pytest.mark.parametrize("kind", ["mp4", "webm"])
 def test_videos(result_folder: Path, tmp_path: Path, kind: str):
     has("av")

@@ -24,7 +24,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "folder", type=Path, nargs="?", metavar="DIR", help="a result folder, a folder of them, or a labelled set"
     )
     parser.add_argument("--to", metavar="FORMAT", help="the format; --list names them")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files, or one file: walk.mp4")
     parser.add_argument("--overwrite", action="store_true", help="replace files in --out")
     parser.add_argument("--list", action="store_true", help="list the formats")
     parser.add_argument("--json", action="store_true", help="print what was written for machines")

@@ -1,11 +1,13 @@
 """The table of formats, and the one function that writes any of them."""
 
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from mmweaver.core.atomic_files import staged_folder
+from mmweaver.core.atomic_files import atomic_file, staged_folder
 from mmweaver.core.errors import InputError
 from mmweaver.exports.set_results import results_of_set
 from mmweaver.result_folder import radar_folder
@@ -20,6 +22,7 @@ class Format:
     module: str
     function: str
     needs_samples: bool = False
+    ending: str = ""  # of the one file that it writes, where it does
     of_two_radars: str | None = None  # the function that writes two radars of one scene together
 
     def writer(self) -> Callable:
@@ -46,17 +49,17 @@ FORMATS = {
     "drai": Format(what="dynamic range-angle images, 32 x 32", module="tensor_layouts", function="write_drai"),
     "radhar": Format(what="RadHAR's text of points", module="cloud_layouts", function="write_radhar"),
     "mars": Format(what="MARS's tables of points and joints", module="cloud_layouts", function="write_mars"),
-    "mat": Format(what="MATLAB", module="containers", function="write_mat"),
-    "netcdf": Format(what="netCDF 3, for xarray", module="containers", function="write_netcdf"),
+    "mat": Format(what="MATLAB", module="containers", function="write_mat", ending=".mat"),
+    "netcdf": Format(what="netCDF 3, for xarray", module="containers", function="write_netcdf", ending=".nc"),
     "zarr": Format(what="Zarr 3, for xarray", module="containers", function="write_zarr"),
     "ros2": Format(what="ROS 2 bag", module="robotics", function="write_ros2"),
-    "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap"),
-    "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun"),
+    "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap", ending=".mcap"),
+    "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun", ending=".rrd"),
     "results": Format(
         what="a result folder, of each sequence of a set", module="set_results", function="write_results"
     ),
-    "mp4": Format(what="video, H.264", module="videos", function="write_mp4"),
-    "webm": Format(what="video, VP9", module="videos", function="write_webm"),
+    "mp4": Format(what="video, H.264", module="videos", function="write_mp4", ending=".mp4"),
+    "webm": Format(what="video, VP9", module="videos", function="write_webm", ending=".webm"),
 }
 
 
@@ -76,7 +79,18 @@ def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: 
 
 
 def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
-    """Writes a result in another format into the folder `out`, as `export_result` does."""
+    """Writes a result in another format into the folder `out`, as `export_result` does.
+
+    With the ending of a format of one file, as in walk.mp4, `out` is that file.
+    """
+    out, ending = Path(out), FORMATS[kind].ending
+    if ending and out.suffix == ending and not out.is_dir():
+        if out.exists() and not overwrite:
+            raise InputError(f"{out} exists; choose another name, or add --overwrite")
+        with atomic_file(out) as file, TemporaryDirectory() as folder:
+            what = FORMATS[kind].writer()(result, Path(folder))
+            shutil.copyfile(Path(folder) / f"result{ending}", file)
+        return what
     with staged_folder(Path(out), overwrite=overwrite) as stage:
         return FORMATS[kind].writer()(result, stage)
 

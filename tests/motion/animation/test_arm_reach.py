@@ -17,7 +17,8 @@ def upright(n: int, arm: np.ndarray) -> Controls:
         pelvis_m=np.tile([0.0, 0.0, 0.95], (n, 1)), heading_rad=np.zeros(n), pelvis_rad=zeros, spine_rad=zeros,
         head_rad=np.zeros((n, 2)), arm_rad=np.stack([arm, arm], axis=1),
         foot_m=np.tile([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]], (n, 1, 1)), foot_rad=np.zeros((n, 2, 2)),
-        knee_out_rad=np.zeros((n, 2)), knee_up_rad=np.zeros(n), knee_room=np.zeros(n), contact=np.ones((n, 2)),
+        knee_out_rad=np.zeros((n, 2)), knee_up_rad=np.zeros(n), roll_over_rad=np.zeros(n), knee_room=np.zeros(n),
+        contact=np.ones((n, 2)),
     )  # fmt: skip
 
 

@@ -85,3 +85,22 @@ def test_what_no_step_shows_is_said_of_its_clause():
 def test_poses_that_are_said_stand_for_yoga():
     steps = parse("she does yoga, first the tree pose and then the warrior pose").steps
     assert [step.lower for step in steps] == ["stand", "tree_pose", "warrior_pose"]
+
+
+@pytest.mark.parametrize(
+    ("text", "acted", "said"),
+    [
+        ("a person rolls over in bed", ["roll_in_bed"], "onto a side and back again"),
+        ("a person lies on the floor, then rolls over", ["lie", "roll_over"], "onto a side and back again"),
+        ("a person is breathing quietly in a chair", ["sit"], "keeping still"),
+        ("he stretches and walks out of the room", ["stretch", "walk"], "leaves the room is not shown"),
+        ("she tilts her head", ["look_around"], "tilted head"),
+        ("a person walks about, rubbing the hands together", ["walk+clap"], "shown as clapping"),
+        ("yoga for twenty seconds", ["tree_pose", "warrior_pose"], "two of its poses"),
+    ],
+)
+def test_what_is_shown_as_something_alike_is_said(text: str, acted: list[str], said: str):
+    plan = parse(text)
+    does = ["+".join(part for part in (step.lower, step.upper) if part and part != "stand") for step in plan.steps]
+    assert does == acted
+    assert said in " ".join(clause.how for clause in plan.clauses)

@@ -88,3 +88,29 @@ def test_arm_and_leg_of_two_sides_are_no_exercise_of_one():
     assert (step.lower, step.foot, step.upper, step.hand) == ("raise_leg", "right", "raise", "left")
     steps = parse("a person does side lunges to the left and to the right").steps
     assert [step.foot for step in steps] == ["left", "right"]
+
+
+@pytest.mark.parametrize(
+    ("text", "known"),
+    [
+        ("swipe left", ("swipe", "left", "", "", 0)),
+        ("a person swipes the right hand from right to left twice", ("swipe", "left", "right", "", 2)),
+        ("a person swipes down with the left hand", ("swipe", "", "left", "down", 0)),
+        ("a man counts to five on his fingers", ("count_fingers", "", "", "", 5)),
+    ],
+)
+def test_what_hands_say_to_a_device_is_known_with_its_side(text: str, known: tuple[str, str, str, str, int]):
+    plan = parse(text)
+    (step,) = plan.steps
+    assert (step.upper, step.direction, step.hand, step.style, step.count) == known
+    assert [clause.status for clause in plan.clauses] == ["done"]
+
+
+def test_what_is_done_towards_the_radar_faces_it():
+    for text in ("push your hand towards the sensor", "a person throws a ball at the camera"):
+        assert parse(text).steps[0].facing == "towards"
+    assert parse("standing with the back to the sensor").steps[0].facing == "away"
+
+
+def test_one_push_up_is_one():
+    assert [parse(text).steps[0].count for text in ("do a push-up", "does push-ups", "does a sit-up")] == [1, 0, 1]

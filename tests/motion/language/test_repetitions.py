@@ -44,3 +44,10 @@ def test_what_no_step_keeps_is_said(text: str, lost: str):
     (clause,) = parse(text).clauses
     assert clause.status == "approximated"
     assert lost in clause.how
+
+
+def test_sitting_down_and_standing_up_is_counted_as_the_exercise_it_is():
+    assert [step.lower for step in parse("a person does three sit-to-stands").steps] == ["sit_down", "stand_up"] * 3
+    steps = parse("sit to stand, five reps, arms folded across the chest").steps
+    assert len(steps) == 10
+    assert {step.upper for step in steps if step.lower == "stand_up"} == {"cross_arms"}

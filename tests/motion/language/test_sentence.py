@@ -326,3 +326,22 @@ def test_exercises_on_the_belly_are_reached_and_left_on_the_belly():
     assert [step.lower for step in parse("a person waves, then crawls to the left").steps] == [
         "stand", "kneel_down", "crawl",
     ]  # fmt: skip
+
+
+def test_paces_of_a_sideways_walk_are_sideways():
+    steps = parse("a man walks sideways like a crab, four steps to the left, four steps back").steps
+    assert [(step.lower, step.direction, step.count) for step in steps] == [
+        ("sidestep", "left", 4), ("sidestep", "right", 4),
+    ]  # fmt: skip
+
+
+def test_who_carries_a_thing_that_is_put_down_walks_there():
+    carries, puts = parse("a man carries a suitcase and puts it down near the window").steps
+    assert (carries.lower, carries.upper, puts.lower) == ("walk", "carry", "put_down")
+    assert carries.place is not None
+    assert carries.place.landmark == "window"
+
+
+def test_somebody_who_is_spoken_to_does_it():
+    assert parse("shake your head").steps[0].upper == "shake_head"
+    assert parse("raise your left hand").steps[0].hand == "left"

@@ -9,6 +9,7 @@ import pytest
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     Sitting,
@@ -126,3 +127,23 @@ def test_a_chair_at_a_desk_is_pulled_out_rather_than_a_stool_invented():
     assert not any("stool" in note for note in motion.assumptions)
     pelvis = motion.pose.joints_m[np.argmin(motion.pose.joints_m[:, 0, 2]), 0, :2]
     assert np.hypot(*(pelvis - np.array(motion.chair.place_m))) < motion.chair.by_m + 0.1
+
+
+def test_the_edge_of_a_bed_is_sat_on_with_the_feet_on_floor_that_is_seen():
+    """A procedural bedroom whose only seat is found among the pillows, where nobody's shins have room."""
+    bedroom = make_room("bedroom", layout=1, seed=700008)
+    scene = reconstruct(dataclasses.replace(bedroom.photo(next(iter(LIGHTINGS)), noise=True), classes=None))
+    floor = FloorMap.of(scene, (0.70, 3.48), 1.7)
+    (edge,) = usable_seats(floor, SkeletonProportions(1.7))
+    found_m = scene.seats[0].position_m[:2]
+    assert 0.2 < np.hypot(*(edge.seat_m - found_m)) < 1.5
+    assert bool(floor.is_seen_floor(edge.feet_m))
+    assert not bool(floor.is_seen_floor(found_m))
+    motion = compose(plan_motion("a person walks, then sits down"), scene, seed=0, range_window_m=(0.70, 3.48))
+    assert not any("stool" in note for note in motion.assumptions)
+
+
+def test_a_table_ahead_of_a_chair_is_no_part_of_it():
+    chair = PulledChair((0.0, 2.0), -np.pi / 2, 0.3)  # it faces the radar
+    points = np.array([[0.0, 2.2, 0.9], [0.0, 1.8, 0.6], [0.0, 1.8, 0.72], [0.0, 2.0, 0.5], [0.0, 1.5, 0.5]])
+    assert chair.holds(points, 0.0).tolist() == [True, True, False, True, False]  # back, armrest, table, seat, beyond

@@ -1,7 +1,11 @@
 """The count of everyday sentences."""
 
+from pathlib import Path
+
+import pytest
+
 from mmweaver.generate import Weaver
-from studies.motion.strangers import SENTENCES, outcome, result_row
+from studies.motion.strangers import SECOND, SENTENCES, outcome, result_row
 
 
 def test_outcomes_and_shares():
@@ -14,6 +18,7 @@ def test_outcomes_and_shares():
     assert row["reasons"] == {"unknown": 1}
 
 
-def test_there_are_200_different_sentences():
-    texts = SENTENCES.read_text(encoding="utf-8").splitlines()
-    assert len(set(texts)) == len(texts) == 200
+@pytest.mark.parametrize(("path", "count"), [(SENTENCES, 200), (SECOND, 150)])
+def test_all_sentences_differ(path: Path, count: int):
+    texts = path.read_text(encoding="utf-8").splitlines()
+    assert len(set(texts)) == len(texts) == count

@@ -62,6 +62,8 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
     """Joints (n, 22, 3) in metres in the floor frame (z up from the floor)."""
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
     pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
+    if controls.roll_over_rad.any():
+        pelvis_frame = pelvis_frame @ about_z(controls.roll_over_rad)
     ankles = [_ankle(body, controls, side) for side in (LEFT, RIGHT)]
     joints[:, 0] = _pelvis(body, controls, pelvis_frame, ankles)
     for side in (LEFT, RIGHT):

@@ -67,7 +67,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         f"""
         stand_up get_up kneel_up sit_up raise_leg jump leap hop hop_one_leg stairs pick_up stretch jumping_jacks carry
         stand sit march push_ups one_leg knock_elbow draw_circle draw_z reach jacket_off wave {_LIFTED} {_UNDERFOOT}
-        sit_ups arm_circles breathe yawn kick look_around lower_arm
+        sit_ups arm_circles breathe yawn kick look_around lower_arm swipe
         """,
     ),
     (
@@ -75,7 +75,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         f"""
         sit_down lie lie_down kneel kneel_down crouch squat bend bow put_down lower_arm fall fall_off recline
         lie_on_seat lunge stairs pick_up jump leap hop hop_one_leg jumping_jacks raise_leg raise stomp downward_dog
-        push_ups sit_ups sit raise knock_elbow arm_extension stand dance look_around type write {_UNDERFOOT}
+        push_ups sit_ups sit raise knock_elbow arm_extension stand dance look_around type write swipe {_UNDERFOOT}
         """,
     ),
     (
@@ -342,13 +342,14 @@ _ALIKE = tuple(
     words_in(alike)
     for alike in (
         "walk jog sidestep limp stagger march stairs crawl", "jump leap hop hop_one_leg jumping_jacks",
-        "sit sit_down stand_up", "kneel kneel_down kneel_up", "stumble fall fall_off push",
+        "sit sit_down sit_up stand_up", "kneel kneel_down kneel_up", "stumble fall fall_off push",
         "bend bow pick_up lean stretch",
         "lie lie_down lie_on_seat recline get_up fall", "lunge side_lunge", "stand stand_up get_up kneel_up one_leg",
         "raise raise_hold arms_out arm_extension hands_up stretch limb_extension raise_leg knock_elbow pick_up",
         "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",
         "wipe brush_teeth sweep stir", "fall lower_arm", "stretch push_hand", "turn twist", "kick raise_leg",
-        "read text type", "throw punch", "carry walk",
+        "read text type", "throw punch", "throw roll_over roll_in_bed",
+        "turn roll_over roll_in_bed", "carry walk",
     )
 )  # fmt: skip
 

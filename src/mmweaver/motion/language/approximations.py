@@ -94,11 +94,22 @@ def with_approximations(
             if not one.always and is_understood(_part_around(found)):
                 return found[0]
             words = "_".join(re.findall("[a-z]+", found[0]) if _THESE in one.how else ())
-            held.append(f"{_filled(found, one.instead)} {MARK}{words}_{number}")
+            at_once = "while " if _says_what_is_done_meanwhile(found, one.instead) else ""
+            held.append(f"{at_once}{_filled(found, one.instead)} {MARK}{words}_{number}")
             return f" <{len(held) - 1}> "
 
         folded = _pattern(one.pattern).sub(hold, folded)
     return " ".join(_HELD.sub(lambda found: _in_turn(held[int(found[1])], found[2]), folded).split()) if held else text
+
+
+def _says_what_is_done_meanwhile(found: re.Match[str], instead: str) -> bool:
+    """Whether a participle after a comma is replaced by one movement: "walks about, rubbing the hands"."""
+    follows = found.string[: found.start()].rstrip().endswith(",")
+    return (
+        follows
+        and re.match("[a-z]+ing\\b", found[0]) is not None
+        and re.fullmatch(r"[a-z]+s\b[^,]*", instead) is not None
+    )
 
 
 def _in_turn(replacement: str, seconds: str | None) -> str:

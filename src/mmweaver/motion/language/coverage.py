@@ -19,14 +19,15 @@ _WITH_ARMS = words_in(
     """
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
     get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
-    bow stairs side_lunge lunge sit_ups pedal
+    bow stairs side_lunge lunge sit_ups pedal roll_over roll_in_bed
     """
 )
 
 
 # Activities in which one hand or foot is not distinguished from the other.
 _WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms shrug stretch hands_up breathe")
-_TO_A_SIDE = words_in("sidestep side_lunge limb_extension lean arms_out arm_extension")
+_EITHER_WAY = words_in("draw_circle")
+_TO_A_SIDE = words_in("swipe roll_over roll_in_bed sidestep side_lunge limb_extension lean arms_out arm_extension")
 _WITH_ONE_FOOT = words_in(
     """
     limp hop_one_leg one_leg kick stomp raise_leg lunge side_lunge limb_extension kneel_down kneel_up stairs tree_pose
@@ -104,6 +105,8 @@ def goes_aside(step: Step) -> bool:
     sides = {step.direction if directed else "", step.style, step.facing}
     signed = (step.arc_deg and step.style != "either") or (step.turn_deg and step.style != "either")
     placed = step.place is not None or step.target or (step.seat and step.moves)
+    if step.upper in _EITHER_WAY:  # "clockwise" is a way round, and no side
+        return True
     to_a_side = {step.lower, step.upper} & _TO_A_SIDE and step.direction != "forwards"
     return bool(sides & {"left", "right", "side", "seat"} or signed or placed or to_a_side)
 

@@ -7,6 +7,7 @@ _WOMEN = "woman|women|lady|girl|female|mother|mom|grandma|grandmother|granny|wif
 _MEN = "man|men|gentleman|boy|male|guy|father|dad|grandpa|grandfather|husband|son|brother|policeman|fireman|waiter"
 _CHILDREN = "child|kid|boy|girl|toddler|baby|schoolboy|schoolgirl|pupil"
 PEOPLE = frozenset("|".join((_WOMEN, _MEN, _CHILDREN)).split("|"))
+PERSON_NOUNS = "|".join((*PEOPLE, "person", "human", "adult", "user", "somebody", "someone", "teenager"))
 _ANYBODY = (
     r"person|human|adult|user|subject|figure(?![- ](?:of |eight|8))|individual|participant|patient"
     "|resident|tenant|somebody|someone|youth|teenager|nurse"
@@ -20,6 +21,7 @@ _BUILD = {
     **dict.fromkeys(("muscular", "strong", "burly", "corpulent", "broad"), 1),
     **dict.fromkeys(("slim", "thin", "skinny", "slender", "lean", "lanky", "petite"), -1),
 }
+BUILDS = "|".join(_BUILD)
 _ADJECTIVES = "|".join(sorted({*_OLD, *_STATURE, *_BUILD, "young", "very", "rather", "and", "middle-aged"}, key=len))
 _PERSON = re.compile(rf"\b(?P<words>(?:(?:{_ADJECTIVES})[ ,]+)*){_NOUN}\b")
 _PRONOUN = re.compile(r"\b(he|she|his|her|himself|herself)\b")

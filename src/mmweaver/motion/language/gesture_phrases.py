@@ -18,6 +18,7 @@ _LUNGE = r"(?:side|lateral|sideways?)[- ]?lunge"
 # Replaced in this order, before `phrases.ACTIVITY_PHRASES`.
 GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     # Seats, stairs and poses
+    (r"\b(falls?|slips?|slides?|tumbles?|drops?) (slowly|suddenly|gently|quickly) (?=(?:off|from|out of|down)\b)", r" \2 \1 "),
     (r"\b(?:falls?|falling|slips?|slipping|slides?|tumbles?|drops?) (?:down )?(?:off|from|out of|down from)(?: of)? (?:the |a |his |her |their )?"
      r"(chair|stool|sofa|couch|bed|bench|seat|armchair)\b", r" fall_off \1 "),
     (r"\bsteps? up and (?:then )?(?:steps? )?(?:back )?down(?: again)?\b|\bstepping up and down\b|\bstep[- ]ups?\b"
@@ -25,7 +26,8 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*tree[- ]pose\b", " tree_pose "),
     (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*warrior(?:[- ](?:one|two|1|2|i|ii))?[- ](?:pose|position)\b", " warrior_pose "),
     (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*down(?:ward|wards)?(?:[- ]facing)?[- ]dog(?:[- ](?:pose|position))?\b", " downward_dog "),
-    (r"\b(?:holds?|does|doing|holding|in|is in) (?:an? |the )?(?:forearm |high )?plank(?: pose| position)?\b|\bplanks\b|\bplanking\b", " hold_plank "),
+    (r"\b(?:holds?|does|doing|holding|in|is in) (?:an? |the )?(?:forearm |high )?plank(?: pose| position)?\b|\bplanks\b|\bplanking\b"
+     r"|(?:^|(?<=, )|(?<=then )|(?<=and ))plank(?= for\b| *[,.]| *$)", " hold_plank "),
     (r"\b(?:carr(?:y|ies|ying)) (?:an? |the |some |two |his |her )(?:[a-z]+ )?(?:box|boxes|crate|parcel|tray|bag|suitcase|chair|bucket|basket|pile|stack)(?:es|s)?"
      r"(?: of [a-z]+)?\b", " carry a thing "),
     # Exercises
@@ -45,7 +47,8 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) ({_OWN}){_SIDE}arms? (?:up (?:at|to|along)|up from) "
      r"(?:the |his |her |their |its |both )*sides?\b", r" arm_extension \1 \2 arm "),
     (rf"\bwith {_OWN}hands (?:held |raised )?up\b", " while hands_up "),
-    (r"\b(?:push|press)[- ]?ups?\b", " push_up "),
+    (r"\b(?:an?|one) (?:push|press)[- ]?up\b", " 1 push_up "), (r"\b(?:push|press)[- ]?ups?\b", " push_up "),
+    (r"\b(?:an?|one) sit-?up\b", " 1 sit_up_exercise "),
     (r"\b(?:sit-ups?|situps?|sit ups|(?:ab(?:dominal)? )?crunch(?:es)?)\b", " sit_up_exercise "),
     (r"\b(?:shak(?:es|ing)|trembl(?:es|ing)|shiver(?:s|ing)|quiver(?:s|ing)) (?:all over|(?:all over )?(?:with|from|for|in|because of) (?:the |his |her )?"
      r"(?:cold|fear|fright|fever|anger|rage|excitement|exhaustion))\b", " tremble "),
@@ -55,7 +58,7 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?! (?:stroller|carriage|seat|to (?!sleep)|towards?|through|across|away|around|over|forwards?|up|down|into|out|upstairs|downstairs))"
      r"(?: (?:to sleep|back and forth|to and fro|gently|softly|from side to side|(?:in|on) (?:his|her|their|the) (?:arms?|chest|lap))\b)*", " cradle "),
     (r"\bwhile on (?:the |his |her )?phone\b", " while phone "),
-    (r"\bcrawl(s|ing|ed)? (?:on|around on) (?:his |her |the |all )*(?:hands and knees|fours)\b|\bcreeps?\b", " crawls "),
+    (r"\bcrawl(s|ing|ed)? (?:on|around on) (?:his |her |the |all )*(?:hands and knees|fours)\b", " crawls "),
     # Gestures of one arm; the arm may be what acts: "the right arm falls straight down"
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:is lifted|is raised|rises|goes) straight up"
      r"(?:,? (?:and )?stays (?:up|there|above the head))?\b", r" raise_and_hold \1 \2 "),
@@ -90,11 +93,18 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:rais(?:es|ing)|lifts?) {_OWN}{_SIDE}(?:hand|forearm) from {_OWN}elbow"
      r"(?: and (?:(?:lowers|puts) it(?: down)?|(?:back )?down(?: again)?))?\b",
      r" knock_elbow \1 hand "),
+    (r"\b(?:makes?|does|performs?|making|doing) (?:an? )?swip(?:ing|e) (?:gestures?|motions?|movements?)\b", " swipes "),
+    (rf"\bswip(?:es?|ing) (?:{_OWN}{_SIDE}(?:hand|arm|palm|fingers?) )?(?:(?:from )?(?:the )?(?:left|right) to )?(?:to |towards )?(?:the )?"
+     r"(left|right)\b", r" swipes to the \2 with the \1 hand "),
+    *((rf"\bswip(?:es?|ing) (?:{_OWN}{_SIDE}(?:hand|arm|palm|fingers?) )?(?:from (?:the )?(?:bottom|top|below|above) to (?:the )?)?{ends}(?:wards?)?\b",
+       rf" swipe_{way} with the \1 hand ") for way, ends in (("up", "(?:up|top)"), ("down", "(?:down|bottom)"))),
+    (r"\bcount(?:s|ing)? (?:up )?(?:from (?:one|1) )?to (\w+) (?:on|with|using) (?:the |his |her |their )?(?:own )?fingers\b", r" count_fingers \1 times "),
+    (r"\bcount(?:s|ing)? (?:on|with|using) (?:the |his |her |their )?(?:own )?fingers\b", " count_fingers "),
     # Housework and breath
     (r"\b(?:takes?|taking|pulls?|puts?) (?:off )?(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)(?: off)?\b",
      " jacket_off "),
     (r"\b(?:sweep(?:s|ing)?|mop(?:s|ping)?|rak(?:es|ing)) (?:up )?(?:the )?(?:floor|room|kitchen|leaves)\b", " sweeps "),
     (r"\b(?:vacuum(?:s|ing)?|hoover(?:s|ing)?)(?: cleans?)?(?: the)?(?: floor| carpet| room| rug)?\b", " vacuums "),
-    (r"\bbreath(?:es|ing) (?:deeply|heavily|slowly|calmly|in and out)\b|\b(?:takes?|taking|took) (?:a |some )?deep breaths?\b|\bbreath(?:es|ing)\b",
+    (r"\bbreath(?:e?s|ing) (?:deeply|heavily|slowly|calmly|in and out)\b|\b(?:takes?|taking|took) (?:a |some )?deep breaths?\b|\bbreath(?:es|ing)\b",
      " breathe_deeply "),
 )  # fmt: skip

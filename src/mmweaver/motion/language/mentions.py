@@ -72,8 +72,8 @@ _PARTS = (
         ),
     ),
 )
-_TO_AND_FRO = words_in("lean twist shake_head look_around hips dance wave wipe sweep vacuum stumble stagger")
-_BOTH_SIDES = words_in("stumble stagger twist shake_head look_around hips dance wave")
+_TO_AND_FRO = words_in("swipe lean twist shake_head look_around hips dance wave wipe sweep vacuum stumble stagger")
+_BOTH_SIDES = words_in("swipe stumble stagger twist shake_head look_around hips dance wave")
 _ABOVE = words_in("raise raise_hold arm_extension hands_up stretch jumping_jacks arm_circles draw_circle draw_z")
 
 

@@ -55,7 +55,7 @@ def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> 
     if about.direction == "circle":
         around_deg = max(abs(about.arc_deg), 360.0)
         return replace(about, arc_deg=around_deg if text == "left" else -around_deg, style="")
-    bends = ("turn", "rotate", "pivot", "spin")
+    bends = ("turn", "rotate", "pivot", "spin", "roll_over", "swipe")
     if before in OWN and not any(
         word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
     ):
@@ -155,7 +155,13 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, style="back" if text == "onback" else "front")
     if text == "lookdown":
         return replace(about, facing="down")
-    styles = {"highkick": "high", "reach_high": "high", "frontlunge": "frontlunge"}
+    styles = {
+        "highkick": "high",
+        "reach_high": "high",
+        "frontlunge": "frontlunge",
+        "swipe_up": "up",
+        "swipe_down": "down",
+    }
     return replace(about, style=styles.get(text, about.style))
 
 

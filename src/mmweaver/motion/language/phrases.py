@@ -1,5 +1,7 @@
 """Phrases that mean one activity, angle or direction, replaced by one token before words are looked up."""
 
+from mmweaver.motion.language.described_person import BUILDS, PERSON_NOUNS
+
 _OWN = r"(?:his |her |its |their |the |both |own )*"
 _BE = r"(?:is|are|was|were|be|been|being|beeing|gets?|got|getting|has been|having been)"
 _LITTLE = (
@@ -9,6 +11,7 @@ _BODY = r"(?:person|man|woman|human|user|guy|girl|boy|subject|somebody|someone|f
 
 # Replaced in this order, before lexicon.PHRASES: several words that mean one activity become one token.
 ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
+    (rf"\b(?:{BUILDS})(?: and|,)? (?=(?:(?:{BUILDS}|old|young|elderly|tall|short|little) )*(?:{PERSON_NOUNS})\b)", ""),  # `described_person` has it
     (r"\b((?:drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?)(?: [a-z]+){0,4}?)"
      r" (?:while )?standing up\b", r"\1 while standing "),
     (r"\bninety\b", " 90 "), (r"\bforty[- ]five\b", " 45 "), (r"\b(?:one |a )?hundred (?:and )?eighty\b", " 180 "),
@@ -18,7 +21,10 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(walks?|walking|runs?|running|goes|jogs?|jogging|paces?|strolls?) up and down\b(?! (?:the )?(?:stairs|steps))",
      r" \1 pacing_to_and_fro "),
     (r"\b(walks?|walking|runs?|running|goes) (?:a|one|in a) (?:small |big |full )?round\b", r" \1 in_circle "),
-    (r"\bturn(?:s|ing|ed)? over\b|\brolls? over\b", " rolling-over "),
+    (r"\bwith (?:his |her |its |their |the )backs? (?:turned |facing )?(?:to|towards?) the (radar|camera|sensor|viewer|device)\b",
+     r" facing away from the \1 "),
+    (r",? (?:and |but )?does(?: not|n't) get (?:back )?up(?: again)?\b", " "),  # true of who lies
+    (r"\bnice and (?=big|large|wide|high|slow|slowly)", " "),
     (r"\bsteps? (?:to the )?front\b", " step forwards "), (r"\b(jumps?|leaps?|hops?) front\b", r" \1 forwards "),
     (r"\b(?:(?:in|along|on|through|by|following|making) )*(?:an? |the )?circular (?:path|shape|way|pattern|trajectory|line|motion|route"
      r"|movement|fashion|motions)\b", " in_circle "),
@@ -122,6 +128,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\blook(?:s|ing|ed)? (?:to )?(?:the |his |her |its )?(left|right)\b", r" look_around \1 "),
     (r"\b(?:while |and )?look(?:s|ing|ed)? (?:straight )?(?:down|at the (?:ground|floor)|at (?:his|her|its|their) (?:feet|"
      r"foot|shoes)|to the (?:ground|floor))\b", " while look_around lookdown "),
+    (r"(?<=[a-z]),? (?:with )?(?:his |her |their |the )?arms (?:crossed|folded)(?: (?:across|over|in front of|on) (?:the|his|her|their) chest)?"
+     r"(?= *(?:$|[,.;]))", " while cross_arms "),
     (r"\b(?:cross(?:es|ing|ed)?|folds?|folding|folded) (?:his |her |its |their |the |both )*arms\b"
      r"|\b(?:with |has )(?:(?:his|her|its|their) )?(?:crossed|folded) arms\b|\barms (?:are )?(?:crossed|folded)\b",
      " cross_arms "),

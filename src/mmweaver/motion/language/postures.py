@@ -8,7 +8,8 @@ from mmweaver.motion.language.plan import Step
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
-LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back"}  # exercises of somebody who lies on that side
+# What is done lying, and on which side; "": on either.
+LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -47,11 +48,16 @@ def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
 def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """Sitting, kneeling, lying: stays so, or goes down first."""
     anything_before = bool(before)
-    if step.lower in ("recline", "lie_on_seat", "fall_off") or (posture, step.posture) == ("couch", "seat"):
+    if step.lower == "roll_over" and posture == "couch":
+        step = replace(step, lower="roll_in_bed")
+    if step.lower in ("recline", "lie_on_seat", "roll_in_bed", "fall_off") or (posture, step.posture) == (
+        "couch",
+        "seat",
+    ):
         return _by_the_seat(step, posture, anything_before)
     if step.lower in LYING:
-        is_there = posture == "floor" and _lies_on(before) == LYING[step.lower]
-        down = Step(lower="lie_down", style=LYING[step.lower], clause=step.clause)
+        is_there = posture == "floor" and LYING[step.lower] in ("", _lies_on(before))
+        down = Step(lower="lie_down", style=LYING[step.lower] or "back", clause=step.clause)
         return [step] if is_there or not before else [*_up_from(posture, step), down, step]
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
@@ -78,7 +84,7 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
 def _lies_on(before: list[Step]) -> str:
     """front | back | left | right: how somebody who is on the floor lies there."""
     for step in reversed(before):
-        if step.lower in LYING:
+        if LYING.get(step.lower):
             return LYING[step.lower]
         if step.lower in ("lie_down", "fall") or (step.lower == "lie" and step.style):
             return step.style or "back"
@@ -95,11 +101,13 @@ def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:
     """Lying on furniture and falling off it, both from sitting there; sitting up from lying."""
     if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
         return [replace(step, lower="lie_on_seat")]
-    if step.lower == "lie_on_seat" and not anything_before:
+    if step.lower == "roll_in_bed" and posture == "couch":
+        return [step]
+    if step.lower in ("lie_on_seat", "roll_in_bed") and not anything_before:
         return [step]
     about = replace(step, upper="", count=0, seconds=0.0)
     entered = [replace(step, lower="recline")] if step.lower == "lie_on_seat" and not step.upper else [step]
-    if step.lower == "lie_on_seat" and step.upper:
+    if step.lower == "roll_in_bed" or (step.lower == "lie_on_seat" and step.upper):
         entered = [replace(about, lower="recline"), step]
     if posture == "couch":
         up = replace(about, lower="sit_up")
@@ -125,7 +133,7 @@ def _styled(steps: list[Step]) -> list[Step]:
     style, foot = "", ""
     for k, step in enumerate(steps):
         if step.lower in LYING:
-            style = LYING[step.lower]
+            style = LYING[step.lower] or style or "back"
         if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":

@@ -19,6 +19,13 @@ _AT_END = re.compile(
 _AT_START = re.compile(rf"^\s*{_TIMES},? (?=(?:an?|the|some(?:one|body)|he|she)\b)", re.IGNORECASE)
 
 
+_SIT_TO_STAND = re.compile(
+    r"(?:\b(?:does|performs|do|perform) )?(?:\b(\w+) )?\bsit[- ]to[- ]stands?\b"
+    r"(?:,? (?:for )?(\w+) (?:reps?|repetitions?|times)\b)?",
+    re.IGNORECASE,
+)
+
+
 @dataclass(frozen=True)
 class Repetition:
     """What is done, how often in all, and the words that say so."""
@@ -34,6 +41,11 @@ def repetition_of(text: str) -> Repetition:
     >>> repetition_of("a person bows, then claps and repeats this twice")
     Repetition(text='a person bows, then claps', times=3, words='repeats this twice')
     """
+    found = _SIT_TO_STAND.search(text)
+    if found:
+        word = next((word for word in (found[2], found[1]) if word and (word in NUMBERS or word.isdigit())), "1")
+        rest = f"{text[: found.start()]}sits down, then stands up{text[found.end() :]}"
+        return Repetition(rest, max(_number(word), 1), found[0].strip())
     found = _AT_START.match(text)
     if found:
         return Repetition(text[found.end() :], max(_number(found[1]), 1), found[0].strip(" ,"))

@@ -40,6 +40,7 @@ from mmweaver.motion.language.words import Word, words_of
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
+_YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
@@ -67,7 +68,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = in_seconds(text)
+    text = in_seconds(_YOUR.sub("his", text))
     try:
         return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
@@ -129,9 +130,12 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
         if step.lower == "put_down" and taken[-1:] == ["reach"]:  # what was taken from a table goes back there
             sequence[number] = replace(step, lower="stand", upper="reach")
+        if before.upper == "carry" and before.lower == "stand" and step.lower == "put_down":  # it is carried there
+            walk = replace(before, lower="walk", place=step.place)
+            sequence[number - 1 : number + 1] = [walk, replace(step, place=None)]
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
-    steps = carried_over(with_postures(sequence))
+    steps = carried_over(with_postures(_sideways_throughout(sequence)))
     note_what_is_not_shown(given_text, every_clause, steps, records)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
@@ -145,6 +149,20 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *said])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
+
+
+def _sideways_throughout(steps: list[Step]) -> list[Step]:
+    """ "Walks sideways, four steps to the left, four steps back": all of it sideways."""
+    is_aimless = len(steps) > 1 and steps[0].lower == "sidestep" and not (steps[0].direction or steps[0].count)
+    if not is_aimless or not all(step.lower == "walk" and step.count for step in steps[1:]):
+        return steps
+    result: list[Step] = []
+    for step in steps[1:]:
+        back = step.direction in ("back", "backwards") and result
+        side = OPPOSITE.get(result[-1].direction, "") if back else step.direction
+        result.append(replace(step, lower="sidestep", direction=side))
+    result[0] = replace(result[0], clauses=(*steps[0].clauses, *result[0].clauses))
+    return result
 
 
 def _is_understood_alone(part: str) -> bool:

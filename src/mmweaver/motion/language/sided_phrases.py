@@ -44,7 +44,7 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\btwist(?:s|ing) {_OWN}body\b", " twist_trunk "),
     (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
     (r",? (?:but|and|yet|without)? ?(?:does|did|do|is)(?: not|n't) (?:fall|falling)(?: down| over)?\b", " "),  # true of all but falls
-    (r"\b(?:rotat|roll|tilt|mov|swivel)(?:e?s|ing) (?:his|her|its|their|the) head\b(?: (?:a?round|from side to side|in circles|up and down))?", " look_around "),
+    (r"\b(?:rotat|mov|swivel)(?:e?s|ing) (?:his|her|its|their|the) head\b(?: (?:a?round|from side to side|in circles|up and down))?", " look_around "),
     (r"\bsquat(s|ting)?(?: down)? and (?:stays?|remains?|holds?|staying) (?:it|there|down|low|in (?:it|position))\b", " crouches "),
     # where somebody faces who walks anyway, and from where somebody gets up
     (r"\b(?:is |are )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)(?= and\b| then\b|,)", " stands "),

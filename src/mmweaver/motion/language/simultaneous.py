@@ -15,7 +15,7 @@ from mmweaver.motion.language.verbs import words_in
 ONE_ARMED = words_in(
     """
     wave raise arms_out drink eat phone brush_teeth comb wipe write stir knock point hips reach raise_hold lower_arm
-    push_hand pull_hand draw_circle draw_z yawn knock_elbow arm_extension
+    push_hand pull_hand draw_circle draw_z yawn knock_elbow arm_extension swipe
     """
 )
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")

@@ -15,6 +15,7 @@ ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
+_TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl")
@@ -40,6 +41,9 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         return replace(walk, upper="carry", hand=step.hand)
     if step.lower in ("walk", "jog") and texts & {"drunken", "drunk"}:
         step = replace(step, lower="stagger")
+    if step.lower == "roll_over":
+        lower = "roll_in_bed" if step.seat else "roll_over"
+        return replace(step, lower=lower, style="", direction=step.direction if step.direction in SIDES else "")
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
@@ -95,10 +99,13 @@ def _in_place(step: Step, words: list[Word]) -> Step:
         facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
         if step.upper == "point" and {"up", "upwards", "down", "behind", "backwards"} & {w.text for w in words}:
             raise InputError(f"{step.clause!r}: pointing is known to the left, to the right and ahead only")
-    ahead = step.upper == "arms_out" and step.direction in ("forwards",)
+    if not facing and step.upper and {w.text for w in words} & RADAR and {w.text for w in words} & _TOWARDS:
+        facing = "towards"  # "pushes a hand towards the radar"
+    kept = step.upper == "arms_out" and step.direction == "forwards"
+    kept |= step.upper == "swipe" and step.direction in SIDES
     sit_down = step.lower == "sit" and any(word.lemma == "sit_down" for word in words)
     return replace(
-        step, direction="forwards" if ahead else "", facing=facing, arc_deg=0.0, turn_deg=0.0,
+        step, direction=step.direction if kept else "", facing=facing, arc_deg=0.0, turn_deg=0.0,
         lower="sit_down" if sit_down else step.lower,
     )  # fmt: skip
 

@@ -109,6 +109,9 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **_all("cough", "", "cough"),
     "breathe_deeply": ("", "breathe"),
     **_all("tremble shiver quiver", "", "tremble"),
+    "roll_over": ("roll_over", ""),
+    **_all("swipe swipe_up swipe_down", "", "swipe"),
+    "count_fingers": ("", "count_fingers"),
     "cradle": ("", "cradle"),
 }  # fmt: skip
 

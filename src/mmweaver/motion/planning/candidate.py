@@ -127,10 +127,11 @@ class CandidateSampler:
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
             if step.lower == "sit_down" and k:
                 sitting = sitting or self._seat_behind(trajectory, seats)
-                sitting = sitting or _stool_at_end(
-                    trajectory, self.body, previous=self.plan.steps[k - 1], is_bed=lies_on_seat(self.plan)
-                )
-                trajectory.invents_seat = bool(self._approaches) and bool(trajectory.notes)
+                if sitting is None:
+                    sitting = _stool_at_end(
+                        trajectory, self.body, previous=self.plan.steps[k - 1], is_bed=lies_on_seat(self.plan)
+                    )
+                    trajectory.invents_seat = bool(self._approaches)
                 trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
             trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
             if sitting is not None and sitting.chair is not None:

@@ -27,14 +27,17 @@ _SEAT_REACH_M = 0.65  # horizontal distance from a seat's centre within which a 
 _SEAT_SQUARE_M = 0.4  # seats in one square share the points around them
 _SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower are not the seat itself
 _TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may have been taken for a backrest
+_EDGE_M = 0.02  # and to what is ahead: of an edge the last points that are seen lie this much within it
 _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
 _SHIN_M = 0.45  # height of foot and shin of somebody who sits
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
+_ABOUT_SEAT_M = 0.15  # of a place to sit, whose height is measured
 _SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no mattress
 _MOST_POINTS = 34_000
 _LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
 _LOW_DOWN_M = (0.05, 0.1, 0.15, 0.2, 0.25)
 _HALF_CHAIR_M, _BACK_BEHIND_M, _CHAIR_TOP_M = 0.32, 0.05, 1.1
+_FRONT_AHEAD_M, _FRONT_TOP_M = 0.05, 0.66  # ahead of its middle a chair is no higher: armrests end there, tables begin
 _NEAR_CHAIR_M = 1.3  # of what is looked at with the chair away
 _WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
 _THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
@@ -53,8 +56,11 @@ class PulledChair:
     by_m: float = field(compare=False)  # what is there without it is the same, however far it is pulled
 
     def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
-        """Which points belong to it where it stands in the photo."""
-        return self.covers(points_m[:, :2]) & (points_m[:, 2] < floor_z_m + _CHAIR_TOP_M)
+        """Which points belong to it where it stands in the photo; what is ahead above the armrests is a table's."""
+        ahead = np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        is_front = (points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M
+        top_m = np.where(is_front, _FRONT_TOP_M, _CHAIR_TOP_M)
+        return self.covers(points_m[:, :2]) & (points_m[:, 2] < floor_z_m + top_m)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
         """Which places (x, y) it stands on in the photo."""
@@ -163,6 +169,14 @@ class CollisionMap:
         np.maximum.at(heights, (row[inside], column[inside]), above[inside])
         return heights
 
+    def low_surface_m(self, place_m: Float[Array, "2"]) -> float:
+        """How high above the floor low furniture is about a place (x, y); 0 where most of it is none."""
+        column, row = np.floor((place_m + np.array([_SIDE_M, -_AWAY_M[0]])) / CELL_M).astype(int)
+        reach = int(_ABOUT_SEAT_M / CELL_M)
+        around = self._low_tops_m[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1]
+        heights = around[around > _SHIN_TOP_M]
+        return float(np.median(heights)) if 2 * heights.size > max(around.size, 1) else 0.0
+
     def has_room_for_shins(self, knees_m: Float[Array, "2"], feet_m: Float[Array, "2"], seat_height_m: float) -> bool:
         """Whether what a seat belongs to ends before a sitter's shins, from the knees to the feet, (x, y) in metres.
 
@@ -264,7 +278,7 @@ class CollisionMap:
         points, radius = body.points_m[at_seat], body.radius_m[at_seat]
         depth = 0.0
         hard = np.concatenate([solid[ahead_of | next_to], tops[~behind], legs])
-        for obstacle, extra_m in ((hard, 0.0), (tops[behind], _TABLE_BEHIND_M)):
+        for obstacle, extra_m in ((hard, _EDGE_M), (tops[behind], _TABLE_BEHIND_M)):
             nearest = _distances_m(points, obstacle)
             depth = max(depth, float((radius + extra_m - nearest - _ALLOWED_M + margin_m).max(initial=0.0)))
         return depth

@@ -182,6 +182,14 @@ class FloorMap:
         """Distance in metres to the nearest cell that is not free, 0 off the grid."""
         return np.asarray(self._bordered[1][self._cells(positions_m)])
 
+    def is_seen_floor(self, positions_m: Positions) -> Bool[Array, "*shape"]:
+        """Whether the photo shows free floor at each position."""
+        return np.asarray(self._seen_floor[self._cells(positions_m)])
+
+    @cached_property
+    def _seen_floor(self) -> Bool[Array, "y x"]:
+        return np.pad(self.scene.free_space.is_free & self.scene.free_space.is_seen, 1)
+
     def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
         """`cell_cost` at each position."""
         return np.asarray(self._bordered[2][self._cells(positions_m)])

@@ -87,7 +87,8 @@ def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
         between.append(np.column_stack([middle, np.full(len(middle), level + scene.floor_z_m)]))
     tops = points[near_top & is_top[cell]]
     unseen = np.concatenate([*between, *(_rectangle(scene, plane) for plane in scene.planes)])
-    unseen = unseen[_behind_m(scene, unseen) < -_OCCLUDING_M]
+    # The back of a chair hides the edge behind it by a few centimetres only: all that is not seen through counts.
+    unseen = unseen[AlignedPhoto.of(scene).look_up(unseen).in_picture & ~_seen_through(scene, unseen)]
     return np.concatenate([tops, unseen, _behind_rims(scene, tops)])
 
 

@@ -25,6 +25,9 @@ _WIDEST_TURN_RAD = 1.4
 _BODY_WIDTH_M = 0.4  # what of a seat's width and depth the body itself takes
 _LEFT_OUT = 0.4  # share of the seats that `random_subset` leaves out
 _BACK_M, _DEEP_SEAT_M = 0.05, 0.4  # how far back one can sit, and on which depth of a seat
+_EDGES_RAD, _EDGE_STEP_M, _FARTHEST_EDGE_M = (0.0, np.pi / 2, -np.pi / 2), 0.1, 1.5  # of wide surfaces
+_KNEES_APART_M = 0.14  # from the middle to the outer side of a knee
+_BED_WIDTH_M = 0.7  # what of an edge one sitter has
 _KNEE_M, _ON_SEAT_M = 0.05, 0.12  # from a seat's edge to the middle of the knees, and to the pelvis at least
 PULLED_COST = 0.5  # of a chair that is pulled out first
 _CHAIR_BEHIND_M, _CHAIR_ASIDE_M = 0.27, 0.2  # from a chair's middle: the back of it, and half its width
@@ -51,6 +54,10 @@ class Sitting:
         shift_m = by_m * np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
         edge_m = self.edge_m - by_m
         return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
+
+    def moved(self, by_m: Float[Array, "2"]) -> "Sitting":
+        """The same elsewhere, (x, y)."""
+        return replace(self, feet_m=self.feet_m + by_m, seat_m=self.seat_m + by_m)
 
     def with_clear_knees(self) -> "Sitting":
         """So far ahead that the backs of the knees are past the seat's edge, as people sit on beds and deep couches."""
@@ -112,8 +119,39 @@ def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
     for seat in floor.scene.seats:
         sitting = _sitting(seat, floor, body)
         usable = LOWEST_M <= sitting.height_m <= HIGHEST_M
-        if usable and bool(floor.sees(sitting.seat_m)) and _has_room_for_shins(sitting, floor.scene):
+        if usable and not _has_room_for_shins(sitting, floor.scene):
+            found += _at_edges(sitting, floor, body)
+        elif usable and bool(floor.sees(sitting.seat_m)):
             found.append(sitting)
+    return found
+
+
+def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
+    """Where somebody can sit on a wide surface on which a seat was found too far from its edges: on beds, mostly.
+
+    From there straight ahead and to the sides, as far as it goes on at about one height, until the shins are free.
+    """
+    obstacles, found = CollisionMap.of(floor.scene), []
+    for turn in _EDGES_RAD:
+        facing = sitting.facing_rad + turn
+        ahead = np.array([np.cos(facing), np.sin(facing)])
+        for by_m in np.arange(_EDGE_STEP_M, _FARTHEST_EDGE_M, _EDGE_STEP_M):
+            place = sitting.seat_m + by_m * ahead
+            height = obstacles.low_surface_m(place)
+            if not LOWEST_M <= height <= HIGHEST_M:
+                break
+            feet_m = place + pelvis_behind_feet_m(body, height) * ahead
+            knees_m = knees_ahead_m(body, height)
+            edge = replace(
+                sitting, feet_m=feet_m, facing_rad=facing, height_m=height, seat_m=place, width_m=_BED_WIDTH_M,
+                edge_m=_BODY_WIDTH_M / 2, knees_m=knees_m,
+            ).with_clear_knees()  # fmt: skip
+            aside = _KNEES_APART_M * np.array([-ahead[1], ahead[0]])
+            ways = [edge.moved(side * aside) for side in (-1.0, 0.0, 1.0)]
+            is_floor = floor.is_seen_floor(np.stack([way.feet_m for way in ways])).all()
+            if is_floor and all(_has_room_for_shins(way, floor.scene) for way in ways):
+                found += [edge] if bool(floor.sees(edge.seat_m)) else []
+                break
     return found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.controls import LEFT, Controls
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library.gestures import mouth_in_chest_m
 from mmweaver.motion.animation.library.movement_primitives import (
     hand_to,
@@ -27,6 +27,7 @@ PerTime = Float[Array, " n"]
 _CHEST = (0.09, 0.06, 0.03)  # close before the chest
 _AHEAD = (0.297, 0.08, 0.07)  # stretched forward
 _CIRCLE, _LETTER = 0.25, 0.17  # half the size of what a straight arm draws large in the air
+_SWIPE = 0.13  # half the way of a hand that swipes
 _ACROSS = 0.08  # farther ahead where the arm is across the body
 _MIDDLE, _ARM = (0.09, 0.07), 0.28  # of drawings: outward and up; a straight arm from the shoulder
 
@@ -114,6 +115,27 @@ def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime
         target = place(ahead, _MIDDLE[0] + size * out, _MIDDLE[1] + size * up, len(up))
         # an elbow that pointed down would jump where the arm of a circle points down, too
         hand_to(controls, context.body, side, target, on, elbow=(-1.0, 0.0, -0.3))
+    return controls
+
+
+def swiping(context: StepContext, controls: Controls) -> Controls:
+    """The hand is raised before the chest, sweeps through the air to one side, up or down, and comes back."""
+    time_s, step = context.time_s, context.step
+    stroke = np.zeros_like(time_s)
+    swipes = repeats(context, 1.1, 0.5, 1.6)
+    for begin, lasts in swipes:
+        u = (time_s - begin) / lasts
+        stroke += rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35)
+    first, last = swipes[0], swipes[-1]
+    on = plateau(time_s, first[0], last[0] + last[1], 0.3 * first[1], 0.3 * last[1])
+    along = vary(context, _SWIPE, 0.12) * (2 * stroke - 1)
+    side = sides(context)[0]
+    is_outward = step.direction == ("right" if side == RIGHT else "left")  # inward where the sentence names no side
+    outward = 1.0 if is_outward else -1.0
+    vertical = {"up": 1.0, "down": -1.0}.get(step.style, 0.0)
+    out = 0.05 + (0.0 if vertical else outward) * along
+    target = place(0.27 - 0.5 * np.square(along), out, -0.02 + vertical * along, len(time_s))
+    hand_to(controls, context.body, side, target, on, elbow=(-0.2, 0.5, -1.0))
     return controls
 
 

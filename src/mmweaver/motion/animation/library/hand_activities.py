@@ -109,6 +109,21 @@ def _to_and_fro(context: StepContext, rate: tuple[float, float, float], spread: 
     return np.sin(2 * np.pi * rate_hz * (context.time_s - context.start_s) + context.rng.uniform(0, 2 * np.pi))
 
 
+def counting_on_fingers(context: StepContext, controls: Controls) -> Controls:
+    """One hand is held open before the chest, the other taps at its fingers, one after the other."""
+    time_s, n = context.time_s, len(context.time_s)
+    tapping = one_side(context)
+    rate_hz, end_s = cycles(context, context.tempo(1.1, 1.5, 2.0), 0.8, 2.4)
+    phase = 2 * np.pi * rate_hz * (time_s - context.start_s)
+    stops = rise((end_s - time_s) / 0.3 + 1.0)
+    away = (0.5 - 0.5 * np.cos(phase)) * stops
+    hand_to(controls, context.body, 1 - tapping, place(0.16, 0.03, -0.03, n), _on(context))
+    target = place(0.165, 0.005 + 0.02 * away, 0.0 + 0.03 * away, n)
+    hand_to(controls, context.body, tapping, target, _on(context))
+    controls.head_rad[:, 0] += 0.22 + 0.04 * away
+    return controls
+
+
 def brushing_teeth(context: StepContext, controls: Controls) -> Controls:
     """A hand in front of the mouth moves to and fro by a few centimetres, three times a second."""
     n, side = len(context.time_s), one_side(context)

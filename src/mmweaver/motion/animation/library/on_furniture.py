@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls, blend
 from mmweaver.motion.animation.library.movement_primitives import shift_foot, shift_pelvis, spline_through
-from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, on_side
+from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, on_side, rolled
 from mmweaver.motion.animation.library.sitting import sitting
 from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN
 from mmweaver.motion.animation.profiles import bump, rise
@@ -29,6 +29,11 @@ def reclining(context: StepContext) -> Controls:
 
 def sitting_up(context: StepContext) -> Controls:
     return _along_seat(context, 1 - (context.time_s - context.start_s) / _lasts_s(context))
+
+
+def rolling_in_bed(context: StepContext) -> Controls:
+    """Lying on it, onto a side and back again."""
+    return rolled(context, lying_on_seat(context))
 
 
 def _lasts_s(context: StepContext) -> float:

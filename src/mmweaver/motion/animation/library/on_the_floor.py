@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.movement_primitives import shift_foot, shift_pelvis, spline_through
+from mmweaver.motion.animation.library.movement_primitives import repeats, shift_foot, shift_pelvis, spline_through
 from mmweaver.motion.animation.library.standing import STAND_STRETCH, upright
-from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.profiles import bump, plateau, rise
 from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
@@ -70,6 +70,36 @@ def falling(context: StepContext) -> Controls:
 def lying(context: StepContext) -> Controls:
     """Lying still, with breathing and slight movement of the arms."""
     return _down(context, np.ones_like(context.time_s), falls=False)
+
+
+def rolling_over(context: StepContext) -> Controls:
+    """Lying, onto a side and back again, as often as the sentence says."""
+    return rolled(context, lying(context))
+
+
+def rolled(context: StepContext, controls: Controls) -> Controls:
+    """A lying body that rolls onto its left or right side and back; the knees point where the chest does."""
+    h = context.body.height_m
+    side = context.step.direction or ("left" if context.rng.random() < 0.5 else "right")
+    left = 1.0 if side == "left" else -1.0
+    count = max(context.step.count, 1)
+    over = np.zeros_like(context.time_s)
+    for begin, lasts in repeats(context, min(3.4, context.duration_s / count), 1.5, 6.0)[:count]:
+        over += plateau(context.time_s, begin, begin + lasts, 0.4 * lasts, 0.4 * lasts)
+    on_belly = context.step.style == "front"
+    controls.roll_over_rad[:] += left * 1.3 * over
+    shift_pelvis(controls, 0.0, (-left if on_belly else left) * 0.05 * h * over, 0.045 * h * over)
+    for foot in (LEFT, RIGHT):
+        is_upper = (foot == RIGHT) == (side == "left") and not on_belly
+        shift_foot(controls, foot, 0.0, 0.0, (0.1 if is_upper else 0.02) * h * over)
+        controls.arm_rad[:, foot, 0] += 0.9 * over
+        controls.arm_rad[:, foot, 1] -= (0.8 if is_upper else 0.35) * over  # the upper arm lies ahead
+        controls.arm_rad[:, foot, 3] += 0.7 * over
+    if not on_belly:
+        controls.knee_up_rad[:] -= 0.5 * np.pi * over
+        controls.foot_rad[:, :, 0] += left * 0.5 * np.pi * over[:, None]
+        controls.knee_out_rad[:] += left * 0.25 * np.pi * over[:, None] * np.array([1.0, -1.0])
+    return controls
 
 
 def getting_up(context: StepContext) -> Controls:

@@ -59,8 +59,8 @@ def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
     controls.head_rad[:, 0] -= 0.5 * lean
     controls.knee_out_rad[:] += (0.12 * down)[:, None]
     target = np.array([0.145, 0.066, -0.13]) * body.height_m  # hands on the thighs, seen from spine3
-    lap = reach(body, np.tile(target, (len(heading), 1)), elbow=(-0.6, 0.45, -1.0))
-    controls.arm_rad[:] += down[:, None, None] * (lap[:, None] - np.array(ARM_HANGING))
+    lap = reach(body, target[None], elbow=(-0.6, 0.45, -1.0))
+    controls.arm_rad[:] += down[:, None, None] * (lap - np.array(ARM_HANGING))
     controls.arm_rad[:, :, 0] += (0.35 * lean)[:, None]
     return controls
 

@@ -54,6 +54,7 @@ def upright(context: StepContext) -> Controls:
         foot_rad=foot_rad,
         knee_out_rad=np.full((n, 2), 0.05),
         knee_up_rad=np.zeros(n),
+        roll_over_rad=np.zeros(n),
         knee_room=np.zeros(n),
         contact=np.ones((n, 2)),
     )
