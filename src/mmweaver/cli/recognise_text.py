@@ -22,7 +22,12 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         done = meta.get("self_training", {})
         why = "" if done.get("used") else f", without self-training: {done.get('why', 'it is off')}"
         text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
-    return text
+    return text + contradiction_lines(meta.get("contradictions", []))
+
+
+def contradiction_lines(found: list[str]) -> list[str]:
+    """What recordings show that cannot be if the task is right."""
+    return [f"  the recordings contradict the task: {one}" for one in found]
 
 
 def score_lines(scores: dict[str, Any]) -> list[str]:
@@ -35,6 +40,7 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     far = scores["distance"]
     compared = f"{far['features_far']:.0%} of {far['features']} features are far off, " if far["features"] else ""
     text.append(f"  from generated windows: {compared}{far['windows_outside']:.0%} of windows are unlike any")
+    text += contradiction_lines(scores["contradictions"])
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

@@ -19,7 +19,8 @@ def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any
     """Scores on a folder of labelled recordings: `window`, `three_windows`, `recording`, as `evaluate --json` has them.
 
     With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
-    against generated ones, without labels), and `warning` where the recordings lie outside. Raises InputError where
+    against generated ones, without labels), `warning` where the recordings lie outside, and `contradictions`: what they
+    show that cannot be if the task is right. Raises InputError where
     the recordings give no window.
     """
     found = read_task_recordings(recordings, model.settings)
@@ -43,6 +44,7 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     return {
         **report(evaluation), "chance": round(1 / len(model.labels), 4),
         "generated_on_generated": model.meta.get("generated_on_generated"), "distance": far, "warning": warning(far),
+        "contradictions": model.contradictions(recordings),
     }  # fmt: skip
 
 

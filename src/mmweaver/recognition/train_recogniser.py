@@ -13,6 +13,7 @@ from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
+from mmweaver.recognition.busy_places import busy_cells, without_busy
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
@@ -26,6 +27,7 @@ from mmweaver.recognition.recogniser import (
     save_recogniser,
     window_row,
 )
+from mmweaver.recognition.recording_checks import RadarFacts, contradictions
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.self_training import following, self_trained
 from mmweaver.recognition.sensitivity import sensitivity_weights
@@ -77,7 +79,8 @@ def train_recogniser(
     model = fitted(made, unlabelled, task, options, taught)
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
-        "task": task_values(task),
+        "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
+        "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
     model = replace(model, meta={**note, **model.meta})
@@ -123,6 +126,8 @@ def generated_windows(
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
+    What moves where the empty place is busy is left out.
+
     Raises InputError where an activity gave no window.
     """
     how = WindowAugmentation(
@@ -151,12 +156,14 @@ def generated_windows(
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
+    busy = busy_cells(background)
+    everything = [without_busy(window, busy) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(
         features=recognition_features(everything, names),
         label=np.array([task.recordings.labels.index(window.label) for window in everything]),
         person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
-        is_copy=np.arange(len(everything)) >= len(windows), names=names,
+        is_copy=np.arange(len(everything)) >= len(windows), names=names, busy=busy,
     )  # fmt: skip
 
 
@@ -194,7 +201,8 @@ def fitted(
         "generated_windows": int(is_own.sum()), "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
     }  # fmt: skip
-    features = recognition_features(unlabelled, made.names) if unlabelled else None
+    seen = [without_busy(window, made.busy) for window in unlabelled]
+    features = recognition_features(seen, made.names) if unlabelled else None
     if features is not None and options.sensitivity:
         made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
     matching = None
@@ -203,7 +211,7 @@ def fitted(
         features = matching.apply(features)
     own = None
     if labelled:
-        known = recognition_features(labelled, made.names)
+        known = recognition_features([without_busy(window, made.busy) for window in labelled], made.names)
         known = known if matching is None else matching.apply(known)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         fewest = fewest_recordings(labelled, task.recordings.labels)
@@ -218,7 +226,8 @@ def fitted(
             trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
-        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
+        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, busy=made.busy,
+        meta=meta,
     )  # fmt: skip
 
 
