@@ -20,6 +20,8 @@ from typing import Any
 
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.recording_checks import RadarFacts
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
@@ -27,9 +29,10 @@ from mmweaver.recognition.train_recogniser import fitted, generated_windows
 from mmweaver.recognition.training_windows import TrainingOptions
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import TASKS, result_row
-from studies.recognition.other_boards import CONDITIONS
+from studies.recognition.other_boards import CONDITIONS, empty_place
 
 SEED = 78
+EMPTY_S = 60.0  # of the empty place, where it is recorded
 LOWER_THRESHOLD = 0.85  # of the CFAR in range, in counts
 HABITS = PerformancePrior(
     tempo_of_person=0.25, amplitude_of_person=0.25, on_spot=0.9, on_way=(0.9, 1.1), usual_amplitude=1.0,
@@ -62,12 +65,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _trained(
+    task: RecognitionTask, training: list[PointRecording], settings: TrainingOptions, background: list[PointRecording]
+) -> Recogniser:
+    model = fitted(generated_windows(training, task, settings, background), [], task, settings)
+    facts = replace(RadarFacts.of(task), knows_place=bool(background))
+    return replace(model, meta=model.meta | {"radar_facts": facts.values()})
+
+
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     task = read_task(TASKS / f"{options.task}.toml")
     training = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences / "training")
     settings = TrainingOptions(sequences=options.people)
-    model = fitted(generated_windows(training, task, settings), [], task, settings)
-    model = replace(model, meta=model.meta | {"radar_facts": RadarFacts.of(task).values()})
+    alone = _trained(task, training, settings, [])
     rows = []
     for condition in (one for one in CONDITIONS if re.match(options.conditions, one.name)):
         began = time.process_time()
@@ -75,6 +85,10 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         folder = options.sequences / ("strangers" if condition.recipe is None else re.sub(r"\W+", "_", condition.name))
         strangers = generate_sequences(recipe, options.strangers, folder)
         tested = strangers if condition.points is None else condition.recorded(strangers, SEED)
+        model = alone
+        if condition.empty_place:
+            nobody = empty_place(EMPTY_S, task.recordings.frame_rate_hz)
+            model = _trained(task, training, settings, condition.recorded([nobody], SEED))
         scores: dict[str, Any] = score_recordings(model, tested) | {"self_training": None}
         data = {"name": condition.name, "sha256": content_of(folder)["sha256"], "each": options.strangers}
         row = result_row(scores, data, "alone", "generated", time.process_time() - began)

@@ -10,7 +10,10 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recording_checks import RadarFacts, contradictions
 
-FACTS = RadarFacts(velocity_step_mps=0.12, max_velocity_mps=1.0, removes_static=False)
+FACTS = RadarFacts(
+    range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=1.0, removes_static=False, groups_range=False,
+    groups_velocity=False, knows_place=False,
+)  # fmt: skip
 RATE_HZ, FRAMES = 10.0, 100
 
 
@@ -32,12 +35,20 @@ def walker(*, rate_hz: float = RATE_HZ) -> PointRecording:
     return PointRecording(name="walk", cloud=cloud, num_frames=FRAMES, frame_rate_hz=RATE_HZ)
 
 
+def joined(*clouds: PointCloud) -> PointCloud:
+    """The points of both, in the order of frames."""
+    columns = {name: np.concatenate([getattr(cloud, name) for cloud in clouds]) for name in vars(clouds[0])}
+    order = np.argsort(columns["frame"], kind="stable")
+    return PointCloud(**{name: column[order] for name, column in columns.items()})
+
+
 def changed(**columns: np.ndarray) -> PointRecording:
     """The walker with other columns."""
     return replace(walker(), cloud=replace(walker().cloud, **columns))
 
 
 CLOUD = walker().cloud
+WALL = CLOUD.select(np.isclose(CLOUD.y_m, 4.0))
 WRONG: dict[str, Callable[[], PointRecording]] = {
     "velocity_towards": lambda: changed(radial_velocity_mps=-CLOUD.radial_velocity_mps),
     "behind the radar": lambda: changed(x_m=CLOUD.y_m, y_m=CLOUD.x_m),
@@ -60,8 +71,32 @@ def test_a_recording_that_fits_is_not_doubted():
 
 def test_static_points_are_doubted_where_the_radar_removes_them():
     at_rest = changed(radial_velocity_mps=np.where(np.arange(len(CLOUD.frame)) % 4, 0.0, CLOUD.radial_velocity_mps))
-    (said,) = contradictions([at_rest], replace(FACTS, removes_static=True))
-    assert "removes static clutter" in said
+    assert any(
+        "removes static clutter" in line for line in contradictions([at_rest], replace(FACTS, removes_static=True))
+    )
+
+
+def test_neighbours_that_firmware_groups_are_doubted_and_so_is_that_there_are_none():
+    grouping = replace(FACTS, groups_range=True, groups_velocity=True)
+    first = CLOUD.select(np.diff(CLOUD.frame, prepend=-1) > 0)
+    behind = replace(first, y_m=first.y_m + FACTS.range_step_m)
+    faster = replace(first, radial_velocity_mps=first.radial_velocity_mps + FACTS.velocity_step_mps)
+    several, alone = (replace(walker(), cloud=cloud) for cloud in (joined(first, behind, faster), joined(first, WALL)))
+    said = contradictions([several], grouping)
+    assert ["in range" in line for line in said] == [True, False]
+    assert ["in velocity" in line for line in said] == [False, True]
+    assert contradictions([alone], grouping) == []
+    assert sum("as if these were grouped" in line for line in contradictions([alone], FACTS)) == 2
+
+
+def test_something_else_that_moves_asks_for_a_recording_of_the_empty_place():
+    fan = PointCloud(
+        frame=np.arange(FRAMES), x_m=np.full(FRAMES, 2.0), y_m=np.full(FRAMES, 3.0), z_m=np.zeros(FRAMES),
+        radial_velocity_mps=np.full(FRAMES, 0.24), snr_db=np.full(FRAMES, np.nan),
+    )  # fmt: skip
+    with_fan = replace(walker(), cloud=joined(CLOUD, fan))
+    assert any("record the empty place" in line for line in contradictions([with_fan], FACTS))
+    assert not any("empty place" in line for line in contradictions([with_fan], replace(FACTS, knows_place=True)))
 
 
 def test_too_few_points_tell_nothing():

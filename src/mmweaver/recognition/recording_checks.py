@@ -55,13 +55,9 @@ class RadarFacts:
         """Those of `values`; None where it holds none, as models of before."""
         try:
             found = RadarFacts(**values) if isinstance(values, dict) else None
-            return (
-                found
-                if found is not None
-                and 0 < found.velocity_step_mps <= found.max_velocity_mps < np.inf
-                and 0 < found.range_step_m < np.inf
-                else None
-            )
+            if found is None or not 0 < found.velocity_step_mps <= found.max_velocity_mps < np.inf:
+                return None
+            return found if 0 < found.range_step_m < np.inf else None
         except TypeError:
             return None
 
