@@ -42,6 +42,7 @@ from mmweaver.recognition.training_windows import (
 )
 from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
+from mmweaver.recognition.window_features import STILL_MPS
 
 QUICK_SEQUENCES = 8  # people an activity
 SINGLE_SEQUENCES = 100  # of single performances, which give one window each
@@ -80,6 +81,7 @@ def train_recogniser(
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
         "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
+        "moving_points_a_frame": moving_points(sequences),
         "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
@@ -87,6 +89,15 @@ def train_recogniser(
     save_recogniser(out, model)
     tell("trees", 1, 1)
     return model
+
+
+def moving_points(sequences: Sequence[PointRecording]) -> dict[str, float]:
+    """The mean number of moving points a frame, of each label."""
+    count: dict[str, list[float]] = {}
+    for one in sequences:
+        moving = int((np.abs(one.cloud.radial_velocity_mps) > STILL_MPS).sum())
+        count.setdefault(one.label, []).append(moving / one.num_frames)
+    return {label: round(float(np.mean(own)), 2) for label, own in sorted(count.items())}
 
 
 def usual_sequences(task: RecognitionTask) -> int:
@@ -231,14 +242,19 @@ def fitted(
     )  # fmt: skip
 
 
-def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, float]:
-    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best."""
+def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, Any]:
+    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best.
+
+    `confusion`: true labels in rows, recognised ones in columns, in the order of the labels.
+    """
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():
         held = made.person == made.person.max()
     votes = trees_of(made, options, which=~held, num_trees=100).probabilities(made.features[held])
-    truth = made.label[held]
+    truth, guess, classes = made.label[held], votes.argmax(axis=1), votes.shape[1]
+    confusion = np.zeros((classes, classes), int)
+    np.add.at(confusion, (truth, guess), 1)
     return {
-        "balanced_accuracy": round(balanced_accuracy(truth, votes.argmax(axis=1)), 4),
-        "windows": len(truth), "chance": round(1 / (int(made.label.max()) + 1), 4),
+        "balanced_accuracy": round(balanced_accuracy(truth, guess), 4), "windows": len(truth),
+        "chance": round(1 / classes, 4), "confusion": confusion.tolist(),
     }  # fmt: skip
