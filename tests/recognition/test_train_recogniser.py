@@ -66,6 +66,8 @@ def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
     assert np.sum(scores["window"]["confusion"]) == scores["window"]["n"] == 16
     assert scores["warning"] is None
     assert set(scores["distance"]["per_feature"]) <= set(again.names)
+    points = scores["distance"]["moving_points_a_frame"]
+    assert points["recorded"] == pytest.approx(points["generated"], rel=0.2)
     json.dumps(scores)
 
 

@@ -58,6 +58,9 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     far = scores["distance"]
     compared = f"{far['features_far']:.0%} of {far['features']} features are far off, " if far["features"] else ""
     text.append(f"  from generated windows: {compared}{far['windows_outside']:.0%} of windows are unlike any")
+    count = far["moving_points_a_frame"]
+    if count["generated"] is not None:
+        text.append(f"  moving points a frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
     text += contradiction_lines(scores["contradictions"])
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 

@@ -42,7 +42,7 @@ from mmweaver.recognition.training_windows import (
 )
 from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
-from mmweaver.recognition.window_features import STILL_MPS
+from mmweaver.recognition.window_features import moving_points
 
 QUICK_SEQUENCES = 8  # people an activity
 SINGLE_SEQUENCES = 100  # of single performances, which give one window each
@@ -81,7 +81,7 @@ def train_recogniser(
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
         "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
-        "moving_points_a_frame": moving_points(sequences),
+        "moving_points_a_frame": moving_points_of(sequences),
         "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
@@ -91,13 +91,13 @@ def train_recogniser(
     return model
 
 
-def moving_points(sequences: Sequence[PointRecording]) -> dict[str, float]:
+def moving_points_of(sequences: Sequence[PointRecording]) -> dict[str, float]:
     """The mean number of moving points a frame, of each label."""
-    count: dict[str, list[float]] = {}
-    for one in sequences:
-        moving = int((np.abs(one.cloud.radial_velocity_mps) > STILL_MPS).sum())
-        count.setdefault(one.label, []).append(moving / one.num_frames)
-    return {label: round(float(np.mean(own)), 2) for label, own in sorted(count.items())}
+    labels = sorted({one.label for one in sequences})
+    return {
+        label: round(float(np.mean([moving_points(one) for one in sequences if one.label == label])), 2)
+        for label in labels
+    }
 
 
 def usual_sequences(task: RecognitionTask) -> int:
