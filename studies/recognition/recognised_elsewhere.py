@@ -5,10 +5,14 @@
 Stands in for recordings of a board of which none are at hand. Strangers are generated, too, by a recipe that differs in
 all that a user does not know: a higher or lower board that looks down, a wall and more furniture, more clutter, people
 farther away who sway more and keep another pace, a lower threshold and no second peak. What motions, skin and
-noise are like is the same in both, so real recordings are harder than this.
+noise are like is the same in both, so real recordings are harder than this. The same strangers are scored under each
+condition of `other_boards`, which no recogniser knows of: other settings of the firmware, things that move and are
+nobody, lost frames, columns that are named wrongly. `said` is what `recognise score` has to say of the recordings
+without their labels.
 """
 
 import argparse
+import re
 import time
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -16,14 +20,19 @@ from typing import Any
 
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser
+from mmweaver.recognition.recording_checks import RadarFacts
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_recogniser import fitted, generated_windows
 from mmweaver.recognition.training_windows import TrainingOptions
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import TASKS, result_row
+from studies.recognition.other_boards import CONDITIONS, empty_place
 
 SEED = 78
+EMPTY_S = 60.0  # of the empty place, where it is recorded
 LOWER_THRESHOLD = 0.85  # of the CFAR in range, in counts
 HABITS = PerformancePrior(
     tempo_of_person=0.25, amplitude_of_person=0.25, on_spot=0.9, on_way=(0.9, 1.1), usual_amplitude=1.0,
@@ -51,18 +60,39 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
     parser.add_argument("--people", type=int, default=TrainingOptions().sequences)
     parser.add_argument("--strangers", type=int, default=12, help="people of each activity that are the test set")
+    parser.add_argument(
+        "--conditions", default="", metavar="REGEX", help="how names of `other_boards.CONDITIONS` begin"
+    )
+
+
+def _trained(
+    task: RecognitionTask, training: list[PointRecording], settings: TrainingOptions, background: list[PointRecording]
+) -> Recogniser:
+    model = fitted(generated_windows(training, task, settings, background), [], task, settings)
+    facts = replace(RadarFacts.of(task), knows_place=bool(background))
+    return replace(model, meta=model.meta | {"radar_facts": facts.values()})
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     task = read_task(TASKS / f"{options.task}.toml")
     training = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences / "training")
-    tested = generate_sequences(strangers_recipe(task), options.strangers, options.sequences / "strangers")
-    began = time.process_time()
     settings = TrainingOptions(sequences=options.people)
-    model = fitted(generated_windows(training, task, settings), [], task, settings)
-    scores: dict[str, Any] = score_recordings(model, tested) | {"self_training": model.meta.get("self_training")}
-    name = f"{options.task}, strangers"
-    data = {"name": name, "sha256": content_of(options.sequences / "strangers")["sha256"], "each": options.strangers}
-    row = result_row(scores, data, "alone", "generated", time.process_time() - began)
-    print(scores["window"]["balanced_accuracy"], scores["classes"], scores["window"]["confusion"])
-    run.write("recognised_elsewhere", options.task, config={"options": asdict(settings)}, rows=[row])
+    alone = _trained(task, training, settings, [])
+    rows = []
+    for condition in (one for one in CONDITIONS if re.match(options.conditions, one.name)):
+        began = time.process_time()
+        recipe = strangers_recipe(task) if condition.recipe is None else condition.recipe(strangers_recipe(task))
+        folder = options.sequences / ("strangers" if condition.recipe is None else re.sub(r"\W+", "_", condition.name))
+        strangers = generate_sequences(recipe, options.strangers, folder)
+        tested = strangers if condition.points is None else condition.recorded(strangers, SEED)
+        model = alone
+        if condition.empty_place:
+            nobody = empty_place(EMPTY_S, task.recordings.frame_rate_hz)
+            model = _trained(task, training, settings, condition.recorded([nobody], SEED))
+        scores: dict[str, Any] = score_recordings(model, tested) | {"self_training": None}
+        data = {"name": condition.name, "sha256": content_of(folder)["sha256"], "each": options.strangers}
+        row = result_row(scores, data, "alone", "generated", time.process_time() - began)
+        said = "contradiction" if scores["contradictions"] else "warning" if scores["warning"] else "nothing"
+        rows.append(row | {"task": options.task, "said": said, "contradictions": scores["contradictions"]})
+        print(condition.name, scores["window"]["balanced_accuracy"], said, scores["window"]["confusion"], flush=True)
+    run.write("recognised_elsewhere", options.task, config={"options": asdict(settings)}, rows=rows)

@@ -332,7 +332,14 @@ BLIND = RowTable(
         ("windows outside", "{distance.windows_outside:.2f}"),
     ),
 )  # fmt: skip
-ELSEWHERE = RowTable(sources=("recognised_elsewhere/*",), columns=BLIND.columns)
+ELSEWHERE = RowTable(
+    sources=("recognised_elsewhere/*",),
+    columns=(
+        ("strangers", "{dataset.name}"), ("windows", "{metrics.window:interval.2}"),
+        ("a recording", "{metrics.recording:interval.2}"), ("chance", "{metrics.window.baseline.chance:.2f}"),
+        ("windows outside", "{distance.windows_outside:.2f}"), ("`score` says", "{said}"),
+    ),
+)  # fmt: skip
 LABELLED = PivotTable(
     sources=("labelled_recognition/*",),
     rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",

@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.cli.main import main
+from mmweaver.cli.recognise_text import confused_lines
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.generated_sequences import _write
 from mmweaver.recognition.recogniser import load_recogniser
@@ -71,6 +72,14 @@ def test_confusions_are_drawn_from_the_sequences_that_trained(model: Path, capsy
     assert (model.parent / "seen.png").read_bytes()[:4] == b"\x89PNG"
     assert main([*words, str(model.parent / "seen.jpg")]) == 2
     assert main(["recognise", "run", str(model), "--points", "x.npz", "--picture", "seen.png"]) == 2
+
+
+def test_the_largest_confusions_of_generated_people_are_named():
+    labels, confusion = ("lie", "run", "walk"), [[9, 0, 1], [0, 4, 6], [0, 1, 9]]
+    assert confused_lines(labels, confusion) == [
+        "most often mistaken: run for walk (60%), walk for run (10%), lie for walk (10%)"
+    ]
+    assert confused_lines(labels, [[20, 0, 1], [0, 9, 0], [0, 0, 9]]) == []
 
 
 @pytest.mark.slow  # two trainings

@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recording import PointRecording
@@ -58,11 +59,15 @@ def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
     assert [model.recognise(one) for one in people] == [again.recognise(one) for one in people]
     assert again.meta["generated_on_generated"]["balanced_accuracy"] > 0.9
     assert again.meta["task"]["radar"] == "iwr1443_mars"
+    assert np.shape(again.meta["generated_on_generated"]["confusion"]) == (2, 2)
+    assert set(again.meta["moving_points_a_frame"]) == set(again.labels)
     scores = score_recordings(again, people)
     assert scores["window"]["balanced_accuracy"] == 1.0
     assert np.sum(scores["window"]["confusion"]) == scores["window"]["n"] == 16
     assert scores["warning"] is None
     assert set(scores["distance"]["per_feature"]) <= set(again.names)
+    points = scores["distance"]["moving_points_a_frame"]
+    assert points["recorded"] == pytest.approx(points["generated"], rel=0.2)
     json.dumps(scores)
 
 
@@ -81,6 +86,49 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
     plain = score_recordings(model, people)["distance"]["outside_per_feature"]
     assert 0 <= np.mean(list(plain.values())) < 0.1
     assert any(found.is_outside for found in model.recognise(noisy[1]))
+
+
+@pytest.mark.usefixtures("drawn")
+def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(task_file: Path, tmp_path: Path):
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    people = drawn_sequences(model.settings, 3, first=50)
+    turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
+    for found, expected in ((people, False), (turned, True)):
+        assert any("behind the radar" in line for line in score_recordings(model, found)["contradictions"]) == expected
+    assert score_recordings(replace(model, meta={}), turned)["contradictions"] == []
+    write_recordings(tmp_path / "turned", turned)
+    again = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "turned")
+    assert any("behind the radar" in line for line in again.meta["contradictions"])
+
+
+@pytest.mark.usefixtures("drawn")
+def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Path, tmp_path: Path):
+    """A fan that the recording of the empty place shows changes no label, live or not."""
+    frame = np.repeat(np.arange(200), 3)
+    fan = PointCloud(
+        frame=frame, x_m=np.full(600, 1.5), y_m=np.full(600, 4.0), z_m=np.zeros(600),
+        radial_velocity_mps=np.tile([0.712, -0.712, 1.068], 200), snr_db=np.full(600, np.nan),
+    )  # fmt: skip
+    settings = read_task(task_file).recordings
+    empty = PointRecording(name="empty", cloud=fan, num_frames=200, frame_rate_hz=settings.frame_rate_hz)
+    write_recordings(tmp_path / "place", [replace(empty, label="rest")])
+    task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    again = load_recogniser(tmp_path / "model")
+    assert len(model.busy) == len(again.busy) == 9
+    people = drawn_sequences(model.settings, 2, first=50)
+    with_fan = [_in_front(one, fan) for one in people]
+    assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]
+    assert score_recordings(again, with_fan)["window"]["balanced_accuracy"] == 1.0
+
+
+def _in_front(recording: PointRecording, cloud: PointCloud) -> PointRecording:
+    """The recording with other points behind those of the person."""
+    other = cloud.select(cloud.frame < recording.num_frames)
+    names = ("frame", "x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
+    columns = {name: np.concatenate([getattr(recording.cloud, name), getattr(other, name)]) for name in names}
+    order = np.argsort(columns["frame"], kind="stable")
+    return replace(recording, cloud=PointCloud(**{name: column[order] for name, column in columns.items()}))
 
 
 @pytest.mark.usefixtures("drawn")

@@ -115,6 +115,7 @@ def _score(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace) -> int:
+    from mmweaver.cli.recognise_text import contradiction_lines
     from mmweaver.recognition.live_recogniser import recognise_stream
     from mmweaver.recognition.recogniser import load_recogniser
     from mmweaver.recognition.task_recordings import read_task_recording
@@ -123,7 +124,10 @@ def _run(arguments: argparse.Namespace) -> int:
     if str(arguments.points) == STDIN:
         found = recognise_stream(model, sys.stdin.buffer)
     else:
-        found = iter(model.recognise(read_task_recording(arguments.points, model.settings)))
+        recording = read_task_recording(arguments.points, model.settings)
+        for line in contradiction_lines(model.contradictions([recording])):
+            print(line.strip(), file=sys.stderr)
+        found = iter(model.recognise(recording))
     rate_hz = model.settings.frame_rate_hz
     for one in found:
         share = max(one.votes.values())

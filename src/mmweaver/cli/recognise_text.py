@@ -1,10 +1,13 @@
 """What mmweaver recognise says to people: what was trained, and how well it does."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mmweaver.recognition.recogniser import Recogniser
+
+LEAST_CONFUSED, MOST_LISTED = 0.1, 3  # of the windows of a label; confusions
 
 
 def training_lines(model: "Recogniser", out: Path) -> list[str]:
@@ -15,6 +18,9 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         f" {meta['cpu_seconds']:.0f} CPU-s",
         f"generated people held out: balanced accuracy {expected['balanced_accuracy']:.2f} (chance"
         f" {expected['chance']:.2f}); recordings of people are harder: mmweaver recognise score tells",
+        *confused_lines(model.labels, expected["confusion"]),
+        "moving points a frame: "
+        + ", ".join(f"{label} {count:g}" for label, count in meta["moving_points_a_frame"].items()),
     ]
     if "labelled_windows" in meta:
         text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
@@ -22,7 +28,24 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         done = meta.get("self_training", {})
         why = "" if done.get("used") else f", without self-training: {done.get('why', 'it is off')}"
         text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
-    return text
+    return text + contradiction_lines(meta.get("contradictions", []))
+
+
+def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[str]:
+    """The labels that are mistaken most often, each with what for; those of fewer than a tenth of the windows not."""
+    shares = [
+        (row[other] / max(sum(row), 1), label, labels[other])
+        for label, row in zip(labels, confusion, strict=True) for other in range(len(labels)) if labels[other] != label
+    ]  # fmt: skip
+    worst = [one for one in sorted(shares, reverse=True) if one[0] >= LEAST_CONFUSED][:MOST_LISTED]
+    if not worst:
+        return []
+    return ["most often mistaken: " + ", ".join(f"{label} for {other} ({share:.0%})" for share, label, other in worst)]
+
+
+def contradiction_lines(found: list[str]) -> list[str]:
+    """What recordings show that cannot be if the task is right."""
+    return [f"  the recordings contradict the task: {one}" for one in found]
 
 
 def score_lines(scores: dict[str, Any]) -> list[str]:
@@ -35,6 +58,10 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     far = scores["distance"]
     compared = f"{far['features_far']:.0%} of {far['features']} features are far off, " if far["features"] else ""
     text.append(f"  from generated windows: {compared}{far['windows_outside']:.0%} of windows are unlike any")
+    count = far["moving_points_a_frame"]
+    if count["generated"] is not None:
+        text.append(f"  moving points a frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
+    text += contradiction_lines(scores["contradictions"])
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

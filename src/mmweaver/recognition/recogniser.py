@@ -6,7 +6,7 @@ Reference: docs/recognise.md. `load_recogniser(folder)` reads one; `Recogniser.r
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +19,12 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.body_features import body_features
+from mmweaver.recognition.busy_places import NO_CELLS, Cells, without_busy
 from mmweaver.recognition.course_features import course_features
 from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.recording_checks import RadarFacts, contradictions
 from mmweaver.recognition.side_features import side_features
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.task_recordings import windows_of
@@ -62,15 +64,21 @@ class Recogniser:
     outside_above: float  # a window is outside where this share of its features is exceeded
     matching: FeatureMatching | None  # learned from unlabelled recordings
     meta: dict[str, Any]
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # where the empty place is busy: what moves there is left out
 
     @property
     def labels(self) -> tuple[str, ...]:
         """In the order of the votes."""
         return self.settings.labels
 
+    def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
+        """What recordings show that cannot be if the task is right; models of before know too little to say."""
+        facts = RadarFacts.read(self.meta.get("radar_facts"))
+        return [] if facts is None else contradictions(recordings, facts)
+
     def features(self, windows: Sequence[PointRecording]) -> Float[np.ndarray, "window feature"]:
         """Features of windows, not matched."""
-        return recognition_features(windows, self.names)
+        return recognition_features([without_busy(window, self.busy) for window in windows], self.names)
 
     def votes(self, features: Float[np.ndarray, "window feature"]) -> Float[np.ndarray, "window label"]:
         """Votes of features as `features` gives them, matched to the generated ones where that was learned."""
@@ -139,7 +147,7 @@ def window_row(window: PointRecording) -> dict[str, float]:
 def save_recogniser(folder: Path, model: Recogniser) -> None:
     """Writes the folder's files; meta.json is the last, so a folder with it is complete."""
     write_trees(folder / TREES_FILE, model.trees)
-    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated}
+    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated, "busy": model.busy}
     if model.matching is not None:
         arrays["recorded"] = model.matching.recorded
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
@@ -170,13 +178,14 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     if "recorded" in held:
         recorded = held.numbers("recorded", (len(QUANTILES), len(names)), nan=True)
         matching = FeatureMatching(recorded=recorded, generated=generated)
+    busy = held.numbers("busy", ("cell", 2), kinds="iu", low=-1000, high=1000) if "busy" in held else NO_CELLS
     outside_above = meta.get("outside_above")
     if not isinstance(outside_above, float):
         raise InputError(f"{folder / META_FILE} lacks outside_above; train the recogniser again")
     known = {"kind", "version", "recordings", "outside_above"}
     return Recogniser(
         settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
-        generated=generated, outside_above=outside_above, matching=matching,
+        generated=generated, outside_above=outside_above, matching=matching, busy=busy,
         meta={name: value for name, value in meta.items() if name not in known},
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.scoring import Evaluation, report
 from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
+from mmweaver.recognition.window_features import moving_points
 
 LISTED = 10  # features that differ most
 
@@ -19,7 +20,8 @@ def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any
     """Scores on a folder of labelled recordings: `window`, `three_windows`, `recording`, as `evaluate --json` has them.
 
     With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
-    against generated ones, without labels), and `warning` where the recordings lie outside. Raises InputError where
+    against generated ones, without labels), `warning` where the recordings lie outside, and `contradictions`: what they
+    show that cannot be if the task is right. Raises InputError where
     the recordings give no window.
     """
     found = read_task_recordings(recordings, model.settings)
@@ -39,10 +41,18 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
         recording=np.repeat(np.arange(len(cut)), [len(own) for own in cut]),
         names=tuple(recording.name for recording in recordings),
     )  # fmt: skip
-    far = distance(model, features) | {"windows_outside": round(float(outside.mean()), 4)}
+    generated = model.meta.get("moving_points_a_frame")
+    far = distance(model, features) | {
+        "windows_outside": round(float(outside.mean()), 4),
+        "moving_points_a_frame": {
+            "recorded": round(float(np.mean([moving_points(window) for window in windows])), 2),
+            "generated": round(float(np.mean(list(generated.values()))), 2) if generated else None,
+        },
+    }
     return {
         **report(evaluation), "chance": round(1 / len(model.labels), 4),
         "generated_on_generated": model.meta.get("generated_on_generated"), "distance": far, "warning": warning(far),
+        "contradictions": model.contradictions(recordings),
     }  # fmt: skip
 
 

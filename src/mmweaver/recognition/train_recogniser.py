@@ -13,6 +13,7 @@ from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
+from mmweaver.recognition.busy_places import busy_cells, without_busy
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
@@ -26,6 +27,7 @@ from mmweaver.recognition.recogniser import (
     save_recogniser,
     window_row,
 )
+from mmweaver.recognition.recording_checks import RadarFacts, contradictions
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.self_training import following, self_trained
 from mmweaver.recognition.sensitivity import sensitivity_weights
@@ -40,6 +42,7 @@ from mmweaver.recognition.training_windows import (
 )
 from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
+from mmweaver.recognition.window_features import moving_points
 
 QUICK_SEQUENCES = 8  # people an activity
 SINGLE_SEQUENCES = 100  # of single performances, which give one window each
@@ -77,13 +80,24 @@ def train_recogniser(
     model = fitted(made, unlabelled, task, options, taught)
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
-        "task": task_values(task),
+        "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
+        "moving_points_a_frame": moving_points_of(sequences),
+        "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
     model = replace(model, meta={**note, **model.meta})
     save_recogniser(out, model)
     tell("trees", 1, 1)
     return model
+
+
+def moving_points_of(sequences: Sequence[PointRecording]) -> dict[str, float]:
+    """The mean number of moving points a frame, of each label."""
+    labels = sorted({one.label for one in sequences})
+    return {
+        label: round(float(np.mean([moving_points(one) for one in sequences if one.label == label])), 2)
+        for label in labels
+    }
 
 
 def usual_sequences(task: RecognitionTask) -> int:
@@ -123,6 +137,8 @@ def generated_windows(
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
+    What moves where the empty place is busy is left out.
+
     Raises InputError where an activity gave no window.
     """
     how = WindowAugmentation(
@@ -151,12 +167,14 @@ def generated_windows(
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
+    busy = busy_cells(background)
+    everything = [without_busy(window, busy) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(
         features=recognition_features(everything, names),
         label=np.array([task.recordings.labels.index(window.label) for window in everything]),
         person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
-        is_copy=np.arange(len(everything)) >= len(windows), names=names,
+        is_copy=np.arange(len(everything)) >= len(windows), names=names, busy=busy,
     )  # fmt: skip
 
 
@@ -194,7 +212,8 @@ def fitted(
         "generated_windows": int(is_own.sum()), "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
     }  # fmt: skip
-    features = recognition_features(unlabelled, made.names) if unlabelled else None
+    seen = [without_busy(window, made.busy) for window in unlabelled]
+    features = recognition_features(seen, made.names) if unlabelled else None
     if features is not None and options.sensitivity:
         made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
     matching = None
@@ -203,7 +222,7 @@ def fitted(
         features = matching.apply(features)
     own = None
     if labelled:
-        known = recognition_features(labelled, made.names)
+        known = recognition_features([without_busy(window, made.busy) for window in labelled], made.names)
         known = known if matching is None else matching.apply(known)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         fewest = fewest_recordings(labelled, task.recordings.labels)
@@ -218,18 +237,24 @@ def fitted(
             trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
-        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
+        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, busy=made.busy,
+        meta=meta,
     )  # fmt: skip
 
 
-def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, float]:
-    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best."""
+def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, Any]:
+    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best.
+
+    `confusion`: true labels in rows, recognised ones in columns, in the order of the labels.
+    """
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():
         held = made.person == made.person.max()
     votes = trees_of(made, options, which=~held, num_trees=100).probabilities(made.features[held])
-    truth = made.label[held]
+    truth, guess, classes = made.label[held], votes.argmax(axis=1), votes.shape[1]
+    confusion = np.zeros((classes, classes), int)
+    np.add.at(confusion, (truth, guess), 1)
     return {
-        "balanced_accuracy": round(balanced_accuracy(truth, votes.argmax(axis=1)), 4),
-        "windows": len(truth), "chance": round(1 / (int(made.label.max()) + 1), 4),
+        "balanced_accuracy": round(balanced_accuracy(truth, guess), 4), "windows": len(truth),
+        "chance": round(1 / classes, 4), "confusion": confusion.tolist(),
     }  # fmt: skip

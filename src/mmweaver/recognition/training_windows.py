@@ -1,11 +1,12 @@
 """What the trees of a recogniser learn from: its options, windows with labels and weights, and the trees on them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.errors import InputError
+from mmweaver.recognition.busy_places import NO_CELLS, Cells
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.performance_variation import PerformanceVariation
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
@@ -47,6 +48,7 @@ class TrainingWindows:
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
     importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # where what moves is left out
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:

@@ -48,6 +48,11 @@ def feature_matrix(
     return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 
+def moving_points(window: PointRecording) -> float:
+    """The mean number of moving points a frame."""
+    return float((np.abs(window.cloud.radial_velocity_mps) > STILL_MPS).sum() / window.num_frames)
+
+
 class _Moving:
     """The moving points of a window as columns."""
 

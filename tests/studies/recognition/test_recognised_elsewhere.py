@@ -29,19 +29,26 @@ def test_strangers_differ_in_what_nobody_knows():
     assert (strangers.task.activities, strangers.task.radar) == (task.activities, task.radar)
 
 
-def test_a_row_says_that_strangers_are_generated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_rows_say_what_is_noticed_of_each_condition(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     def drawn(recipe: SequenceRecipe, each: int, folder: Path):
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
         (folder / "one").write_text(recipe.as_json())
         people = range(recipe.seed, recipe.seed + each)
         settings = recipe.task.recordings
-        return [drawn_recording(settings, label, who, 2.0) for who in people for label in settings.labels]
+        return [drawn_recording(settings, label, who) for who in people for label in settings.labels]
 
     monkeypatch.setattr(study, "generate_sequences", drawn)
     monkeypatch.setattr(study, "TrainingOptions", lambda sequences: OPTIONS)
-    options = argparse.Namespace(task="iwr6843", sequences=tmp_path, people=2, strangers=1)
+    conditions = "as generated|fan|static clutter removed|thresholds 6 dB higher"
+    options = argparse.Namespace(task="iwr6843", sequences=tmp_path, people=2, strangers=1, conditions=conditions)
     study.run_study(options, StudyRun("recognised_elsewhere", tmp_path / "results"))
-    (row,) = json.loads((tmp_path / "results" / "recognised_elsewhere" / "iwr6843.json").read_text())["rows"]
-    assert not _row_violations(row)
-    assert row["role"] == "generated"
-    assert row["metrics"]["window"]["baseline"] == {"chance": 0.2}
+    rows = json.loads((tmp_path / "results" / "recognised_elsewhere" / "iwr6843.json").read_text())["rows"]
+    assert not [line for row in rows for line in _row_violations(row)]
+    by_name = {row["dataset"]["name"]: row for row in rows}
+    assert len(by_name) == 5
+    assert by_name["as generated"]["metrics"]["window"]["baseline"] == {"chance": 0.2}
+    assert any("keeps static clutter" in line for line in by_name["static clutter removed"]["contradictions"])
+    assert any("empty place" in line for line in by_name["fan"]["contradictions"])
+    known = by_name["fan, the empty place recorded"]
+    assert not any("empty place" in line for line in known["contradictions"])
+    assert (tmp_path / "thresholds_6_dB_higher").is_dir()
