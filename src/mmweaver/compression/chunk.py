@@ -26,7 +26,8 @@ from mmweaver.compression.moving_cells import code_moving, decoded_moving, movin
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize, uniform_bits
 from mmweaver.compression.residual_stream import (
-    PRICE,
+    USUAL_PRICE,
+    Price,
     QuantizedCells,
     cell_energy,
     code_cells,
@@ -73,6 +74,7 @@ class DecodedChunk:
     rank: int = 0
     has_noise: bool = False
     exact: CubeValues | None = None
+    step: float = 0.0  # relative to the peak
     transform: TransformChoice | None = None
 
     def mode_name(self) -> str:
@@ -134,11 +136,11 @@ class ChunkEncoder:
         self.layers = replace(layers, calibration=_quantize_gains(layers.calibration))
 
     def encode(
-        self, step: float, mode: ChunkMode, coarser: int, price: float = PRICE, *, only_size: bool = False
+        self, step: float, mode: ChunkMode, coarser: int, price: Price = USUAL_PRICE, *, only_size: bool = False
     ) -> CodedChunk:
         """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak.
 
-        `price`: see `quantized`. `only_size`: its size is estimated, and nothing coded that takes long.
+        `only_size`: its size is estimated, and nothing coded that takes long.
         """
         draft = self.draft(step, mode, coarser, only_size=only_size)
         step, stream, flags, front = draft.step, draft.stream, draft.flags + IS_NEW, draft.front
@@ -395,7 +397,7 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         parts.append(decoded_moving(stream, shape, beams, step / finer))
     return DecodedChunk(
         frames=frames, layers=layers, residual=finite(reduce(np.add, parts)) if parts else None, peak=peak,
-        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None,
+        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None, step=step,
         transform=None if transform is None else transform.choice,
     )  # fmt: skip
 

@@ -11,7 +11,7 @@ from mmweaver.compression.chunk import ChunkEncoder
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
 from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.moving_cells import FINER_STEPS, moving_cells
-from mmweaver.compression.residual_stream import PRICE, cell_energy
+from mmweaver.compression.residual_stream import USUAL_PRICE, Price, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, fit_static, static_response, subtract_static
 
@@ -48,11 +48,11 @@ class ModeChooser:
         self.sample: CellSample | None = None  # of the mode decided on, at the step of the decision
 
     def encode(
-        self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
+        self, step: float, coarser: int, noise_step: float = 0.0, price: Price = USUAL_PRICE, *, only_size: bool = False
     ) -> CodedChunk:
         """The chunk at a step, in the mode decided on; with a noise layer where it has a step.
 
-        `price`, `only_size`: see `ChunkEncoder.encode`.
+        `only_size`: see `ChunkEncoder.encode`.
         """
         if self.mode is None:
             self.decide(step, coarser)
