@@ -52,6 +52,7 @@ REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
 NEAR = 0.4  # difference of log(step) within which counted scatterers are taken for those of another step
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
+USUAL_RANK_BITS = 1.02  # of factors, over those estimated
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
@@ -256,8 +257,8 @@ class ChunkEncoder:
         if factors is None:
             return replace(self._plain, step=step, stream=Encoder())
         stream, uncoded_bytes = Encoder(), 0.0
-        if only_size and self._rank_bits is not None:
-            uncoded_bytes = self._rank_bits * factors.estimated_bits() / 8
+        if only_size and (self._rank_bits is not None or not factors.is_peaked):
+            uncoded_bytes = (self._rank_bits or USUAL_RANK_BITS) * factors.estimated_bits() / 8
         else:
             factors.code(stream)
             self._rank_bits = 8 * len(stream.to_bytes()) / max(factors.estimated_bits(), 1.0)
