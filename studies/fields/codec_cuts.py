@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 from studies.fields.codecs import CODECS, codec_row
-from studies.fields.field_signals import SIGNALS
+from studies.fields.field_signals import SIGNALS, StudySignal
 from studies.fields.recording_cuts import CUTS
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
@@ -30,11 +30,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     """Every codec on every cut, and on the cubes of study `codecs`; one file a codec."""
     signals = [(CUTS if name in CUTS else SIGNALS)[name](options.data) for name in options.signals]
-    for name in options.codecs:
+    measure_signals(run, EXPERIMENT, options.codecs, signals)
+
+
+def measure_signals(run: StudyRun, experiment: str, codecs: list[str], signals: list[StudySignal]) -> None:
+    """Every codec on every signal at every size that is less than the cube's; one file a codec."""
+    for name in codecs:
         rows = []
         for signal in signals:
             # codecs without loss take any size: files larger than the cube say nothing
             sizes = [size for size in SIZES if size < signal.cube.values.nbytes]
             rows += [codec_row(CODECS[name](), signal, size) for size in sizes]
             print(json.dumps({"codec": name, "signal": signal.name}), flush=True)
-        run.write(EXPERIMENT, name, config={"sizes": list(SIZES)}, rows=complete_rows(rows))
+        run.write(experiment, name, config={"sizes": list(SIZES)}, rows=complete_rows(rows))

@@ -1,7 +1,7 @@
 import pytest
 
 from mmweaver.compression.mmw_codec import scale_of
-from mmweaver.compression.rate_search import within_bytes, within_error
+from mmweaver.compression.rate_search import within_bytes
 from mmweaver.compression.segment import SegmentEncoder
 from mmweaver.core.errors import InputError
 from tests.fields.echoes import crowd
@@ -26,5 +26,3 @@ def test_what_cannot_be_reached_is_refused():
         within_bytes(segment_of(crowd(num_frames=1)), 5, lambda _: None)
     with pytest.raises(InputError, match="so many frames"):
         within_bytes(segment_of(crowd(num_frames=1)), -5, lambda _: None)
-    with pytest.raises(InputError, match="cannot be reached"):
-        within_error(segment_of(crowd(num_frames=1)), 300.0, lambda _: None)

@@ -131,17 +131,25 @@ def _compress_cube(arguments: argparse.Namespace) -> int:
     elif not arguments.quiet:
         print(
             f"{'added to' if is_appended else 'wrote'} {arguments.out}: {size:,} bytes for {frames} frames,"
-            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s; {_said(errors)}"
+            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s;"
+            f" {_said(errors, arguments.quality)}"
         )
     return 0
 
 
-def _said(errors: dict[str, float]) -> str:
-    from mmweaver.compression.rate_search import EXACT_DB
+def _said(errors: dict[str, float], quality_db: float | None) -> str:
+    from mmweaver.compression.quality_search import MOST_OVER_DB
+    from mmweaver.compression.rate_search import EXACT_DB, FLOAT32_DB
 
-    if errors["all_error_db"] <= EXACT_DB:
-        return "without loss"
-    return f"error {errors['signal_error_db']:.1f} dB in cells with signal, {errors['all_error_db']:.1f} dB in all"
+    signal_db, all_db = errors["signal_error_db"], errors["all_error_db"]
+    if all_db <= EXACT_DB:
+        return "without loss: more bytes would change nothing"
+    said = f"error {signal_db:.1f} dB in cells with signal, {all_db:.1f} dB in all"
+    if all_db <= FLOAT32_DB:
+        return said + ", the last digits of float32: more bytes would change nothing"
+    if quality_db is not None and -signal_db > quality_db + MOST_OVER_DB:
+        return said + "; better than asked for, as no smaller file was found"
+    return said
 
 
 def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dict[str, float]:

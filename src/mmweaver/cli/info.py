@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+FLOAT32_STEP_DB = -110.0  # over the peak: the finest that levels can have, see `SegmentEncoder.finest_step`
 EXAMPLES = """examples:
   mmweaver info walk.mmw
   mmweaver info walk.mmw --json
@@ -73,6 +74,13 @@ def _lines(facts: dict[str, Any]) -> list[str]:
         lines.append(
             f"  chunk {index}  {chunk['frames']} frames, {chunk['bytes']:,} bytes: {chunk['mode']};"
             f" {chunk['scatterers']} scatterers, {'a' if chunk['has_static'] else 'no'} static layer,"
-            f" {chunk['residual_values']} residual values, noise {chunk['noise_db']:.1f} dB below the peak"
+            f" {chunk['residual_values']} residual values, {_steps(chunk['step_db'])},"
+            f" noise {chunk['noise_db']:.1f} dB below the peak"
         )
     return lines
+
+
+def _steps(step_db: float | None) -> str:
+    if step_db is None:
+        return "without loss"
+    return f"steps {step_db:.1f} dB" + (", the last digits of float32" if step_db < FLOAT32_STEP_DB else "")

@@ -9,9 +9,14 @@ ACTIVE_DB = 12.0  # above the noise floor, as in metrics.cells
 
 def active_cells(values: CubeValues, least_power: float | None = None) -> RangeDopplerMask:
     """Cells whose antenna-averaged power exceeds `least_power`, or the median by 12 dB; all cells if there are none."""
-    power = np.mean(np.abs(values) ** 2, axis=-1)
+    power = cell_power(values)
     is_active = power > (active_power(power) if least_power is None else least_power)
     return is_active if is_active.any() else np.ones_like(is_active)
+
+
+def cell_power(values: CubeValues) -> np.ndarray:
+    """Antenna-averaged power (frame, range, doppler), float64: the squares of 1e-30 are zero in float32."""
+    return np.mean(np.square(values.real, dtype=np.float64) + np.square(values.imag, dtype=np.float64), axis=-1)
 
 
 def active_power(power: np.ndarray) -> float:

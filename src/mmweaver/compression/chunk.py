@@ -26,7 +26,8 @@ from mmweaver.compression.moving_cells import code_moving, decoded_moving, movin
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize, uniform_bits
 from mmweaver.compression.residual_stream import (
-    PRICE,
+    USUAL_PRICE,
+    Price,
     QuantizedCells,
     cell_energy,
     code_cells,
@@ -51,6 +52,7 @@ REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
 NEAR = 0.4  # difference of log(step) within which counted scatterers are taken for those of another step
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
+USUAL_RANK_BITS = 1.02  # of factors, over those estimated
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
@@ -73,6 +75,7 @@ class DecodedChunk:
     rank: int = 0
     has_noise: bool = False
     exact: CubeValues | None = None
+    step: float = 0.0  # relative to the peak
     transform: TransformChoice | None = None
 
     def mode_name(self) -> str:
@@ -134,11 +137,11 @@ class ChunkEncoder:
         self.layers = replace(layers, calibration=_quantize_gains(layers.calibration))
 
     def encode(
-        self, step: float, mode: ChunkMode, coarser: int, price: float = PRICE, *, only_size: bool = False
+        self, step: float, mode: ChunkMode, coarser: int, price: Price = USUAL_PRICE, *, only_size: bool = False
     ) -> CodedChunk:
         """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak.
 
-        `price`: see `quantized`. `only_size`: its size is estimated, and nothing coded that takes long.
+        `only_size`: its size is estimated, and nothing coded that takes long.
         """
         draft = self.draft(step, mode, coarser, only_size=only_size)
         step, stream, flags, front = draft.step, draft.stream, draft.flags + IS_NEW, draft.front
@@ -254,8 +257,8 @@ class ChunkEncoder:
         if factors is None:
             return replace(self._plain, step=step, stream=Encoder())
         stream, uncoded_bytes = Encoder(), 0.0
-        if only_size and self._rank_bits is not None:
-            uncoded_bytes = self._rank_bits * factors.estimated_bits() / 8
+        if only_size and (self._rank_bits is not None or not factors.is_peaked):
+            uncoded_bytes = (self._rank_bits or USUAL_RANK_BITS) * factors.estimated_bits() / 8
         else:
             factors.code(stream)
             self._rank_bits = 8 * len(stream.to_bytes()) / max(factors.estimated_bits(), 1.0)
@@ -395,7 +398,7 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         parts.append(decoded_moving(stream, shape, beams, step / finer))
     return DecodedChunk(
         frames=frames, layers=layers, residual=finite(reduce(np.add, parts)) if parts else None, peak=peak,
-        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None,
+        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None, step=step,
         transform=None if transform is None else transform.choice,
     )  # fmt: skip
 

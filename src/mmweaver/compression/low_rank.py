@@ -18,6 +18,7 @@ MOST_RANK = 255
 ROUNDING = 0.4
 LEAST_GAIN = 0.3  # squared steps per bit that a component must remove
 CORRELATED = True, False  # neighbouring rows of a factor predict each other's sign
+PEAKED = 10  # largest level of the right factor over that of the left one
 WIDER = 3.0  # noise of windowed cells is correlated: its strongest components exceed those of white noise
 
 
@@ -62,6 +63,11 @@ class RankFactors:
     def rank(self) -> int:
         """Number of components."""
         return self.left.shape[2]
+
+    @property
+    def is_peaked(self) -> bool:
+        """Whether a few Doppler bins hold most: such factors have up to 1.7 times the bits that are estimated."""
+        return bool(np.abs(self.right).max() > PEAKED * np.abs(self.left).max())
 
     @property
     def num_values(self) -> int:

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.cell_choice import active_cells, active_power
+from mmweaver.compression.cell_choice import active_cells, active_power, cell_power
 from mmweaver.compression.chunk import DecodedChunk, decode_chunk
 from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, MmwHeader, header_for, pack_mmw
 from mmweaver.compression.mode_choice import EFFORTS
 from mmweaver.compression.old_chunk import decode_old_chunk
-from mmweaver.compression.rate_search import Progress, error_db, within_bytes, within_error
+from mmweaver.compression.quality_search import within_error
+from mmweaver.compression.rate_search import Progress, error_db, within_bytes
 from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
@@ -21,6 +22,7 @@ from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
 
 LEAST_BYTES = 256
+MOST_PEAK = 1e37  # sums over a window of values close to the largest float32 would not be finite
 
 
 @single_precision()
@@ -97,8 +99,8 @@ def check_ratio(cube: RadarCube, num_bytes: int) -> None:
 
 def scale_of(cube: RadarCube) -> Scale:
     """Peak and active power of a cube; a cube of zeros has peak 1."""
-    power = np.mean(np.square(np.real(cube.values)) + np.square(np.imag(cube.values)), axis=-1)
-    return Scale(peak=float(np.abs(cube.values).max()) or 1.0, active_power=active_power(power))
+    power = active_power(cell_power(cube.values))
+    return Scale(peak=float(np.abs(cube.values).max()) or 1.0, active_power=power)
 
 
 @single_precision()
@@ -171,6 +173,7 @@ def describe_mmw(path: Path | str) -> dict[str, Any]:
                 "has_static": layers is not None and bool((layers.static != 0).any()),
                 "has_gains": layers is not None and bool((layers.calibration != 1).any()),
                 "residual_values": chunk.num_residual_values,
+                "step_db": round(20 * math.log10(chunk.step), 1) if chunk.step else None,
                 "noise_db": round(10 * math.log10(chunk.noise_power), 2),
             }
         )
@@ -218,6 +221,8 @@ def check_writable(cube: RadarCube) -> None:
             )
     if not np.isfinite(cube.values).all():
         raise InputError("the cube holds values that are not finite; repair the recording")
+    if np.abs(cube.values).max() > MOST_PEAK:
+        raise InputError(f"the cube holds values above {MOST_PEAK:g}, where float32 ends; scale them down")
 
 
 def _packed(header: MmwHeader, segment: SegmentEncoder, chunks: list[bytes]) -> bytes:

@@ -11,7 +11,7 @@ from mmweaver.compression.chunk import ChunkEncoder
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
 from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.moving_cells import FINER_STEPS, moving_cells
-from mmweaver.compression.residual_stream import PRICE, cell_energy
+from mmweaver.compression.residual_stream import USUAL_PRICE, Price, cell_energy
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, fit_static, static_response, subtract_static
 
@@ -24,6 +24,7 @@ DEVIATIONS, MARGIN = 3.5, 3  # of noise, by which cells that scatterers are fitt
 FINER_SHARE, MAP_BITS = 0.05, 6.0  # of the bytes that finer steps of moving cells may have; bits to say where one is
 WEAKER, ENOUGH = 2.5, 2.5e-4  # power of active cells over that of weak moving ones; their error that is low enough
 CLEAR = 0.995  # of the cost without layers: what layers must have, for estimates are not better
+BEATEN, BEATEN_NEAR = 1.15, 1.0  # times the cost; difference of log(step) within which low rank is not tried again
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
 FREE_MODES = ("transforms", "scatterers", "low rank", "noise layer", "DCT of ranges")
@@ -38,6 +39,7 @@ class ModeChooser:
 
     def __init__(self, encoder: ChunkEncoder, *, without: tuple[str, ...] = (), most_bytes: float = math.inf):
         self.encoder, self.most_bytes, self.had_points = encoder, most_bytes, False
+        self._beaten_step: float | None = None  # at which low rank was far behind
         self.start_again(without)
 
     def start_again(self, without: tuple[str, ...]) -> None:
@@ -48,11 +50,11 @@ class ModeChooser:
         self.sample: CellSample | None = None  # of the mode decided on, at the step of the decision
 
     def encode(
-        self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
+        self, step: float, coarser: int, noise_step: float = 0.0, price: Price = USUAL_PRICE, *, only_size: bool = False
     ) -> CodedChunk:
         """The chunk at a step, in the mode decided on; with a noise layer where it has a step.
 
-        `price`, `only_size`: see `ChunkEncoder.encode`.
+        `only_size`: see `ChunkEncoder.encode`.
         """
         if self.mode is None:
             self.decide(step, coarser)
@@ -85,6 +87,12 @@ class ModeChooser:
         samples += [self.encoder.draft(step, mode, coarser, only_size=True).sample() for mode in modes[1:]]
         costs = [sample.at(step, coarser).cost(step, coarser) for sample in samples]
         best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
+        if modes[best].with_rank:  # its factors are coded before it is believed
+            samples[best] = self.encoder.draft(step, modes[best], coarser).sample()
+            costs[best] = samples[best].at(step, coarser).cost(step, coarser)
+            best = int(np.argmin([costs[0] * CLEAR, *costs[1:]]))
+        elif any(mode.with_rank and cost > BEATEN * costs[0] for mode, cost in zip(modes, costs, strict=True)):
+            self._beaten_step = step
         mode, self.sample = modes[best], samples[best]
         self.had_points |= mode.with_points
         self.mode = replace(mode, finer=self._finer(step, self.sample.at(step, coarser).num_bytes))
@@ -112,7 +120,9 @@ class ModeChooser:
         encoder, modes = self.encoder, []
         frames, num_range, doppler, antennas = encoder.target.shape
         sides = sorted((frames * num_range, doppler * antennas))
-        if "low rank" not in self.without and sides[0] > 1 and sides[0] ** 2 * sides[1] <= MOST_MATRIX:
+        may_win = self._beaten_step is None or abs(math.log(step / self._beaten_step)) > BEATEN_NEAR
+        is_small = sides[0] > 1 and sides[0] ** 2 * sides[1] <= MOST_MATRIX
+        if "low rank" not in self.without and is_small and may_win:
             modes.append(ChunkMode(transform=self.plain.transform, with_rank=True))
         # of one antenna, a scatterer has about as many numbers as the cells that it fills
         if "scatterers" not in self.without and encoder.frames.can_have_points and antennas > 1:

@@ -13,10 +13,31 @@ from mmweaver.compression.level_size import estimated_bits
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion
 PRICE = 0.11  # Lagrange multiplier: squared steps per bit
+GOLDEN = 0.6180339887498949  # multiples of it, modulo 1, are spread evenly
 SLIGHTLY_LESS = 0.999  # for roundings of float32
 LOWERED = (0.5, 0.75, 0.9, 0.0)  # shares of levels that are tried in turn
 ZERO_BITS, SIGN_AND_SIZE_BITS, OPEN_BITS = 0.35, 3.0, 3.0
 FIRST_OCTAVES, FIRST_OCTAVE_BITS, OCTAVE_BITS = 2, 1.6, 1.25
+
+
+@dataclass(frozen=True)
+class Price:
+    """Squared steps that a bit must save: `dear` in a `share` of the cells, evenly spread, and `usual` in the others.
+
+    At 0 all cells are coded in which any level is not zero, above PRICE levels are lowered too.
+    """
+
+    usual: float = PRICE
+    dear: float = PRICE
+    share: float = 0.0
+
+    def of_cells(self, cells: Int[Array, "cell"]) -> Array:
+        """The price (cell, 1) in each of some cells, given by their indices; (1, 1) where it is the same in all."""
+        usual, dear = np.float32(self.usual), np.float32(self.dear)
+        return np.where(cells * GOLDEN % 1 < self.share, dear, usual)[:, None] if self.share else np.full((1, 1), usual)
+
+
+USUAL_PRICE = Price()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,15 +74,14 @@ def quantized(
     step: float,
     coarser: int,
     is_active: Array,
-    price: float = PRICE,
+    price: Price = USUAL_PRICE,
     energy: Array | None = None,
 ) -> QuantizedCells:
     """Rate-distortion choice of the cells that are coded. Cells that are not active have `coarser` times the step.
 
     `coarser` 0: cells that are not active stay closed.
 
-    `price`: squared steps that a bit must save; at 0 all cells are coded in which any level is not zero, above PRICE
-    levels are lowered too. `energy`: that of the cells, if known.
+    `energy`: that of the cells, if known.
     """
     energy = cell_energy(coefficients) if energy is None else energy
     own_step = np.where(is_active, step, step * (coarser or 1))
@@ -75,9 +95,10 @@ def quantized(
     magnitude = np.abs(parts)
     levels = magnitude + magnitude.dtype.type(ROUNDING)
     np.floor(levels, out=levels)
-    if price > PRICE:
-        levels = _lowered(magnitude, levels, price)
-    worth = np.flatnonzero(_is_worthwhile(magnitude, levels, price))
+    prices = price.of_cells(cells)
+    if price.dear > PRICE:
+        levels = _lowered(magnitude, levels, prices)
+    worth = np.flatnonzero(_is_worthwhile(magnitude, levels, prices[:, 0]))
     if len(worth) < len(cells):
         parts, magnitude, levels = (values.take(worth, axis=1) for values in (parts, magnitude, levels))
     is_open = np.zeros(is_active.shape, bool)
@@ -128,7 +149,7 @@ def code_plain_cells(stream: BitStream, levels: Array | None, classes: Array, nu
     return code_cells(stream, levels, classes, np.zeros_like(classes), (False, False), 1, num_beams)
 
 
-def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
+def _lowered(magnitude: Array, levels: Array, price: Array) -> Array:
     """Levels lowered as far as each bit that this saves costs less error than `price`."""
     for share in LOWERED:
         lower = np.floor(levels * share)
@@ -137,7 +158,7 @@ def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
     return levels
 
 
-def _is_worthwhile(magnitude: Array, levels: Array, price: float) -> Array:
+def _is_worthwhile(magnitude: Array, levels: Array, price: Array) -> Array:
     """Whether cells (cell,) of levels (beam, cell, part) save as much error as their bits are worth; not empty ones."""
     saved = magnitude + magnitude
     saved -= levels

@@ -13,7 +13,7 @@ from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import MOST_DOPPLER
 from mmweaver.compression.coded_chunk import ChunkMode, CodedChunk
 from mmweaver.compression.mode_choice import ModeChooser
-from mmweaver.compression.residual_stream import PRICE
+from mmweaver.compression.residual_stream import USUAL_PRICE, Price
 from mmweaver.core.records import RadarCube
 
 SHORT_CHUNK = 20  # frames
@@ -108,7 +108,7 @@ class SegmentEncoder:
             chooser.start_again((*self.without, *left_out))
 
     def encode(
-        self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE, *, only_size: bool = False
+        self, step: float, coarser: int, noise_step: float = 0.0, price: Price = USUAL_PRICE, *, only_size: bool = False
     ) -> list[CodedChunk]:
         """All chunks at a step, in the modes decided on; with a noise layer where it has a step.
 
@@ -176,8 +176,9 @@ def chunk_encoder(cube: RadarCube, scale: Scale) -> ChunkEncoder:
 
 def noise_power(cube: RadarCube) -> float:
     """Power of a cell of noise: the median over all cells, over the median of its distribution."""
-    power = np.square(np.real(cube.values)) + np.square(np.imag(cube.values))
-    return float(np.median(power.ravel()[:: max(1, power.size // 100_000)])) / LN2
+    some = cube.values.ravel()[:: max(1, cube.values.size // 100_000)]
+    power = np.square(some.real, dtype=np.float64) + np.square(some.imag, dtype=np.float64)
+    return float(np.median(power)) / LN2
 
 
 def split(num_frames: int, length: int) -> list[range]:

@@ -77,8 +77,8 @@ def overlap_hop(cube: RadarCube) -> int:
     if not 0 < hop < config.num_loops or np.abs(hops - hop).max() > WHOLE:
         return 0
     rebuilt = _cut(_joined(cube.values, config, hop)[0], config, len(time_s), hop)
-    error = np.sum(np.abs(rebuilt - cube.values) ** 2)
-    return hop if error <= CONSISTENT * np.sum(np.abs(cube.values) ** 2) else 0
+    error, signal = (np.sum(np.square(np.abs(one), dtype=np.float64)) for one in (rebuilt - cube.values, cube.values))
+    return hop if error <= CONSISTENT * signal else 0
 
 
 def _long_window(num_loops: int, num_frames: int, hop: int) -> np.ndarray:
