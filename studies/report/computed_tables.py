@@ -21,11 +21,15 @@ Scores = dict[tuple[str, int], dict[str, list[float | None]]]  # {(signal, bytes
 
 
 def _codec_scores(results: Path, sources: str = "codecs/*") -> tuple[Scores, list[str]]:
-    """Errors of every codec, and the codecs, ours first."""
+    """Errors of every codec, and the codecs, ours first. What was measured on another cube than ours is left out."""
     found: Scores = {}
+    cubes: dict[str, str] = {}
     records = sorted(records_of(results, sources), key=lambda record: record["method"] not in OURS)
     for record in records:
         for row in record["rows"]:
+            cube = row["dataset"]
+            if cubes.setdefault(cube["name"], cube["sha256"]) != cube["sha256"]:
+                continue
             scores = [row["metrics"][name]["value"] for name in ERRORS]
             found.setdefault((row["dataset"]["name"], row["size"]["bytes_allowed"]), {})[record["method"]] = scores
     return found, [record["method"] for record in records]

@@ -244,8 +244,11 @@ def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, 
     cube = plain_cube(SMALL, num_frames, kind)
     data = compress_cube(cube, num_bytes=num_bytes)
     (tmp_path / "a.mmw").write_bytes(data)
-    left_db = error_db(read_cube(tmp_path / "a.mmw").values, cube.values)
     assert len(data) <= num_bytes
+    again = read_cube(tmp_path / "a.mmw").values
+    if np.array_equal(again, cube.values):
+        return
+    left_db = error_db(again, cube.values)
     assert len(data) >= 0.97 * num_bytes or left_db < -118  # the last digits of float32
     assert left_db < -10
 

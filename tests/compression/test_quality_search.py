@@ -6,8 +6,9 @@ from mmweaver.compression.chunk import decode_chunk
 from mmweaver.compression.quality_search import within_error
 from mmweaver.compression.rate_search import error_db
 from mmweaver.core.errors import InputError
+from tests.compression.test_mmw_codec import plain_cube
 from tests.compression.test_rate_search import segment_of
-from tests.fields.echoes import crowd
+from tests.fields.echoes import SMALL, crowd
 
 
 def test_a_quality_is_found_in_a_few_trials():
@@ -21,3 +22,11 @@ def test_a_quality_is_found_in_a_few_trials():
 def test_what_cannot_be_reached_is_refused():
     with pytest.raises(InputError, match="cannot be reached"):
         within_error(segment_of(crowd(num_frames=1)), 300.0, lambda _: None)
+
+
+def test_a_cube_of_one_number_is_kept_without_loss():
+    """Its transforms would take a thousand bytes for matrices alone."""
+    cube = plain_cube(SMALL, 5, "constant")
+    chunks = within_error(segment_of(cube), 20.0, lambda _: None)
+    assert sum(map(len, chunks)) < 500
+    assert np.array_equal(np.concatenate([decode_chunk(one, cube.config).cube_values() for one in chunks]), cube.values)

@@ -38,7 +38,7 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
     if search.best is None:
         raise InputError(f"a quality of {quality_db:g} dB cannot be reached; ask for less")
     size, *_, chunks = search.best
-    if search.is_too_good and sum(map(len, exact := segment.exact())) <= size:
+    if (search.is_too_good or segment.repeats()) and sum(map(len, exact := segment.exact())) <= size:
         return exact
     return chunks
 

@@ -35,7 +35,7 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
     """The finest step whose file fits. Cells without signal err more only while that costs little over all cells."""
     if num_bytes < 1:
         raise InputError(f"the bytes are too few for so many frames; give at least {1 - num_bytes} more")
-    if num_bytes >= EXACT_SHARE * segment.cube.values.nbytes or not np.any(segment.cube.values):
+    if num_bytes >= EXACT_SHARE * segment.cube.values.nbytes or segment.repeats():
         exact = segment.exact()
         if sum(map(len, exact)) <= num_bytes:
             return exact

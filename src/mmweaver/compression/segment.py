@@ -18,6 +18,7 @@ from mmweaver.core.records import RadarCube
 
 SHORT_CHUNK = 20  # frames
 MOST_VALUES, MOST_FRAMES = 2**20, 2048  # of a chunk: complex numbers, frames
+SAMPLED, REPEATED = 4096, 0.05  # numbers that are looked at; share that differs in a cube that repeats itself
 COARSER = 4  # step of cells without signal in steps of those with signal
 LARGEST_LEVEL = 2.0**27
 USUAL_QUALITY_STEP = 0.02
@@ -155,6 +156,11 @@ class SegmentEncoder:
             chooser.encoder.exact(self.cube.values[part.start : part.stop])
             for chooser, part in zip(self._choosers, self.parts, strict=True)
         ]
+
+    def repeats(self) -> bool:
+        """Whether a few numbers make up the cube, so that a file without loss may be the smallest."""
+        some = self.cube.values.ravel()[:: max(1, self.cube.values.size // SAMPLED)]
+        return len(np.unique(some)) < REPEATED * len(some)
 
     def _chooser(self, part: range, without: tuple[str, ...]) -> ModeChooser:
         encoder = chunk_encoder(some_frames(self.cube, part), self.scale)
