@@ -8,8 +8,8 @@ removal was on and peak grouping off follows from the recordings. `test` is only
     python -m studies run mars --data shared/data/pointclouds/mars/subject1
     python -m studies run mars --split validate --data shared/data/pointclouds/mars/subject1
 
-With `--split validate` the simulator as it is today is scored on all sections of `validate` that estimated nothing, next
-to what the recording itself gives when the person takes the same pose again: `test` is left alone.
+With `--split validate` the simulator as it is today is scored on all sections of `validate` that estimated nothing,
+next to what the recording itself gives when the person takes the same pose again: `test` is left alone.
 """
 
 import argparse
