@@ -6,6 +6,10 @@ receiver's gain, the CFAR threshold, the phase offset of the elevation transmitt
 removal was on and peak grouping off follows from the recordings. `test` is only scored.
 
     python -m studies run mars --data shared/data/pointclouds/mars/subject1
+    python -m studies run mars --split validate --data shared/data/pointclouds/mars/subject1
+
+With `--split validate` the simulator as it is today is scored on all sections of `validate` that estimated nothing,
+next to what the recording itself gives when the person takes the same pose again: `test` is left alone.
 """
 
 import argparse
@@ -35,7 +39,7 @@ from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.paths.static_paths import AS_PUBLISHED
-from mmweaver.recognition.mars_data import MarsStretch, as_published, body_height_m, cut, read_mars
+from mmweaver.recognition.mars_data import FRAME_S, MarsStretch, as_published, body_height_m, cut, read_mars
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
@@ -43,11 +47,12 @@ from studies.physics.joint_scatterers import run_joints
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
-PIECE_FRAMES, PIECES = 20, 20
+PIECE_FRAMES, PIECES, MOST_PIECES = 20, 20, 10_000
 HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
 THRESHOLDS = (400, 2000)
 ELEVATIONS_DEG = (0.0, -12.0, -8.0, -4.0, 4.0, 8.0, 12.0)  # as far as boards were seen to be off (docs/board.md)
 PIECES_TO_ESTIMATE = 12
+AGAIN_FRAMES, VELOCITY_WEIGHT_S = 10, 0.3  # at least a second later; how far velocities count in a pose's likeness
 Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
 
 
@@ -287,6 +292,35 @@ def neighbour_oracle(pieces: list[MarsStretch]) -> Clouds:
     return [(piece.clouds[1], *piece.clouds[:-1]) for piece in pieces]
 
 
+def same_pose_oracle(pieces: list[MarsStretch], stretches: list[MarsStretch]) -> Clouds:
+    """The real frame whose joints and their velocities are the most alike, a second or more away in the recording.
+
+    What a radar gives twice of one pose: nobody who knows the joints alone can be expected to do better. Where a
+    recording is too short, the neighbouring frame.
+    """
+    of_cloud = {id(cloud): (stretch, at) for stretch in stretches for at, cloud in enumerate(stretch.clouds)}
+    likeness = {id(stretch): _posture(stretch) for stretch in stretches}
+    clouds: Clouds = []
+    for piece, neighbours in zip(pieces, neighbour_oracle(pieces), strict=True):
+        again = []
+        for cloud, neighbour in zip(piece.clouds, neighbours, strict=True):
+            stretch, at = of_cloud[id(cloud)]
+            posture = likeness[id(stretch)]
+            apart = ((posture - posture[at]) ** 2).sum(axis=1)
+            apart[np.abs(stretch.frame - stretch.frame[at]) < AGAIN_FRAMES] = np.inf
+            again.append(stretch.clouds[int(apart.argmin())] if np.isfinite(apart).any() else neighbour)
+        clouds.append(tuple(again))
+    return clouds
+
+
+def _posture(stretch: MarsStretch) -> np.ndarray:
+    """Joints and, weighted by a third of a second, their velocities (sample, 132)."""
+    joints_m = smoothed(stretch.joints_m, 1.0)
+    velocity_mps = np.gradient(joints_m, stretch.frame * FRAME_S, axis=0)
+    both = np.concatenate([joints_m, VELOCITY_WEIGHT_S * velocity_mps], axis=1)
+    return both.reshape(len(both), -1)
+
+
 def _points(place_m: np.ndarray) -> PointCloud:
     none = np.full(len(place_m), np.nan)
     return PointCloud(
@@ -321,9 +355,34 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
     return scores
 
 
-def mars_digests(data: Path) -> dict[str, str]:
-    """The sha256 of each file of `test`."""
-    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(data.glob("*_test.csv"))}
+def measure_on_validate(data: Path, run: StudyRun, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
+    """The simulator, baselines and oracles on the sections of `validate` that estimated nothing. Returns the scores."""
+    began, validate = time.perf_counter(), read_mars(data, "validate")
+    used = cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE)
+    setup = calibrate(used, report)
+    taken = {id(piece.clouds[0]) for piece in used}
+    pieces = [piece for piece in cut(validate, PIECE_FRAMES, MOST_PIECES) if id(piece.clouds[0]) not in taken]
+    real: Clouds = [piece.clouds for piece in pieces]
+    mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
+    methods: dict[str, Callable[[], Clouds]] = {
+        "baseline_centroid": partial(centroid_baseline, pieces, setup),
+        "baseline_random_on_body": partial(surface_baseline, pieces, setup, mean),
+        "oracle_neighbouring_frame": partial(neighbour_oracle, pieces),
+        "oracle_same_pose_again": partial(same_pose_oracle, pieces, validate),
+        "simulator": partial(_simulated, pieces, setup, VARIANTS["simulator"]),
+    }
+    scores: dict[str, CloudScores] = {}
+    for name, method in methods.items():
+        scores[name] = score(method(), real)
+        report(f"{name:28s} {scores[name].line()}")
+        seconds = time.perf_counter() - began
+        _write(run, name, setup, data, scores, seconds=seconds, split="validate")
+    return scores
+
+
+def mars_digests(data: Path, split: str = "test") -> dict[str, str]:
+    """The sha256 of each file of a split."""
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(data.glob(f"*_{split}.csv"))}
 
 
 def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
@@ -331,10 +390,11 @@ def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) ->
 
 
 def _write(
-    run: StudyRun, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float
-) -> None:
+    run: StudyRun, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float,
+    split: str = "test",
+) -> None:  # fmt: skip
     row: dict[str, Any] = {
-        "dataset": {"name": "MARS subject 1, test", "sha256": mars_digests(data)},
+        "dataset": {"name": f"MARS subject 1, {split}", "sha256": mars_digests(data, split)},
         "n": scores[name].num_frames,
         "seeds": [0],
         "seconds": {"all": round(seconds, 1)},
@@ -342,12 +402,13 @@ def _write(
     }
     variant = asdict(VARIANTS[name]) if name in VARIANTS else None
     config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}
-    run.write("mars", name, config=config, rows=complete_rows([row]))
+    run.write("mars" if split == "test" else f"mars_{split}", name, config=config, rows=complete_rows([row]))
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="folder of a MARS subject")
+    parser.add_argument("--split", choices=("test", "validate"), default="test", help="what is scored (default: test)")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    measure(options.data, run)
+    (measure if options.split == "test" else measure_on_validate)(options.data, run)

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.boards import find_board
 from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, PoseSequence, RadarCube
+from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.dsp.cube import radar_cube, remove_static
@@ -26,7 +27,7 @@ from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.mmwave_studio import read_mmwave_studio
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import Propagation
 from studies.fields.field_signals import pose_of, sample_scene, two_people_radar
 from studies.manifest import StudyRun
 from studies.physics.empty_room_cube import empty_room
@@ -143,7 +144,13 @@ def slow_frame(adc: AdcCube) -> AdcCube:
 
 def sample_room(config: RadarConfig, seed: int) -> AdcCube:
     """One frame of the sample room with nobody in it."""
-    return Simulator(sample_scene(), config, propagation=AS_PUBLISHED).run((), num_frames=1, seed=seed).adc
+    return simulator(sample_scene(), config, seed).run((), num_frames=1, seed=seed).adc
+
+
+def simulator(room: Scene, config: RadarConfig, seed: int) -> Simulator:
+    """The physics as `generate` runs it, with a typical board."""
+    board = find_board("typical", config, seed)
+    return Simulator(room, config, propagation=Propagation(clutter=True), board=board)
 
 
 def walker(config: RadarConfig, seed: int) -> AdcCube:
@@ -155,7 +162,7 @@ def walker(config: RadarConfig, seed: int) -> AdcCube:
     shifted = pose.joints_m + np.append(place - pelvis[:2], 0.0)
     from_middle = replace(pose, time_s=pose.time_s - middle_s, joints_m=shifted)
     room = empty_room(floor_z_m=float(shifted[..., 2].min()) - 0.04, wall_y_m=WALL_M)
-    return Simulator(room, config, propagation=AS_PUBLISHED).run(from_middle, num_frames=1, seed=seed).adc
+    return simulator(room, config, seed).run(from_middle, num_frames=1, seed=seed).adc
 
 
 def breathing_pose(seed: int, frames: int) -> tuple[PoseSequence, float]:
@@ -177,7 +184,7 @@ def breather(config: RadarConfig, seed: int) -> AdcCube:
     """A person who stands and only breathes, placed as the recorded one of `recorded_breath`."""
     pose, floor_z_m = breathing_pose(seed, config.num_loops)
     room = empty_room(floor_z_m=floor_z_m, wall_y_m=None)
-    made = Simulator(room, BGT60, propagation=AS_PUBLISHED).run(pose, num_frames=config.num_loops, seed=seed)
+    made = simulator(room, BGT60, seed).run(pose, num_frames=config.num_loops, seed=seed)
     return slow_frame(made.adc)
 
 

@@ -220,6 +220,12 @@ MARS = RowTable(
     sources=("mars/*",), key="record.method", labels={name: name.replace("_", " ") for name in MARS_ROWS},
     columns=(("", "{label}"), *((head, f"{{metrics.{name}:{form}}}") for name, head, form in MARS_COLUMNS)),
 )  # fmt: skip
+MARS_VALIDATE_ROWS = (
+    "baseline_centroid", "baseline_random_on_body", "oracle_neighbouring_frame", "oracle_same_pose_again", "simulator",
+)  # fmt: skip
+MARS_VALIDATE = replace(
+    MARS, sources=("mars_validate/*",), labels={name: name.replace("_", " ") for name in MARS_VALIDATE_ROWS}
+)
 MICRO_DOPPLER = MetricTable(
     sources=("micro_doppler/library",), joined="micro_doppler/recorded",
     columns=(
@@ -457,6 +463,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
     "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
+    "mars_validate": MARS_VALIDATE.render,
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,

@@ -36,7 +36,7 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
         if body < 0 or behind_m[-1] < far_m - step_m:
             continue
         there = (behind_m >= near_m) & (behind_m <= far_m)
-        least = LEAST_NOISE_SHARE * noise[frame] * there.sum()
+        least = LEAST_NOISE_SHARE * float(noise[frame, there].sum())
         energy = float(profile[frame, there].sum())
         limited[frame] = energy < least
         values[frame] = decibels(max(energy, least) / profile[frame, np.abs(behind_m) <= BODY_HALF_M].sum())

@@ -5,6 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import median_filter
+from scipy.special import gammaincinv
 
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, RadarCube
 from mmweaver.dsp.cube import radar_cube, remove_static
@@ -19,6 +21,7 @@ FEWEST_LOOPS = 8  # of a Doppler axis that separates movement from clutter
 PERSON_OVER_NOISE = 20.0  # 13 dB: moving energy of a range bin over the noise in it
 NEAREST_BODY_M = 0.25  # leakage and cables lie nearer
 FEWEST_SLOW_FRAMES = 32
+NOISE_BINS = 9  # range bins over which noise is smoothed: an IF response is smooth
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,15 +111,21 @@ class SignalEvidence:
 
     @cached_property
     def moving_profile(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Moving energy (frame, range) without noise, and the noise (frame,) that was taken away; None for few loops.
+        """Moving energy without noise, and the noise that was taken away, both (frame, range); None for few loops.
 
-        The mean chirp of each frame is removed and the Doppler bins of movement are added up.
+        The mean chirp of each frame is removed and the Doppler bins of movement are added up. Noise is that of each
+        range, from the outer Doppler bins: an IF filter makes it slope by some decibels, and one level for all ranges
+        leaves what looks like faint movement everywhere (3 dB of the energy 1 to 2 m behind a recorded person).
         """
         if self.cube.config.num_loops < FEWEST_LOOPS:
             return None
-        moving = range_doppler_power(remove_static(self.cube))[:, :, moving_doppler(self.cube)]
-        noise = np.median(moving, axis=(1, 2)) * moving.shape[2]
-        return moving.sum(axis=2) - noise[:, None], noise
+        power = range_doppler_power(remove_static(self.cube))
+        moving = moving_doppler(self.cube)
+        outer = power[:, :, self.far_doppler & moving]
+        # a median is deaf to limbs that are fast, and below the mean of antennas' powers by a known factor
+        noise = median_filter(np.median(outer, axis=2), size=(1, NOISE_BINS), mode="nearest")
+        noise *= moving.sum() / _median_over_mean(self.cube.config.num_antennas)
+        return power[:, :, moving].sum(axis=2) - noise, noise
 
     @cached_property
     def slow_profile(self) -> np.ndarray | None:
@@ -133,7 +142,8 @@ class SignalEvidence:
         profile, noise = self.moving_profile
         allowed = np.where(self.range_m >= NEAREST_BODY_M, profile, -np.inf)
         at = allowed.argmax(axis=1)
-        return np.where(profile[np.arange(len(at)), at] > PERSON_OVER_NOISE * noise, at, -1)
+        frame = np.arange(len(at))
+        return np.where(profile[frame, at] > PERSON_OVER_NOISE * noise[frame, at], at, -1)
 
     @cached_property
     def points(self) -> PointCloud:
@@ -157,6 +167,11 @@ class SignalEvidence:
         samples = adc.samples[:, : QUARTERS * loops].reshape(-1, loops, *adc.samples.shape[2:])
         parts = replace(adc, samples=samples, config=config)
         return SignalEvidence(ComparedSignal(name=self.signal.name, cube=radar_cube(parts), adc=parts), self.window_m)
+
+
+def _median_over_mean(num_antennas: int) -> float:
+    """Of noise power averaged over antennas: a gamma distribution of as many degrees of freedom."""
+    return float(gammaincinv(num_antennas, 0.5)) / num_antennas
 
 
 def _frames_that_fit(shape: tuple[int, ...]) -> int:

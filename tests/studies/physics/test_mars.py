@@ -17,6 +17,7 @@ from studies.physics.mars import (
     centroid_baseline,
     detect,
     neighbour_oracle,
+    same_pose_oracle,
     simulate,
     surface_baseline,
 )
@@ -47,6 +48,20 @@ def test_a_swaying_person_gives_points_on_the_body(pieces: list[MarsStretch]):
     assert 1.5 < np.median(range_m) < 2.1
     speeds = np.concatenate([np.abs(cloud.radial_velocity_mps) for cloud in every])
     assert 0.1 < speeds.mean() < 0.9
+
+
+def test_the_same_pose_again_is_a_like_frame_a_second_away(folder: Path):
+    stretches = read_mars(folder, "test")
+    pieces = cut(stretches, 10, 2)
+    (stretch,) = stretches
+    joints_m = mars.smoothed(stretch.joints_m, 1.0)
+    place = {id(cloud): at for at, cloud in enumerate(stretch.clouds)}
+    for piece, again in zip(pieces, same_pose_oracle(pieces, stretches), strict=True):
+        for cloud, other in zip(piece.clouds, again, strict=True):
+            at, there = place[id(cloud)], place[id(other)]
+            assert abs(stretch.frame[at] - stretch.frame[there]) >= mars.AGAIN_FRAMES
+            apart = np.linalg.norm(joints_m - joints_m[at], axis=-1).mean(axis=1)
+            assert apart[there] <= np.median(apart)
 
 
 def test_the_elevated_transmitter_moves_points_up_and_down(pieces: list[MarsStretch]):
