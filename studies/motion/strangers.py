@@ -5,9 +5,9 @@ python -m studies run strangers --draw second
 
 The 200 are in studies/motion/sentences/strangers.txt, written by one person as a stranger might say them; the grammar
 was developed on others. The 150 of strangers_second.txt and the 150 of strangers_third.txt were written by a language
-model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and composed in the bundled room
-with seed 0 and no other option. A sentence is made whole where every clause is done, approximated where one is shown
-as something similar or left out.
+model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and
+composed in the bundled room with seed 0 and no other option. A sentence is made whole where every clause is done,
+approximated where one is shown as something similar or left out.
 Refusals are counted by their reason. The baseline is what the same command made before (commit 238a8a5).
 """
 
