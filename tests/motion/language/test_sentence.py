@@ -96,7 +96,7 @@ UNDERSTOOD = {
     "takes a step to the left": "sidestepping left x1",
     "a man lifts his hands": "raising both hands",
     "turns 90 degrees to the right": "turning right",
-    "raises the left arm, then waves": "waving left-hand",
+    "raises the left arm, then waves": "standing 0.5s | waving left-hand",
     "walks left, then walks back": "walking left | walking back",
     # at once
     "drinks while sitting": "sitting and drinking",

@@ -54,7 +54,8 @@ def test_what_is_carried_upstairs_is_carried_all_the_way():
     [
         ("bends down and picks up a box", [("pick_up", "")]),
         ("crouches for five seconds, then picks up a ball", [("crouch", ""), ("pick_up", "")]),
-        ("raises the right hand and waves it a few times", [("stand", "wave")]),
+        ("raises the right hand and waves it a few times", [("stand", ""), ("stand", "wave")]),
+        ("claps, raises the right hand and waves it", [("stand", "clap"), ("stand", "wave")]),
         ("raises both arms, then waves with the right hand", [("stand", "raise"), ("stand", "wave")]),
     ],
 )

@@ -22,6 +22,7 @@ ONE_ARMED = words_in(
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
+_REST_S = 0.5  # before a hand is raised to wave
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
 
 
@@ -72,9 +73,10 @@ def going_on(steps: list[Step]) -> list[Step]:
         before = result[-1]
         if _only_begins(before, step):
             hand = step.hand or before.hand
-            result[-1] = replace(
-                step, hand=hand, clause=f"{before.clause}, {step.clause}", clauses=(*before.clauses, *step.clauses)
-            )
+            clause, clauses = f"{before.clause}, {step.clause}", (*before.clauses, *step.clauses)
+            # a sequence that begins with a gesture begins in it: from rest, the hand is seen to be raised
+            at_rest = [replace(before, upper="", hand="", seconds=_REST_S)] if step.upper and len(result) == 1 else []
+            result[-1:] = [*at_rest, replace(step, hand=hand, clause=clause, clauses=clauses)]
         else:
             result.append(_as_the_body_faces(before, step))
     return result
