@@ -1,13 +1,13 @@
-"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 150 more.
+"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 300 more.
 
 python -m studies run strangers
-python -m studies run strangers --second
+python -m studies run strangers --draw second
 
 The 200 are in studies/motion/sentences/strangers.txt, written by one person as a stranger might say them; the grammar
-was developed on others. The 150 of strangers_second.txt were written by a language model that had not seen the
-grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and composed in the bundled room
-with seed 0 and no other option. A sentence is made whole where every clause is done, approximated where one is shown
-as something similar or left out.
+was developed on others. The 150 of strangers_second.txt and the 150 of strangers_third.txt were written by a language
+model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and
+composed in the bundled room with seed 0 and no other option. A sentence is made whole where every clause is done,
+approximated where one is shown as something similar or left out.
 Refusals are counted by their reason. The baseline is what the same command made before (commit 238a8a5).
 """
 
@@ -25,7 +25,10 @@ from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 
 SENTENCES = Path(__file__).parent / "sentences" / "strangers.txt"
-SECOND = SENTENCES.with_name("strangers_second.txt")
+DRAWS = {
+    "default": SENTENCES, "second": SENTENCES.with_name("strangers_second.txt"),
+    "third": SENTENCES.with_name("strangers_third.txt"),
+}  # fmt: skip
 BEFORE = 72 / 200  # made at commit 238a8a5, by the same steps
 REASONS = {"names no activity": "unknown", "was found in the photo": "not in the room", "no room": "no room",
            "nobody can be": "not in the room", "at the same time": "at the same time"}  # fmt: skip
@@ -70,17 +73,16 @@ def result_row(outcomes: list[tuple[str, str]], digest: str, *, before: float | 
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--second", action="store_true", help="the 150 of strangers_second.txt")
+    parser.add_argument("--draw", choices=tuple(DRAWS), default="default", help="which sentences")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     weaver = Weaver("physics", bounces=1, clutter="resolved")
     room = weaver.sample_room()
-    path = SECOND if options.second else SENTENCES
+    path = DRAWS[options.draw]
     texts = path.read_text(encoding="utf-8").splitlines()
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     outcomes = [outcome(weaver, room, text) for text in texts]
-    row = result_row(outcomes, digest, before=None if options.second else BEFORE)
+    row = result_row(outcomes, digest, before=BEFORE if options.draw == "default" else None)
     unknown = {"seconds": "see the manifest"}
-    name = "second" if options.second else "default"
-    run.write("strangers", name, config={"room": "bundled"}, rows=complete_rows([row], unknown=unknown))
+    run.write("strangers", options.draw, config={"room": "bundled"}, rows=complete_rows([row], unknown=unknown))

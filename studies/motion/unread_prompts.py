@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Eight draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Nine draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -13,12 +13,13 @@ FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 
 320,000 and 1,470,000), after those from 900,000, 980,000, 1,050,000, 1,100,000, 1,250,000 and 1,330,000 had been read
 to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. `strangers`:
 the 150 sentences of studies/motion/sentences/strangers_second.txt, written for a radar by a language model that had not
-seen the grammar: short ones, everyday ones and hard ones. Each prompt
-counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
+seen the grammar: short ones, everyday ones and hard ones; `strangers_second`: the 150 of strangers_third.txt, by a
+language model that had not seen it either, in the style of captions of motion capture. Each prompt counts once, without
+those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b and eb79a6a before the last three); what was understood was evaluated by
-hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in results/unread_prompts/judgements*.json, named
-by the prompts' sha256.
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a and ea0c8b6 before the last four); what was understood was
+evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
+results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
 import argparse
@@ -39,7 +40,7 @@ from studies.study import Reads
 DRAWS = {  # -> ending of the names of their files
     "first": "", "second": "_second", "captions": "_captions", "third": "_third",
     "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
-    "strangers": "_strangers",
+    "strangers": "_strangers", "strangers_second": "_strangers_second",
 }  # fmt: skip
 
 

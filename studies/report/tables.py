@@ -294,6 +294,7 @@ UNREAD = {
     for name, in_part in (
         ("", False), ("_second", False), ("_captions", False), ("_third", True), ("_captions_second", True),
         ("_captions_third", True), ("_captions_fourth", True), ("_strangers", True),
+        ("_strangers_second", True),
     )
 }  # fmt: skip
 STRANGERS = MetricTable(

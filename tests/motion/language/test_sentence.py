@@ -96,7 +96,7 @@ UNDERSTOOD = {
     "takes a step to the left": "sidestepping left x1",
     "a man lifts his hands": "raising both hands",
     "turns 90 degrees to the right": "turning right",
-    "raises the left arm, then waves": "left-hand raise | waving left-hand",
+    "raises the left arm, then waves": "standing 0.5s | waving left-hand",
     "walks left, then walks back": "walking left | walking back",
     # at once
     "drinks while sitting": "sitting and drinking",
@@ -345,3 +345,28 @@ def test_who_carries_a_thing_that_is_put_down_walks_there():
 def test_somebody_who_is_spoken_to_does_it():
     assert parse("shake your head").steps[0].upper == "shake_head"
     assert parse("raise your left hand").steps[0].hand == "left"
+
+
+def test_the_other_hand_has_its_own_count() -> None:
+    steps = parse("a person punches twice with the right fist and once with the left").steps
+    assert [(step.upper, step.hand, step.count) for step in steps] == [("punch", "right", 2), ("punch", "left", 1)]
+
+
+@pytest.mark.parametrize(
+    ("text", "gait"),
+    [
+        ("walks, stops, then carries on walking", "walk"),
+        ("walks, leans to the left and then carries on straight", "walk"),
+        ("jogs, turns left and continues straight", "jog"),
+        ("claps and then marches off", "walk"),
+    ],
+)
+def test_who_carries_on_carries_nothing(text: str, gait: str) -> None:
+    last = parse(f"a person {text}").steps[-1]
+    assert (last.lower, last.upper) == (gait, "")
+
+
+def test_how_a_pose_ends_is_no_step() -> None:
+    held = parse("a person raises their left arm to shoulder height, holds it, and lets it drop")
+    bent = parse("a person bows, then straightens up")
+    assert [len(plan.steps) for plan in (held, bent)] == [1, 1]

@@ -47,3 +47,39 @@ def test_what_is_carried_upstairs_is_carried_all_the_way():
         assert [(step.lower, step.upper) for step in plan.steps] == [("stairs", "carry")], text
         assert plan.duration_s > 4.0  # a whole step up and down
         assert "stairs" in plan.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "acted"),
+    [
+        ("bends down and picks up a box", [("pick_up", "")]),
+        ("crouches for five seconds, then picks up a ball", [("crouch", ""), ("pick_up", "")]),
+        ("raises the right hand and waves it a few times", [("stand", ""), ("stand", "wave")]),
+        ("claps, raises the right hand and waves it", [("stand", "clap"), ("stand", "wave")]),
+        ("raises both arms, then waves with the right hand", [("stand", "raise"), ("stand", "wave")]),
+    ],
+)
+def test_what_only_begins_a_movement_is_not_done_twice(text: str, acted: list[tuple[str, str]]) -> None:
+    plan = parse(f"a person {text}")
+    assert [(step.lower, step.upper) for step in plan.steps] == acted
+    assert all(clause.status == "done" for clause in plan.clauses)
+
+
+@pytest.mark.parametrize(
+    ("text", "direction", "turn_deg"),
+    [
+        ("turns around and walks away", "forwards", 0.0),
+        ("turns around and walks away from the sensor", "away", 0.0),
+        ("opens the door and walks in", "forwards", 0.0),
+        ("turns to the right, then turns back", "left", 0.0),
+        ("turns a little to the right, then turns back to face the front", "", 45.0),
+    ],
+)
+def test_the_way_follows_from_how_the_body_faces(text: str, direction: str, turn_deg: float) -> None:
+    last = parse(f"a person {text}").steps[-1]
+    assert (last.direction, last.turn_deg) == (direction, turn_deg)
+
+
+def test_a_last_participle_on_the_spot_is_said_to_follow() -> None:
+    plan = parse("a person is boxing, bouncing lightly on the feet")
+    assert "one after the other" in plan.clauses[-1].how

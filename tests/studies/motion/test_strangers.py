@@ -1,11 +1,9 @@
 """The count of everyday sentences."""
 
-from pathlib import Path
-
 import pytest
 
 from mmweaver.generate import Weaver
-from studies.motion.strangers import SECOND, SENTENCES, outcome, result_row
+from studies.motion.strangers import DRAWS, outcome, result_row
 
 
 def test_outcomes_and_shares():
@@ -18,7 +16,7 @@ def test_outcomes_and_shares():
     assert row["reasons"] == {"unknown": 1}
 
 
-@pytest.mark.parametrize(("path", "count"), [(SENTENCES, 200), (SECOND, 150)])
-def test_all_sentences_differ(path: Path, count: int):
-    texts = path.read_text(encoding="utf-8").splitlines()
+@pytest.mark.parametrize(("draw", "count"), [("default", 200), ("second", 150), ("third", 150)])
+def test_all_sentences_differ(draw: str, count: int):
+    texts = DRAWS[draw].read_text(encoding="utf-8").splitlines()
     assert len(set(texts)) == len(texts) == count

@@ -343,7 +343,7 @@ _ALIKE = tuple(
     for alike in (
         "walk jog sidestep limp stagger march stairs crawl", "jump leap hop hop_one_leg jumping_jacks",
         "sit sit_down sit_up stand_up", "kneel kneel_down kneel_up", "stumble fall fall_off push",
-        "bend bow pick_up lean stretch",
+        "bend bow pick_up lean stretch", "pick_up crouch squat", "raise wave",
         "lie lie_down lie_on_seat recline get_up fall", "lunge side_lunge", "stand stand_up get_up kneel_up one_leg",
         "raise raise_hold arms_out arm_extension hands_up stretch limb_extension raise_leg knock_elbow pick_up",
         "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",

@@ -10,7 +10,11 @@ _HOLDING = r"drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|c
 _MOTION = r"(?:motions?|movements?|gestures?|moves?|exercises?)"
 
 NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"\b((?:run|jog|sprint)(?:s|ning|ging|ing)?\b[^.;]*?)\b(?:continu(?:es?|ing)|carr(?:ies|ying) on) (?:straight(?: on| ahead)?|ahead|forwards?|on)(?=$|[,.])", r"\1 jogs forwards"),
+    (r"\b(?:continu(?:es?|ing)|carr(?:ies|ying) on) (?:straight(?: on| ahead)?|ahead|forwards?|on)(?=$|[,.])", "walks forwards"),
+    (r"\b(?:switch|chang|swap)(?:es|ing)? to (?:the |his |her |their )?(left|right) (foot|leg|hand|arm)\b", r"with the \1 \2"),
     # misspelt and mistyped
+    (r"\bcross(?:ed)?[- ]?legged\b", "cross-legged"),
     (r"\bper(?:so|o|os)ns? (?=walks|is|goes|turns|jumps|does|makes|runs)", "person "), (r"\bperons?\b", "person"),
     (r"\bsomone\b|\bsome ?one ?who\b", "someone"), (r"\brigth\b|\brihgt\b", "right"), (r"\beft\b", "left"), (r"\b(?:a|the) humans\b", "a human"),
     (r"\b([a-z]{3,})ig\b", r"\1ing"),

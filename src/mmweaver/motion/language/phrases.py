@@ -14,6 +14,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:{BUILDS})(?: and|,)? (?=(?:(?:{BUILDS}|old|young|elderly|tall|short|little) )*(?:{PERSON_NOUNS})\b)", ""),  # `described_person` has it
     (r"\b((?:drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?)(?: [a-z]+){0,4}?)"
      r" (?:while )?standing up\b", r"\1 while standing "),
+    (r"\bcarr(?:y|ies|ied|ying) on(?: with)?\b(?! (?:an?|the|his|her|its|their|one|both)\b)", " continues "),
     (r"\bninety\b", " 90 "), (r"\bforty[- ]five\b", " 45 "), (r"\b(?:one |a )?hundred (?:and )?eighty\b", " 180 "),
     (r"\bform (?=(?:the |his |her )?(?:back|behind|front|left|right)\b)", " from "),
     (r"\b(?:a|an|one|two|three|four|five|some|few|\d+)(?: (?:few|short))? (?:steps?|seconds?|moments?|meters?|metres?) later\b",

@@ -23,7 +23,7 @@ from mmweaver.motion.language.left_out import (
     parse_with_less,
     says_more_of,
 )
-from mmweaver.motion.language.lexicon import OWN, RADAR
+from mmweaver.motion.language.lexicon import ARMS, OWN, RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -31,7 +31,7 @@ from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRe
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.rough_readings import read_roughly
-from mmweaver.motion.language.simultaneous import in_sequence, overlay
+from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verbs import RECOVERING
@@ -43,6 +43,7 @@ _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
+BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
@@ -135,7 +136,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
             sequence[number - 1 : number + 1] = [walk, replace(step, place=None)]
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
-    steps = carried_over(with_postures(_sideways_throughout(sequence)))
+    steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
     note_what_is_not_shown(given_text, every_clause, steps, records)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
@@ -305,7 +306,8 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
     about = parsed.about
     aimed = parsed.link == "and" and not (about.hand or about.foot)  # "to the left and to the right"
-    in_turn = parsed.link in ("then", "comma") or aimed
+    counted = parsed.link == "and" and bool(about.count)  # "twice with the right fist and once with the left"
+    in_turn = parsed.link in ("then", "comma") or aimed or counted
     side = about.hand or about.foot or about.direction
     if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
@@ -382,7 +384,12 @@ def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
     """Whether the steps before imply a clause: lowering a raised hand or leg, recovering from a push."""
     before, words = steps[-1], set(parsed.unknown) | set(parsed.text.split())
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
-        return bool(LOWERING & words)
+        held = {"holds", "holding", "keeps", "keeping"} & words and {"it", "them"} & words
+        return bool(LOWERING & words or (held and not parsed.about.seconds))
+    if before.upper and LOWERING & words and ARMS & words:
+        return True
+    if before.lower in BENT:
+        return bool({"straightens", "straightening", "comes", "coming"} & words and "up" in words)
     if before.lower in (*JUMPING, "hop_one_leg"):
         return bool({"land", "lands", "landing"} & words)
     return any(step.lower == "stumble" for step in steps) and bool(RECOVERING & words)

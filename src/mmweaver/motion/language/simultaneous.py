@@ -7,6 +7,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.left_out import ROUGH
+from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
@@ -21,6 +22,7 @@ ONE_ARMED = words_in(
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
+_REST_S = 0.5  # before a hand is raised to wave
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
 
 
@@ -46,9 +48,8 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
                 steps.append(first)
                 parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
         else:
-            if steps and _reads_as_at_once(
-                parsed_clauses[i - 1], parsed
-            ):  # "dances, jumping", "is dancing and jumping"
+            is_last = i + 1 == len(parsed_clauses)
+            if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed, is_last=is_last):  # "dances, jumping"
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
@@ -63,6 +64,45 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
                     parsed.lost.append(f"{steps[-1].name} and {step.name} are shown one after the other")
                 steps.append(step)
     return steps
+
+
+def going_on(steps: list[Step]) -> list[Step]:
+    """Steps that go on from where the one before has left the body, which does not begin anew."""
+    result = steps[:1]
+    for step in steps[1:]:
+        before = result[-1]
+        if _only_begins(before, step):
+            hand = step.hand or before.hand
+            clause, clauses = f"{before.clause}, {step.clause}", (*before.clauses, *step.clauses)
+            # a sequence that begins with a gesture begins in it: from rest, the hand is seen to be raised
+            at_rest = [replace(before, upper="", hand="", seconds=_REST_S)] if step.upper and len(result) == 1 else []
+            result[-1:] = [*at_rest, replace(step, hand=hand, clause=clause, clauses=clauses)]
+        else:
+            result.append(_as_the_body_faces(before, step))
+    return result
+
+
+def _only_begins(before: Step, step: Step) -> bool:
+    """Whether a step is how the next begins: "bends down and picks it up", "raises the hand and waves"."""
+    if before.count or before.seconds or before.facing or before.place:
+        return False
+    if step.lower == "pick_up":
+        return before.lower in ("bend", "crouch", "squat") and not before.upper
+    lifted = (before.lower, before.upper, step.lower, step.upper) == ("stand", "raise", "stand", "wave")
+    return lifted and step.hand in ("", before.hand) and before.other_hand is None
+
+
+def _as_the_body_faces(before: Step, step: Step) -> Step:
+    """A turn back is as far as the turn before; who turns, or opens a door, walks on ahead."""
+    words = set(step.clause.split())
+    both_turn = before.lower == step.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
+    if both_turn and step.direction == "around" and "back" in words:
+        return replace(step, direction=OPPOSITE.get(before.direction, ""), turn_deg=-before.turn_deg)
+    if step.lower not in ("walk", "jog") or step.target or step.place or step.seat:
+        return step
+    turned = before.lower == "turn" and not before.facing and step.direction == "away" and not words & RADAR
+    opened = before.upper == "open_door" and not step.direction and not step.arc_deg
+    return replace(step, direction="forwards") if turned or opened else step
 
 
 def _merged_walk(one: Step, other: Step) -> list[Step]:
@@ -130,7 +170,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
 
 
-def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
+def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause, *, is_last: bool) -> bool:
     """Whether a participle after a comma names what is done during the movement before, on the spot."""
     step = parsed.steps[0]
     on_the_spot = bool(step.upper) or not (step.moves or step.lower in ("turn", "stand", "stumble", "fall"))
@@ -139,7 +179,9 @@ def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause) -> bool:
             BY_KEY[before.steps[-1].lower].once or BY_KEY[step.lower].once or before.steps[-1].posture != step.posture
         )
         return parsed.form == before.form == "ing" and on_the_spot and not (ends or before.steps[-1].count)
-    return parsed.link == "comma" and parsed.form == "ing" and before.form != "ing" and on_the_spot
+    on_the_spot |= before.steps[-1].lower == "dance"  # "dances, moving the feet forward and back"
+    alone = is_last or before.form != "ing"  # "is boxing, hopping", not "is walking, waving and jumping"
+    return parsed.link == "comma" and parsed.form == "ing" and alone and on_the_spot
 
 
 def _can_overlay(one: Step, other: Step, *, in_two: bool = True) -> bool:

@@ -14,6 +14,7 @@ LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "r
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
+SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
@@ -181,6 +182,8 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     if times > 1:  # "turns around twice"
         angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
     about = "around" in texts or angle == 180.0 or not side
+    if side and not angle and "around" not in texts and texts & {"slightly", "little", "bit"}:
+        return replace(step, direction="", turn_deg=SLIGHT_TURN_DEG * side)
     if angle in (0.0, 180.0) and about and side:
         return replace(step, direction="", turn_deg=180.0 * side)
     if angle in (0.0, 180.0):
@@ -248,7 +251,7 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
-    onward = {"way", "direction"} & {word.text for word in words} and step.direction != "spot"
+    onward = {"way", "direction", "off"} & {word.text for word in words} and step.direction != "spot"
     if step.lower == "march" and (onward or step.direction not in ("", "spot", "around")):
         return _going_step(replace(step, lower="walk"), words, at)
     if step.lower == "lunge" and step.direction in SIDES and not step.foot:
