@@ -1,13 +1,13 @@
-"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 300 more.
+"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 450 more.
 
 python -m studies run strangers
 python -m studies run strangers --draw second
 
 The 200 are in studies/motion/sentences/strangers.txt, written by one person as a stranger might say them; the grammar
-was developed on others. The 150 of strangers_second.txt and the 150 of strangers_third.txt were written by a language
-model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and
-composed in the bundled room with seed 0 and no other option. A sentence is made whole where every clause is done,
-approximated where one is shown as something similar or left out.
+was developed on others. The 150 of strangers_second.txt, of strangers_third.txt and of strangers_fourth.txt were
+written by a language model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`).
+Each is parsed and composed in the bundled room with seed 0 and no other option. A sentence is made whole where every
+clause is done, approximated where one is shown as something similar or left out.
 Refusals are counted by their reason. The baseline is what the same command made before (commit 238a8a5).
 """
 
@@ -27,7 +27,7 @@ from studies.result_rows import complete_rows
 SENTENCES = Path(__file__).parent / "sentences" / "strangers.txt"
 DRAWS = {
     "default": SENTENCES, "second": SENTENCES.with_name("strangers_second.txt"),
-    "third": SENTENCES.with_name("strangers_third.txt"),
+    "third": SENTENCES.with_name("strangers_third.txt"), "fourth": SENTENCES.with_name("strangers_fourth.txt"),
 }  # fmt: skip
 BEFORE = 72 / 200  # made at commit 238a8a5, by the same steps
 REASONS = {"names no activity": "unknown", "was found in the photo": "not in the room", "no room": "no room",

@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Nine draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Ten draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -14,11 +14,13 @@ FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 
 to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. `strangers`:
 the 150 sentences of studies/motion/sentences/strangers_second.txt, written for a radar by a language model that had not
 seen the grammar: short ones, everyday ones and hard ones; `strangers_second`: the 150 of strangers_third.txt, by a
-language model that had not seen it either, in the style of captions of motion capture. Each prompt counts once, without
-those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
+language model that had not seen it either, in the style of captions of motion capture; `strangers_third`: the 150 of
+strangers_fourth.txt, likewise, after the other two had been used to mend the grammar (one was in strangers_third.txt,
+too). Each prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and
+right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a and ea0c8b6 before the last four); what was understood was
-evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6 and 8f1f1f1 before the last five); what was understood
+was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
 results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
@@ -41,6 +43,7 @@ DRAWS = {  # -> ending of the names of their files
     "first": "", "second": "_second", "captions": "_captions", "third": "_third",
     "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
     "strangers": "_strangers", "strangers_second": "_strangers_second",
+    "strangers_third": "_strangers_third",
 }  # fmt: skip
 
 

@@ -279,22 +279,23 @@ KITML = MetricTable(
         ("wrong_seen_since", "wrong by today's grammar, of the same 300, all read since (not blind)"),
     ),
 )  # fmt: skip
+UNDERSTOOD_SINCE = (("understood_today", "understood by the grammar that the faults found have changed"),)
 UNREAD = {
     f"unread_{'captions' if 'captions' in name else 'prompts'}{name.removeprefix('_captions')}": MetricTable(
         sources=(f"unread_prompts/reading{name}",),
         columns=KITML.columns,
         lines=(
             ("understood", "understood, of all (frozen grammar)"),
-            ("wrong", "wrong by hand without a word, of the understood (mended since)"),
+            ("wrong", f"wrong by hand without a word, of the understood{' (mended since)' if is_mended else ''}"),
             ("said", "shown otherwise or in part, which is said, of the same"),
-            ("understood_today", "understood by the grammar that the faults found have changed"),
+            *(UNDERSTOOD_SINCE if is_mended else ()),
             *((("in_part_today", "of these, a clause is not done, which is said"),) if in_part else ()),
         ),
     )
-    for name, in_part in (
-        ("", False), ("_second", False), ("_captions", False), ("_third", True), ("_captions_second", True),
-        ("_captions_third", True), ("_captions_fourth", True), ("_strangers", True),
-        ("_strangers_second", True),
+    for name, in_part, is_mended in (
+        ("", False, True), ("_second", False, True), ("_captions", False, True), ("_third", True, True),
+        ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
+        ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
     )
 }  # fmt: skip
 STRANGERS = MetricTable(
