@@ -119,7 +119,7 @@ UNDERSTOOD = {
 MORE = {
     "a person is pushed from behind": "stumble forwards",
     "gets shoved to the left and recovers": "stumble left",
-    "walks forward, is pushed from the right and walks on": "walk forwards | stumble left | walk",
+    "walks forward, is pushed from the right and walks on": "walk forwards | stumble left | walk forwards",
     "gets pushed while walking": "walk | stumble | walk",
     "walks a quarter circle to the left": "walk 90",
     "walks in a half circle": "walk 180 either",

@@ -1,6 +1,7 @@
 """Which steps of a sentence happen at the same time, and how two become one: a walk of two descriptions, legs of one
 and arms of the other, an arm of each."""
 
+import re
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
@@ -23,6 +24,9 @@ AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
 _REST_S = 0.5  # before a hand is raised to wave
+_WALKS_ON = re.compile(
+    r"\b(?:walk|go|run|jog|mov)(?:s|es|e|ning|ging|ing)? (?:straight )?on$|\b(?:continu|carr(?:y|ies) on|resum|keep)"
+)
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
 
 
@@ -93,16 +97,19 @@ def _only_begins(before: Step, step: Step) -> bool:
 
 
 def _as_the_body_faces(before: Step, step: Step) -> Step:
-    """A turn back is as far as the turn before; who turns, or opens a door, walks on ahead."""
+    """A turn back is as far as the turn before; who turns, opens a door or 'walks on', goes ahead."""
     words = set(step.clause.split())
     both_turn = before.lower == step.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
     if both_turn and step.direction == "around" and "back" in words:
         return replace(step, direction=OPPOSITE.get(before.direction, ""), turn_deg=-before.turn_deg)
     if step.lower not in ("walk", "jog") or step.target or step.place or step.seat:
         return step
-    turned = before.lower == "turn" and not before.facing and step.direction == "away" and not words & RADAR
-    opened = before.upper == "open_door" and not step.direction and not step.arc_deg
-    return replace(step, direction="forwards") if turned or opened else step
+    aimless = not step.direction and not step.arc_deg
+    turned = (
+        before.lower == "turn" and not before.facing and (aimless or step.direction == "away") and not words & RADAR
+    )
+    onward = aimless and (before.upper == "open_door" or _WALKS_ON.search(step.clause) is not None)
+    return replace(step, direction="forwards") if turned or onward else step
 
 
 def _merged_walk(one: Step, other: Step) -> list[Step]:
