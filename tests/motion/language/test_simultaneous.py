@@ -84,6 +84,37 @@ def test_the_way_follows_from_how_the_body_faces(text: str, direction: str, turn
     assert (last.direction, last.turn_deg) == (direction, turn_deg)
 
 
+@pytest.mark.parametrize(
+    ("text", "lowers", "status"),
+    [
+        ("squats down and remains in that position", ["crouch"], "done"),
+        ("slips and nearly falls, but regains balance", ["stumble"], "approximated"),
+        ("rotates the hips", ["twist"], "approximated"),
+        ("stands up from a sitting position on the floor", ["get_up"], "approximated"),
+        ("bends down to touch the toes", ["bend"], "approximated"),
+    ],
+)
+def test_what_is_not_shown_as_it_was_said_is_not_done(text: str, lowers: list[str], status: str) -> None:
+    plan = parse(f"a person {text}")
+    assert [step.lower for step in plan.steps] == lowers
+    assert plan.clauses[0].status == status
+
+
+def test_a_punch_with_each_fist_is_one_each() -> None:
+    plan = parse("a person throws a punch with the right fist and then one with the left")
+    assert [(step.upper, step.hand, step.count) for step in plan.steps] == [("punch", "right", 1), ("punch", "left", 1)]
+
+
+def test_both_hands_put_down_what_both_picked_up() -> None:
+    plan = parse("a person lifts a box with both hands and sets it down")
+    assert [(step.lower, step.hand) for step in plan.steps] == [("pick_up", "both"), ("put_down", "both")]
+
+
+def test_who_trips_goes_on_ahead() -> None:
+    assert [step.direction for step in parse("a person trips slightly while walking forward").steps] == ["forwards"] * 3
+    assert parse("a person trips backwards").steps[0].direction == "backwards"
+
+
 def test_a_last_participle_on_the_spot_is_said_to_follow() -> None:
     plan = parse("a person is boxing, bouncing lightly on the feet")
     assert "one after the other" in plan.clauses[-1].how

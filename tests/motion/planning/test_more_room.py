@@ -9,6 +9,7 @@ from mmweaver.core.errors import NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.more_room import going_on_elsewhere
 from tests.motion.rooms import WINDOW_M, room
 
 FULL = ((-3.0, 3.0, 0.0, 6.0),)
@@ -53,3 +54,12 @@ def test_an_error_names_the_nearest_place_the_window_it_needs_and_radars():
     with pytest.raises(NoRoomError) as caught:
         _composed("a person waves", room(boxes=FULL))
     assert caught.value.ways_on == {}
+
+
+def test_who_has_no_room_to_walk_on_ahead_turns_and_it_is_said():
+    corridor = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 3.6, 6.0)))
+    plan = plan_motion("a person walks, stops, waves and walks on", 6.0)
+    made = compose(plan, corridor, seed=0, range_window_m=WINDOW_M)
+    assert [note for note in made.assumptions if "no room to go on ahead for 'walks on'" in note]
+    assert made.plan.steps[-1].moves
+    assert going_on_elsewhere(plan_motion("a person walks, stops, then walks forward", 6.0))[1] == ()

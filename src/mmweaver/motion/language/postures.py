@@ -130,27 +130,27 @@ def _up_from(posture: str, step: Step) -> list[Step]:
 
 def _styled(steps: list[Step]) -> list[Step]:
     """Lying on back or belly as the person went down; kneeling on the knee that was named."""
-    style, foot = "", ""
+    style, foot, knee = "", "", ""
     for k, step in enumerate(steps):
         if step.lower in LYING:
             style = LYING[step.lower] or style or "back"
         if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
-            foot = step.foot or foot
+            foot, knee = step.foot or foot, step.style or knee
         if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off", *LYING):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
-            steps[k] = replace(step, foot=foot)
+            steps[k] = replace(step, foot=foot, style=knee)
         if step.lower in ("stand_up", "get_up", "kneel_up"):
-            style, foot = "", ""
+            style, foot, knee = "", "", ""
     return steps
 
 
 def carried_over(steps: list[Step]) -> list[Step]:
     """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
 
-    A raised hand is the one to wave.
+    A raised hand is the one to wave; what was picked up is put down with the same hands.
     """
     gone = False
     for k, step in enumerate(steps):
@@ -158,6 +158,9 @@ def carried_over(steps: list[Step]) -> list[Step]:
             turned = k > 0 and steps[k - 1].lower == "turn"
             steps[k] = replace(step, direction="forwards" if turned else "backwards")
         gone = gone or step.moves
+        lifted = next((one for one in reversed(steps[:k]) if one.lower == "pick_up"), None)
+        if step.lower == "put_down" and not step.hand and lifted is not None:
+            steps[k] = replace(step, hand=lifted.hand)
         before = steps[k - 1]
         if k and step.upper == "wave" and not step.hand and before.upper == "raise":
             steps[k] = replace(step, hand=before.hand)

@@ -38,14 +38,15 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b(?! (?:arm|hand|leg|foot|knee|elbow|wrist|hip|shoulder))", r" lean_over \1 "),
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to (?:the|one|both|each) sides?|from side to side|sideways|left and right|side to side)\b", " lean_over "),
     (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:far |slightly |a bit )?back(?:wards?)?\b(?! (?:on|against|in|into|to|up))", " lean_over backwards "),
-    (rf"\b(?:twist|rotat|swivel|turn)(?:e?s|ing) {_OWN}(?:upper body|torso|trunk|waist|hips)\b(?: (?:from )?(?:side to side|left and right|left to right)| to (?:both sides|the left and (?:the )?right))?",
+    (rf"\b(?:twist|rotat|swivel|turn)(?:e?s|ing) {_OWN}(?:upper body|torso|trunk|waist)\b(?: (?:from )?(?:side to side|left and right|left to right)| to (?:both sides|the left and (?:the )?right))?",
      " twist_trunk "),
     (rf"\btwist(?:s|ing)?(?: {_OWN}body)?(?: (?:from )?(?:side to side|left and right|left to right)| (?:at|from|in) the waist)", " twist_trunk "),
     (rf"\btwist(?:s|ing) {_OWN}body\b", " twist_trunk "),
     (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
     (r",? (?:but|and|yet|without)? ?(?:does|did|do|is)(?: not|n't) (?:fall|falling)(?: down| over)?\b", " "),  # true of all but falls
     (r"\b(?:rotat|mov|swivel)(?:e?s|ing) (?:his|her|its|their|the) head\b(?: (?:a?round|from side to side|in circles|up and down))?", " look_around "),
-    (r"\bsquat(s|ting)?(?: down)? and (?:stays?|remains?|holds?|staying) (?:it|there|down|low|in (?:it|position))\b", " crouches "),
+    (r"\bsquat(s|ting)?(?: down)? (?:and|then|,)+ (?:stays?|remains?|holds?|staying|remaining) (?:it|there|down|low|in (?:it|position|(?:this|that|the|a) (?:[a-z]+ )?(?:position|pose|posture|squat)))\b", " crouches "),
+    (r"\b(?:nearly|almost) (?:falls?|falling|topples?|trips?|slips?)(?: (?:down|over|forwards?|backwards?))?\b", " stumbles "),
     # where somebody faces who walks anyway, and from where somebody gets up
     (r"\b(?:is |are )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)(?= and\b| then\b|,)", " stands "),
     (r"(?:,? (?:while|but|and))? (?:still |always |is )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)\b", " "),

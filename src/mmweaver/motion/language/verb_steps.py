@@ -35,6 +35,8 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if step.upper == "raise" and _lifts_a_thing(words[at + 1 : at + 4]):
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     step = _times_of_a_walk(_arms_step(step, texts), texts)
+    if step.lower == "squat" and word.text == "squats" and any(w.lemma == "do" and w.form == "ing" for w in words[:at]):
+        step = replace(step, style="several")
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
     if step.upper == "carry" and step.lower == "stand" and _goes_somewhere(step, words):
@@ -219,7 +221,7 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
     known = ("left", "right", "forwards", "backwards")
     side = step.style == "side" or "sideways" in {word.text for word in words}
     style = "side" if side and direction not in known else ""
-    direction = direction if direction in known else ""
+    direction = direction if direction in known else "forwards" if words[at].lemma == "trip" and not side else ""
     return replace(step, direction=direction, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
 
 
@@ -247,7 +249,8 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
     word = words[at]
     still = word.lemma == "kneel" and word.form == "ing"
     lower = "kneel_up" if word.lemma == "kneel_up" else "kneel" if still else "kneel_down"
-    return replace(step, lower=lower, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+    style = "knee" if {other.text for other in words} & ON_ONE_LEG else step.style
+    return replace(step, lower=lower, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
@@ -256,6 +259,8 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
         return _going_step(replace(step, lower="walk"), words, at)
     if step.lower == "lunge" and step.direction in SIDES and not step.foot:
         raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
+    if step.lower == "kick" and step.direction in ("back", "backwards"):
+        step = replace(step, style="back")
     return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 

@@ -1,4 +1,4 @@
-"""What is tried where a motion finds no room: floor that is only assumed, then walking on the spot; and ways on."""
+"""What is tried where a motion finds no room: going elsewhere, floor that is only assumed, walking on the spot."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -14,6 +14,7 @@ from mmweaver.motion.planning.floor_map import FloorMap
 
 Result = TypeVar("Result")
 _ON_THE_SPOT = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
+_SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 _ANY_WINDOW_M = (0.2, 30.0)
 _MOST_RADARS = 3
 _MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
@@ -28,8 +29,8 @@ def with_more_room(
 ) -> tuple[MotionPlan, Result, tuple[str, ...]]:
     """The first of several ways to compose a plan that finds room: the plan then, its result, and notes.
 
-    In this order: as it is; on floor that is only assumed; walking on the spot. Raises the error of the first way, with
-    ways on where no floor is free at all.
+    In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot. Raises
+    the error of the first way, with ways on where no floor is free at all.
     """
     first_error: InputError | None = None
     for way, way_floor, notes in _ways(plan, floor):
@@ -45,6 +46,9 @@ def with_more_room(
 
 def _ways(plan: MotionPlan, floor: FloorMap) -> Iterator[tuple[MotionPlan, FloorMap, tuple[str, ...]]]:
     yield plan, floor, ()
+    elsewhere, turned_notes = going_on_elsewhere(plan)
+    if turned_notes:
+        yield elsewhere, floor, turned_notes
     assumed = FloorMap.of(floor.scene, floor.range_window_m, floor.height_m, with_assumed=True)
     more = bool((assumed.walkable & ~floor.walkable).any())
     if more:
@@ -54,6 +58,20 @@ def _ways(plan: MotionPlan, floor: FloorMap) -> Iterator[tuple[MotionPlan, Floor
         yield still, floor, still_notes
         if more:
             yield still, assumed, (*still_notes, ASSUMED_FLOOR)
+
+
+def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
+    """The plan with walks that only go on ('walks on', after a turn) led where there is room, and notes on them."""
+    walks = [
+        step for step in plan.steps[1:]
+        if step.lower in ("walk", "jog") and step.direction == "forwards" and not _SAYS_AHEAD & set(step.clause.split())
+    ]  # fmt: skip
+    notes = tuple(
+        f"there is no room to go on ahead for {step.clause or step.name!r}: the person turns to where there is room"
+        for step in walks
+    )
+    steps = tuple(replace(step, direction="") if step in walks else step for step in plan.steps)
+    return replace(plan, steps=steps), notes
 
 
 def on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:

@@ -60,3 +60,19 @@ def test_jacks_spread_arms_and_legs_together(seed: int):
     assert np.corrcoef(feet, hands)[0, 1] > 0.8
     wide = feet > (feet.min() + feet.max()) / 2
     assert (np.diff(wide.astype(int)) == 1).sum() == 3
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_is_doing_squats_does_two_at_least(seed: int):
+    pelvis_m = compose(
+        plan_motion("a person is doing squats"), room(), seed=seed, range_window_m=WINDOW_M
+    ).pose.joints_m[:, 0, 2]
+    is_low = pelvis_m < (pelvis_m.min() + pelvis_m.max()) / 2
+    assert np.sum(np.diff(is_low.astype(int)) == 1) >= 2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_who_remains_in_a_squat_stays_down(seed: int):
+    pelvis_m = made("squats down and remains in that position", seed, 4.0).joints_m[:, 0, 2]
+    assert pelvis_m[-1] < pelvis_m[0] - 0.25
+    assert np.ptp(pelvis_m[-100:]) < 0.03

@@ -66,3 +66,12 @@ def test_hops_carry_the_body_and_the_foot_stays_where_it_lands(text: str) -> Non
     on_floor = foot[1:, 2] < foot[:, 2].min() + 0.005
     assert np.median(speed_mps[on_floor]) < 0.1
     assert np.linalg.norm(np.diff(joints_m, n=2, axis=0) * 120**2, axis=-1).max() < 90.0
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("back", -1.0), ("forwards", 1.0)])
+def test_a_leg_is_kicked_to_the_side_that_is_said(direction: str, sign: float):
+    joints = act_out(f"a person kicks the right leg {direction}", seed=0).pose.joints_m
+    across = joints[0, joint("left_hip"), :2] - joints[0, joint("right_hip"), :2]
+    ahead = np.array([across[1], -across[0]]) / np.hypot(*across)
+    way_m = (joints[:, joint("right_ankle"), :2] - joints[:, joint("pelvis"), :2]) @ ahead
+    assert sign * way_m[np.argmax(np.abs(way_m))] > 0.3

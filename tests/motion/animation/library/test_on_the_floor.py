@@ -62,3 +62,11 @@ def test_what_goes_down_comes_up_to_where_it_was(text: str, seconds: float):
 
 def test_postures_have_names():
     assert [Step(lower=key).posture for key in ("lie", "kneel", "sit", "walk")] == ["floor", "knees", "seat", "feet"]
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_one_knee_is_on_the_floor_where_one_is_named(side: str):
+    z, other = heights(f"a person kneels down on the {side} knee", 3.0)[-1], {"left": "right", "right": "left"}[side]
+    assert z[joint(f"{side}_knee")] < 0.12
+    assert z[joint(f"{other}_knee")] > 0.35
+    assert z[joint(f"{other}_ankle")] < 0.2

@@ -268,7 +268,8 @@ def squatting(context: StepContext) -> Controls:
     """
     controls, time_s, rng, body = upright(context), context.time_s, context.rng, context.body
     period = 1 / context.tempo(0.3, 0.38, 0.6)
-    count = context.step.count or max(1, round(context.duration_s / period))
+    fewest = 2 if context.step.style == "several" else 1
+    count = context.step.count or max(fewest, round(context.duration_s / period))
     period = float(np.clip(context.duration_s / count, 1.05, 3.6))
     wider = float(rng.uniform(0.04, 0.095)) * body.height_m  # how much farther out each foot stands
     for foot in (LEFT, RIGHT):

@@ -26,16 +26,22 @@ from mmweaver.motion.animation.step_context import StepContext
 
 
 def kicking(context: StepContext) -> Controls:
-    """Weight on one leg; the other swings back, shoots forward with the knee extending, and comes back."""
+    """Weight on one leg; the other swings back, shoots forward with the knee extending, and comes back.
+
+    In a kick to the back it shoots out behind the body, which leans ahead.
+    """
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     side = leg_side(context)
     high = (
         float(context.rng.uniform(0.1, 0.3)) if context.step.style != "high" else float(context.rng.uniform(0.38, 0.46))
     )
+    backwards = context.step.style == "back"
+    leans_back = -0.75 if backwards else 1.0
     reach = np.sqrt(0.44**2 - max(0.43 - high, 0.0) ** 2) if high < 0.43 else 0.42
     for begin, lasts in repeats(context, 1.35, 1.0, 1.9):
         at = [begin + share * lasts for share in (0.0, 0.2, 0.36, 0.6, 0.78, 1.0)]
-        ahead = spline_through(time_s, at, [0.0, -0.08, -0.16, 0.95 * reach, 0.12, 0.0])
+        way = [0.0, 0.0, 0.03, -0.75 * reach, -0.1, 0.0] if backwards else [0.0, -0.08, -0.16, 0.95 * reach, 0.12, 0.0]
+        ahead = spline_through(time_s, at, way)
         up = spline_through(time_s, at, [0.0, 0.045, 0.1, high, 0.14, 0.0])
         over = plateau(time_s, begin - 0.12 * lasts, begin + 1.1 * lasts, 0.32 * lasts, 0.34 * lasts)
         air = plateau(time_s, begin, begin + lasts, 0.16 * lasts, 0.16 * lasts)
@@ -45,8 +51,8 @@ def kicking(context: StepContext) -> Controls:
         lift_weight(controls, side, air)
         shift_pelvis(controls, 0.0, 0.0, -0.012 * h * over)
         controls.foot_rad[:, side, 1] += spline_through(time_s, at, [0.0, 0.5, 0.8, -0.25, 0.1, 0.0])
-        controls.pelvis_rad[:, 1] -= 0.22 * swing
-        controls.spine_rad[:, 1] += 0.12 * swing
+        controls.pelvis_rad[:, 1] -= 0.22 * leans_back * swing
+        controls.spine_rad[:, 1] += 0.12 * leans_back * swing
         controls.pelvis_rad[:, 2] += OUTWARD[1 - side] * 0.25 * swing
         for arm in (LEFT, RIGHT):
             controls.arm_rad[:, arm, 0] += (0.7 if arm != side else -0.45) * swing

@@ -47,6 +47,10 @@ def _kneeling(context: StepContext, u: PerTime) -> Controls:
         controls.foot_rad[:, side, 1] += 1.42 * rise(step)
         lift = bump(step)
         controls.contact[:, side] -= lift
+    if context.step.style == "knee":  # the other foot steps ahead, so that its shank stands upright
+        ahead = (u - 0.1) / 0.5
+        shift_foot(controls, 1 - first, 0.2 * h * rise(ahead), 0.0, 0.035 * h * bump(ahead))
+        controls.contact[:, 1 - first] -= bump(ahead)
     down = rise(u / 0.97)
     shift_pelvis(controls, 0.01 * h * down, 0.0, -down * (body.pelvis_height_m(STAND_STRETCH) - KNEELING_M * h))
     controls.knee_room[:] = np.maximum(controls.knee_room, rise(np.clip(3 * u, 0, 1)) * 0.7)
