@@ -37,23 +37,29 @@ class FloorMap:
     range_window_m: tuple[float, float]
     height_m: float
     with_assumed: bool = False  # whether floor that was only assumed counts as free
+    is_tight: bool = False  # whether who kneels or lies may touch what stands about; `check_floor_space` says so
 
     @classmethod
     def of(
-        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False
-    ) -> "FloorMap":
+        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False,
+        is_tight: bool = False,
+    ) -> "FloorMap":  # fmt: skip
         """The map for a body of about this height; the last ones are cached, as many motions are placed in one scene.
 
         A step in height of `HEIGHT_STEP_M` moves what is in view by less than a cell.
         """
         height_m = round(height_m / HEIGHT_STEP_M) * HEIGHT_STEP_M
-        key = (range_window_m, height_m, with_assumed)
+        key = (range_window_m, height_m, with_assumed, is_tight)
         for floor in _latest:
-            if floor.scene is scene and (floor.range_window_m, floor.height_m, floor.with_assumed) == key:
+            if floor.scene is scene and floor._key == key:
                 return floor
         floor = cls(scene, *key)
         _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MOST_CACHED]
         return floor
+
+    @property
+    def _key(self) -> tuple[tuple[float, float], float, bool, bool]:
+        return self.range_window_m, self.height_m, self.with_assumed, self.is_tight
 
     @cached_property
     def cell_m(self) -> float:
