@@ -16,6 +16,7 @@ Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
 
 BODY_RADIUS_M = 0.25  # half the width of the shoulders
+SIDEWAYS_RADIUS_M = 0.15  # half the depth of the trunk
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
@@ -37,7 +38,7 @@ class FloorMap:
     range_window_m: tuple[float, float]
     height_m: float
     with_assumed: bool = False  # whether floor that was only assumed counts as free
-    is_tight: bool = False  # whether who kneels or lies may touch what stands about; `check_floor_space` says so
+    is_tight: bool = False  # whether who kneels, lies or stands in a gap may touch what stands about
 
     @classmethod
     def of(
@@ -104,8 +105,11 @@ class FloorMap:
 
     @cached_property
     def walkable(self) -> Bool[Array, "y x"]:
-        """Whether a body can stand in a cell: enough clearance, and in view."""
-        return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+        """Whether a body can stand in a cell: enough clearance, and in view; if tight and none has it, sideways."""
+        is_wide = (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+        if self.is_tight and not is_wide.any():
+            return (self.clearance_m >= SIDEWAYS_RADIUS_M) & self.in_view
+        return is_wide
 
     @cached_property
     def walkable_m(self) -> Float[Array, "cell 2"]:

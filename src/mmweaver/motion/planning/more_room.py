@@ -33,6 +33,10 @@ ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
     " fills the picture, and may be occluded"
 )
+NARROW_FLOOR = (
+    "no free floor is as wide as a body: the person stands in a gap that is deep enough for the trunk, and may touch"
+    " what is beside it"
+)
 Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
@@ -59,7 +63,9 @@ def with_more_room(
 
 def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way]:
     assumed = _like(floor, with_assumed=True)
-    floors = [(floor, ())] + [(assumed, (ASSUMED_FLOOR,))] * bool((assumed.walkable & ~floor.walkable).any())
+    floors: list[tuple[FloorMap, tuple[str, ...]]] = [(floor, ())] + [(assumed, (ASSUMED_FLOOR,))] * bool(
+        (assumed.walkable & ~floor.walkable).any()
+    )
     walks_still = on_the_spot(plan, _walks_somewhere)
     all_still = on_the_spot(plan, _travels)
     plans = [(plan, ()), walks_still] + [all_still] * may_touch
@@ -74,8 +80,10 @@ def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way
     for one, notes in (*plans, *falls):
         for some_floor, floor_notes in floors:
             yield one, some_floor, (*notes, *floor_notes)
+    wide = [one for one in floors if one[0].walkable.any()]
+    narrow = [(floor, (NARROW_FLOOR,)), (assumed, (ASSUMED_FLOOR, NARROW_FLOOR))]
     for one, notes in plans * may_touch:
-        for some_floor, floor_notes in floors:
+        for some_floor, floor_notes in wide or narrow:
             yield one, _like(some_floor, is_tight=True), (*notes, *floor_notes)
 
 
