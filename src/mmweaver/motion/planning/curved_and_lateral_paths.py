@@ -23,6 +23,7 @@ SPECIAL = ("sidestep", "stumble", "leap")
 LYING_ROOM_M = 0.22  # clearance on either side of a lying body
 _TIGHT_COST = 40.0  # of a body none of which is on free floor: more than all else that a trajectory costs
 SIDESTEP_M = 0.3  # length of one sidestep
+_OUT_OF_VIEW = 0.5  # as bad as so much of the room being short
 _TIGHT = "the free floor has no room"
 _BEND_RADII_M = (1.3, 1.0, 0.8, 0.65, 0.5, 0.4)
 
@@ -180,7 +181,8 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     if short_m.any():
         if not trajectory.floor.is_tight:
             raise NoTrajectory("no floor to lie on")
-        trajectory.cost += _TIGHT_COST * float(short_m.mean()) / LYING_ROOM_M
+        out_of_view = _OUT_OF_VIEW * ~trajectory.floor.sees(places)
+        trajectory.cost += _TIGHT_COST * float(np.maximum(short_m / LYING_ROOM_M, out_of_view).mean())
         rises = step.lower in ("kneel_up", "get_up")  # from where it was said that the body is
         if not (rises and any(note.startswith(_TIGHT) for note in trajectory.notes)):
             trajectory.notes.append(_tight_note(step))
