@@ -54,6 +54,7 @@ class Calibration:
         """The same for JSON; the tables are those of the board."""
         return {
             "board": self.board.to_values(),
+            "errors": {name: round(error, 4) for one in self.findings for name, error in one.errors.items()},
             "found": {one.title: one.text for one in self.findings if one.is_found},
             "not_seen": {one.title: one.text for one in self.findings if not one.is_found},
         }
