@@ -149,9 +149,17 @@ def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
     assert "elevation offset, CFAR threshold: they take point clouds of people" in text
     assert any(note.startswith("gain of echoes") for note in found.board.notes)
-    assert set(found.to_values()) == {"board", "errors", "found", "not_seen"}
+    assert set(found.to_values()) == {"board", "errors", "found", "not_seen", "warnings"}
     found.board.save(tmp_path / "made.json")
     assert mmweaver.Weaver(radar=RADAR).request("a person stands", board=tmp_path / "made.json").board.name == "made"
+
+
+def test_transmitters_that_were_read_in_another_order_are_no_errors_of_the_board(board: Board, found: Calibration):
+    assert not found.warnings
+    made = cluttered_room(board, frames=2)
+    misread = calibrate(replace(made, samples=made.samples[:, :, [0, 2, 1]]))
+    assert "--tx-order" in misread.text().splitlines()[0]
+    assert misread.to_values()["warnings"]
 
 
 def test_an_ideal_board_shows_no_errors():
