@@ -18,6 +18,8 @@ class DocstringBlocks(griffe.Extension):
 
     def on_attribute(self, *, attr: griffe.Attribute, **_: Any) -> None:
         if attr.docstring is None and attr.lineno is not None and attr.lineno == attr.endlineno:
-            comment = COMMENT.match(attr.lines_collection[attr.filepath][attr.lineno - 1])
+            # griffe gives a list of folders for a namespace package, whose attributes have no lines
+            path = attr.filepath
+            comment = None if isinstance(path, list) else COMMENT.match(attr.lines_collection[path][attr.lineno - 1])
             if comment:
                 attr.docstring = griffe.Docstring(comment[1].strip(), lineno=attr.lineno, parent=attr)

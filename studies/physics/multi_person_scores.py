@@ -53,6 +53,7 @@ SPAN_DB = 50.0  # of the pictures, below the peak
 SEEDS = tuple(range(16))
 NEAR_M = 0.5  # a point so near to a pelvis, on the floor, is that person's
 RESAMPLES = 2000
+EXACT_DB = -150.0  # said where a prediction is the truth to the bit: minus infinity is no JSON
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +99,9 @@ def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
         "realization": pair.realization,
     }  # fmt: skip
     views = {name: Representations(cube) for name, cube in predictions.items()}
-    scores = {name: {who: METRICS[name].score(seen, truth) for who, seen in views.items()} for name in SHOWN}
+    scores = {
+        name: {who: max(METRICS[name].score(seen, truth), EXACT_DB) for who, seen in views.items()} for name in SHOWN
+    }
     scores["second_dimmed_db"] = {"superposition": dimming_db(pair)}
     second = pair.poses[1]
     scores["points_of_second"] = {

@@ -1,5 +1,6 @@
 """A made board comes back from signals that were simulated with it, within stated tolerances."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,8 +9,11 @@ import pytest
 import torch
 
 import mmweaver
+from mmweaver.calibration.antenna_fits import fit_channels
 from mmweaver.calibration.calibrate import Calibration, calibrate
 from mmweaver.calibration.receiver_fits import skirt_end
+from mmweaver.calibration.time_fits import fit_drift
+from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.boards import typical_board
 from mmweaver.core.errors import InputError
@@ -28,9 +32,12 @@ RADAR = replace(AWR1843, name="whole band", first_range_bin=0, num_range_bins=25
 FRAMES = 16
 
 
-def cluttered_room(board: Board, config: RadarConfig = RADAR, frames: int = FRAMES) -> AdcCube:
-    """An empty room of 220 scatterers from 1.2 m on, recorded with a board and with noise, but no clock errors."""
-    rng = np.random.default_rng(8)
+def cluttered_room(board: Board, config: RadarConfig = RADAR, frames: int = FRAMES, room: int = 8) -> AdcCube:
+    """An empty room of 220 scatterers from 1.2 m on, recorded with a board and with noise, but no clock errors.
+
+    Another `room` has other scatterers, and the board drifts otherwise.
+    """
+    rng = np.random.default_rng(room)
     effects = BoardEffects(board, config)
     azimuth, elevation = rng.uniform(-0.9, 0.9, 220), rng.uniform(-0.3, 0.3, 220)
     towards = np.stack(
@@ -42,13 +49,17 @@ def cluttered_room(board: Board, config: RadarConfig = RADAR, frames: int = FRAM
     synthesis = AdcSynthesis(effects.radar, board=effects)
     static = synthesis.static(paths) + synthesis.leakage(*effects.leakage)
     carrier_over_slope_s = config.centre_frequency_hz / config.chirp_slope_hz_per_s
-    drift = torch.from_numpy(effects.drift(np.arange(frames), 0)).to(torch.complex64)
+    drift = torch.from_numpy(effects.drift(np.arange(frames), room)).to(torch.complex64)
     receiver = Receiver(effects.radar, Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0), 0, effects)
     drift_rate = synthesis.static_rate(paths) * carrier_over_slope_s + synthesis.leakage(*effects.leakage_rate)
     still = static + drift[:, None, None, None] * drift_rate
     moving = torch.zeros((frames, config.num_loops, *still.shape[1:]), dtype=torch.complex64)
     samples = receiver.receive(moving, still, torch.zeros_like(static), range(frames)).numpy()
     return AdcCube(samples=samples, config=config, scale=1.0)
+
+
+def evidence_of(adc: AdcCube) -> SignalEvidence:
+    return SignalEvidence(ComparedSignal(name="made", cube=radar_cube(adc), adc=adc))
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +111,37 @@ def test_antennas_come_back_but_for_a_direction(board: Board, found: Calibration
 def test_what_changes_over_time_comes_back(found: Calibration):
     assert found.board.first_chirp_amplitude_percent == pytest.approx(0.6, abs=0.12)  # its noise is 0.05
     assert found.board.first_chirp_phase_mrad == pytest.approx(2.5, abs=1.0)  # 0.4
-    drift = BoardEffects(Board(drift_ppm=1.5), RADAR).drift(np.arange(FRAMES), 0)
-    assert found.board.drift_ppm == pytest.approx(1e6 * (drift - drift.mean()).std(), rel=0.25)
+    drift = BoardEffects(Board(drift_ppm=1.5), RADAR).drift(np.arange(FRAMES), 8)
+    shown = float(re.search(r"drift: ([\d.]+) ppm rms within", found.text())[1])
+    assert shown == pytest.approx(1e6 * drift.std(), rel=0.25)
+
+
+def test_stated_errors_of_antennas_hold_the_truth_as_often_as_they_say():
+    within, within_twice = [], []
+    for room in range(8):
+        board = replace(typical_board(RADAR, room), elevation_phase_deg=0.0, element_spacing_m=None)
+        found = fit_channels([evidence_of(cluttered_room(board, frames=2, room=room))])
+        gain_db = board.channel_gain_db - board.channel_gain_db.mean()
+        amiss_db = np.abs(found.fields["channel_gain_db"] - gain_db)
+        within.append(amiss_db < found.errors["channel_gain_db"])
+        within_twice.append(amiss_db < 2 * found.errors["channel_gain_db"])
+    assert 0.55 < np.mean(within) < 0.85  # a standard error holds 0.68
+    assert np.mean(within_twice) > 0.9
+
+
+def test_a_short_recording_says_how_far_its_drift_holds():
+    true_ppm, held, said = 0.9, [], 0
+    for room in range(12):
+        found = fit_drift([evidence_of(cluttered_room(Board(drift_ppm=true_ppm), frames=12, room=room))])
+        if found.is_found:
+            said += 1
+            low_ppm, high_ppm = map(float, re.search(r"\(([\d.]+) to ([\d.]+)\)", found.text).groups())
+            assert low_ppm < found.fields["drift_ppm"] < high_ppm
+            held.append(low_ppm < true_ppm < high_ppm)
+        else:
+            held.append(true_ppm < float(re.search(r"([\d.]+) ppm over longer times", found.text)[1]))
+    assert said >= 6
+    assert 0.55 < np.mean(held) <= 1.0
 
 
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
@@ -109,9 +149,17 @@ def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
     assert "elevation offset, CFAR threshold: they take point clouds of people" in text
     assert any(note.startswith("gain of echoes") for note in found.board.notes)
-    assert set(found.to_values()) == {"board", "found", "not_seen"}
+    assert set(found.to_values()) == {"board", "errors", "found", "not_seen", "warnings"}
     found.board.save(tmp_path / "made.json")
     assert mmweaver.Weaver(radar=RADAR).request("a person stands", board=tmp_path / "made.json").board.name == "made"
+
+
+def test_transmitters_that_were_read_in_another_order_are_no_errors_of_the_board(board: Board, found: Calibration):
+    assert not found.warnings
+    made = cluttered_room(board, frames=2)
+    misread = calibrate(replace(made, samples=made.samples[:, :, [0, 2, 1]]))
+    assert "--tx-order" in misread.text().splitlines()[0]
+    assert misread.to_values()["warnings"]
 
 
 def test_an_ideal_board_shows_no_errors():

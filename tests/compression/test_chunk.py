@@ -31,7 +31,9 @@ def encoder() -> ChunkEncoder:
     return encoder_of(crowd(), FitRecipe(num_points=60, stages=6))
 
 
-@pytest.mark.parametrize("mode", [POINTS, ChunkMode(), ChunkMode(with_rank=True)], ids=ChunkMode.name)
+@pytest.mark.parametrize(
+    "mode", [POINTS, ChunkMode(), ChunkMode(with_rank=True), ChunkMode(only_noise=True)], ids=ChunkMode.name
+)
 def test_a_finer_step_costs_more_and_has_less_error(encoder: ChunkEncoder, mode: ChunkMode):
     truth = crowd().values
     sizes, errors = [], []

@@ -22,6 +22,18 @@ def test_the_bits_are_those_of_the_coder(beams: int, size: float, share: float):
     assert found / 8 == pytest.approx(len(encoder.to_bytes()), rel=0.12)  # of recordings 0.04
 
 
+def test_levels_of_a_single_beam_are_counted():
+    """Wherever it stands among the many beams of which only some are looked at."""
+    levels = np.zeros((2, 12, 8192), np.int64)
+    levels[:, 5] = np.rint(stream(0, "one beam").normal(size=(2, 8192)) * 3)
+    factor, shape = np.ones((4, 64, 32), np.int64), (12, 4, 64, 32)
+    encoder = Encoder()
+    LevelCoder(shape).code(encoder, levels.copy(), factor)
+    weights = np.log2(1 + np.abs(levels)).sum(axis=(0, 2)) + 100.0
+    found = estimated_bits(LevelCoder(shape), levels, factor, weights)
+    assert found / 8 == pytest.approx(len(encoder.to_bytes()), rel=0.2)
+
+
 def test_no_levels_have_no_bits():
     nothing = np.zeros((2, 3, 0), np.int64)
     assert estimated_bits(LevelCoder((3, 2, 4, 4)), nothing, np.zeros((2, 4, 4), np.int64), np.ones(3)) == 0

@@ -79,6 +79,7 @@ def test_int16_stored_as_uint16_is_converted_back(tmp_path: Path):
         ((2, 5, 12, 8), "frame,loop,antennas,sample", ["unknown axis 'antennas'", "vrx"]),
         ((2, 5, 12, 8), "frame,loop,tx,antenna", ["twice"]),
         ((0, 5, 12, 8), "frame,loop,antenna,sample", ["empty"]),
+        ((5, 12, 8), "loop,rx,sample", ["lack tx", "vrx is tx and rx"]),
         ((5, 12, 8), "", ["unknown axis ''"]),
     ],
 )

@@ -213,8 +213,7 @@ def test_no_room_is_an_error_that_says_so():
         motion("waves", full)
     cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
     assert motion("waves", cell).pose.joints_m.shape[1:] == (22, 3)
-    with pytest.raises(InputError, match=r"no room"):
-        motion("lies on the floor", cell)
+    assert any("no room" in note for note in motion("lies on the floor", cell).assumptions)
 
 
 def test_a_walk_longer_than_the_room_ends_early_and_says_so_or_goes_to_and_fro():

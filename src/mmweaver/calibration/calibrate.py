@@ -28,6 +28,7 @@ from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import PointCloud
 from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
 from mmweaver.formats.radar_file import load_firmware, load_radar
+from mmweaver.recordings.plausibility import implausible
 
 SIGNAL_FITS = (fit_filter, fit_noise_figure, fit_leakage, fit_channels, fit_first_chirp, fit_drift)
 NEVER_SEEN = (
@@ -43,19 +44,23 @@ class Calibration:
 
     board: Board
     findings: tuple[Finding, ...]
+    warnings: tuple[str, ...] = ()  # samples that seem misread, whose board is none
 
     def text(self) -> str:
-        """What was found, then what could not be seen and why, a line each."""
+        """Warnings, what was found, then what could not be seen and why, a line each."""
         seen = [f"  {one.title}: {one.text}" for one in self.findings if one.is_found]
         missed = [f"  {one.title}: {one.text}" for one in self.findings if not one.is_found]
-        return "\n".join(["found", *(seen or ["  nothing"]), "not seen", *(missed or ["  nothing"])])
+        warned = [f"warning: {one}; what follows may be wrong" for one in self.warnings]
+        return "\n".join([*warned, "found", *(seen or ["  nothing"]), "not seen", *(missed or ["  nothing"])])
 
     def to_values(self) -> dict[str, Any]:
         """The same for JSON; the tables are those of the board."""
         return {
             "board": self.board.to_values(),
+            "errors": {name: round(error, 4) for one in self.findings for name, error in one.errors.items()},
             "found": {one.title: one.text for one in self.findings if one.is_found},
             "not_seen": {one.title: one.text for one in self.findings if not one.is_found},
+            "warnings": list(self.warnings),
         }
 
 
@@ -116,7 +121,13 @@ def calibrate(
     missed = tuple(f"{one.title}: {one.text}" for one in findings if not one.is_found)
     names = ", ".join(_name_of(source) for source in recordings)
     board = Board(name=name or f"board of {names}"[:200], made_from=names[:1000], notes=missed, **fields)
-    return Calibration(board=board, findings=tuple(findings))
+    return Calibration(board=board, findings=tuple(findings), warnings=_warnings(evidence))
+
+
+def _warnings(evidence: Sequence[SignalEvidence]) -> tuple[str, ...]:
+    """What in raw samples does not fit the radar: antennas of another order would pass for errors of the board."""
+    found = [implausible(one.signal.adc, one.cube) for one in evidence if one.signal.adc is not None]
+    return tuple(dict.fromkeys(text for texts in found for text in texts))
 
 
 def _window(

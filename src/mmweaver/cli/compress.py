@@ -185,12 +185,12 @@ def _compress_samples(arguments: argparse.Namespace) -> int:
         bar("read the radar")
         from mmweaver.compression.lossless_file import compress_bin
         from mmweaver.core.safe_files.regular_files import check_regular
-        from mmweaver.recordings.read_recording import as_config
+        from mmweaver.formats.radar_file import load_radar
 
         size = compress_bin(
             arguments.file,
             arguments.out,
-            as_config(radar),
+            load_radar(radar),
             max_error=arguments.max_error or 0,
             progress=bar,
         )

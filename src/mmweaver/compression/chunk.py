@@ -6,7 +6,7 @@ All are quantised with one step: an error of one step in any value leaves about 
 import math
 import struct
 from dataclasses import dataclass, field, replace
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 import torch
@@ -19,8 +19,6 @@ from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
 from mmweaver.compression.coded_chunk import ChunkDraft, ChunkLayers, ChunkMode, CodedChunk
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
-from mmweaver.compression.level_coder import LevelCoder
-from mmweaver.compression.level_size import estimated_bits
 from mmweaver.compression.low_rank import Components, RankFactors, components_of
 from mmweaver.compression.moving_cells import code_moving, decoded_moving, moving_cells, pack_steps, unpack_steps
 from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
@@ -34,6 +32,7 @@ from mmweaver.compression.residual_stream import (
     estimated_cell_bits,
     quantized,
 )
+from mmweaver.compression.static_levels import code_static, static_bits, static_levels, static_of
 from mmweaver.compression.transforms import beams_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -46,7 +45,6 @@ from mmweaver.fields.scatterers.refinement import Damping, refined
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")
 HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_NEW = 1, 2, 4, 8, 16, 32, 64, 128
-STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
 KEPT_SHARE = 0.85  # of the scatterers that were fitted, from which on they stay as they are
@@ -122,6 +120,7 @@ class ChunkEncoder:
     _noise: tuple[ChunkMode, bool, NoiseLayer] | None = None
     _quiet: dict[ChunkMode, np.ndarray] = field(default_factory=dict)  # coefficients of what has no signal
     _noise_sample: CellSample | None = None
+    _whole_sample: CellSample | None = None
     _components: Components | None = None
     _counted_points: ChunkLayers | None = None  # of the last step at which they were
 
@@ -143,6 +142,8 @@ class ChunkEncoder:
 
         `only_size`: its size is estimated, and nothing coded that takes long.
         """
+        if mode.only_noise:
+            return self._as_noise(step, mode, price, only_size=only_size)
         draft = self.draft(step, mode, coarser, only_size=only_size)
         step, stream, flags, front = draft.step, draft.stream, draft.flags + IS_NEW, draft.front
         cell_bytes = 0.0
@@ -164,15 +165,40 @@ class ChunkEncoder:
                 lost = code_moving(stream, rest, self.beams, moving_cells(is_active), step / mode.finer)
         else:
             lost[is_open] = cell_energy(draft.coefficients[:, is_open] - cells.open_values(step, coarser))
-        prefix = PREFIX.pack(
-            self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
-            pack_steps(coarser or 1, mode.finer), draft.rank, flags,
-        )  # fmt: skip
+        prefix = self._prefix(step, flags, cells.centroids, pack_steps(coarser or 1, mode.finer), draft.rank)
         data = prefix + front + stream.to_bytes()
         return CodedChunk(
             data=b"" if only_size else data, num_bytes=len(data) + draft.uncoded_bytes + cell_bytes,
             active_error=float(lost[is_active].sum()), all_error=float(lost.sum()), step=step, mode=mode, draft=draft,
         )  # fmt: skip
+
+    def _prefix(
+        self, step: float, flags: int, centroids: tuple[int, int] = (0, 0), steps: int = 0, rank: int = 0
+    ) -> bytes:
+        num, hop, noise = self.frames.num_frames, self.frames.hop, _noise_level(self.noise_power)
+        return PREFIX.pack(num, hop, self.peak, step, *centroids, noise, steps, rank, flags)
+
+    def _as_noise(self, step: float, mode: ChunkMode, price: Price, *, only_size: bool) -> CodedChunk:
+        """The chunk as a noise layer of everything, and no cells."""
+        step, coefficients = float(np.float32(step)), self._all_as_noise
+        noise = NoiseLayer.of(coefficients, step, self.beams, price, only_size=only_size)
+        lost = cell_energy(np.moveaxis(self.target - noise.values, 3, 0)).astype(np.float64)
+        front = self._prefix(step, HAS_NOISE + IS_NEW, steps=pack_steps(1, 1)) + Encoder().to_bytes()
+        draft = ChunkDraft(
+            step=step, stream=Encoder(), flags=HAS_NOISE, front=noise.packed, front_bytes=float(len(front)),
+            uncoded_bytes=0.0, noise_bytes=noise.num_bytes, near=self._plain.near, rank=0, num_values=0,
+            transform=self._transform(mode.transform), coefficients=coefficients,
+            is_active=np.ones(coefficients.shape[1:], bool), energy=cell_energy(coefficients),
+        )  # fmt: skip
+        return CodedChunk(
+            data=b"" if only_size else front[: PREFIX.size] + noise.packed + front[PREFIX.size :],
+            num_bytes=len(front) + noise.num_bytes, active_error=float(lost[self.is_active].sum()),
+            all_error=float(lost.sum()), step=step, mode=mode, draft=draft,
+        )  # fmt: skip
+
+    @cached_property
+    def _all_as_noise(self) -> np.ndarray:
+        return to_noise(self.target, self.beams)
 
     def draft(self, step: float, mode: ChunkMode, coarser: int, *, only_size: bool = False) -> ChunkDraft:
         """The chunk with its layers coded, and its cells not; with `only_size` layers are counted."""
@@ -239,6 +265,13 @@ class ChunkEncoder:
             self._noise_sample = CellSample.of(coefficients, np.ones(coefficients.shape[1:], bool))
         return self._noise_sample
 
+    def sample_as_noise(self) -> CellSample:
+        """Some coefficients of a noise layer of everything, for estimates."""
+        if self._whole_sample is None:
+            coefficients = self._all_as_noise
+            self._whole_sample = CellSample.of(coefficients, np.ones(coefficients.shape[1:], bool), PREFIX.size)
+        return self._whole_sample
+
     def _noise_layer(self, mode: ChunkMode, target: np.ndarray, *, only_size: bool) -> NoiseLayer:
         """The noise after the layers of a mode; coded once, for layers change little with the step."""
         if self._noise is None or self._noise[:2] != (mode, only_size):
@@ -288,8 +321,8 @@ class ChunkEncoder:
         window, stream = self.frames.fit_window(), Encoder()
         layers = self.layers
         with torch.inference_mode():
-            static = self._static_levels(layers, window, step)
-            layers = replace(layers, static=_static_of(static, window, self.beams, step))
+            static = static_levels(layers.static, window, self.beams, step)
+            layers = replace(layers, static=static_of(static, window, self.beams, step))
             steps = PointSteps.of(step, window.response, window.axes)
             points = self._refined(layers, window, steps)
             coded = quantize(points, steps, window.axes, window.response.num_directions, LEAST_SIZE)
@@ -297,10 +330,10 @@ class ChunkEncoder:
             target = self.target - rendered(layers, window.response, window.axes).numpy()
         uncoded_bytes, point_bits = 0.0, uniform_bits(coded, steps, window.response.num_directions)
         if only_size and self._adaptive_bits is not None:
-            uncoded_bytes = (_static_bits(static) + point_bits + self._adaptive_bits * len(coded)) / 8
+            uncoded_bytes = (static_bits(static) + point_bits + self._adaptive_bits * len(coded)) / 8
         else:
             if static.any():
-                _code_static(stream, static)
+                code_static(stream, static)
             before = len(stream.to_bytes())
             if len(coded):
                 _point_coder(self.frames, window, steps).code(stream, coded)
@@ -312,12 +345,6 @@ class ChunkEncoder:
             front=_pack_gains(layers.calibration) if has_gains else b"", uncoded_bytes=uncoded_bytes,
             num_values=int(np.count_nonzero(static)) + len(coded) * values_of_point(window.response),
         )  # fmt: skip
-
-    def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
-        values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)
-        parts = np.stack([values.real, values.imag])
-        levels = np.sign(parts) * np.floor(np.abs(parts) + STATIC_ROUNDING)
-        return levels.astype(np.int64)[:, :, None, :, None]
 
     def _refined(self, layers: Layers, window: FitWindow, steps: PointSteps) -> Points:
         """The scatterers worth coding, refined without the others."""
@@ -411,14 +438,14 @@ def _decode_layers(stream, frames: ChunkFrames, step: float, flags: int, gains: 
     window = frames.fit_window()
     static = np.zeros((2, frames.config.num_antennas, 1, frames.config.num_range_bins, 1), np.int64)
     if flags & HAS_STATIC:
-        _code_static(stream, static)
+        code_static(stream, static)
     points = no_points(window.num_working_frames)
     if flags & HAS_POINTS:
         steps = PointSteps.of(step, window.response, window.axes)
         coded = _point_coder(frames, window, steps).code(stream, None)
         points, near = _dequantize(coded, window, steps), nearness(coded, frames.working_shape[:3])
     layers = Layers(
-        points=points, static=_static_of(static, window, beams_of(frames.config), step), calibration=gains,
+        points=points, static=static_of(static, window, beams_of(frames.config), step), calibration=gains,
         noise_power=noise_power,
     )  # fmt: skip
     return layers, near
@@ -440,30 +467,6 @@ def _point_coder(frames: ChunkFrames, window: FitWindow, steps: PointSteps) -> P
 
 def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
     return dequantize(coded, window.num_working_frames, steps, window.axes, window.response.num_directions)
-
-
-def _code_static(stream: BitStream, levels: np.ndarray) -> None:
-    every = np.ones(levels.shape[2:], np.int64)
-    LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
-
-
-def _static_bits(levels: np.ndarray) -> float:
-    """About the bits of `_code_static`."""
-    if not levels.any():
-        return 0.0
-    every = np.ones(levels.shape[2:], np.int64)
-    weights = np.ones(levels.shape[1])
-    return estimated_bits(LevelCoder(levels.shape[1:]), levels.reshape(2, len(weights), -1), every, weights)
-
-
-def _static_step(window: FitWindow, step: float) -> float:
-    kernel = window.response.doppler_kernel(window.axes.doppler_bin)[0]
-    return step / math.sqrt(window.num_working_frames * float(kernel.double().square().sum()))
-
-
-def _static_of(levels: np.ndarray, window: FitWindow, beams: np.ndarray, step: float) -> Tensor:
-    values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(window, step)
-    return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
 
 
 def _noise_level(power: float) -> int:

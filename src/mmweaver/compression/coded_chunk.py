@@ -19,9 +19,12 @@ class ChunkMode:
     with_rank: bool = False
     noise_step: float = 0.0  # of the noise layer, where there is one
     finer: int = 1  # the step over that of moving cells
+    only_noise: bool = False  # all of it as a noise layer, of the chunk's step
 
     def name(self) -> str:
         """For people."""
+        if self.only_noise:
+            return "noise"
         parts = ["scatterers"] * self.with_points + ["low rank"] * self.with_rank
         parts += ["noise"] * bool(self.noise_step)
         return " + ".join([*parts, self.transform.name()])

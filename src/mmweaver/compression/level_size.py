@@ -33,6 +33,7 @@ from mmweaver.compression.symbol_model import ESCAPE, HALF, SIZE, adaptive_bits,
 Array = np.ndarray
 ENOUGH_LEVELS = 30_000  # of which the bits of all are estimated
 MIXED = 0.994  # bits of all tables mixed in those of one
+EMPTY = 0.5  # of the levels of a beam in the mean: with fewer in those chosen, these do not tell those of all
 ESCAPE_BITS = 2.5  # of an escaped level, besides those of its binary digits
 
 
@@ -50,6 +51,9 @@ def estimated_bits(
     if not num:
         return 0.0
     chosen = np.arange(0, beams, max(1, min(beams, 2 * beams * num // ENOUGH_LEVELS)))
+    filled = np.count_nonzero(levels, axis=(0, 2))
+    if filled[chosen].mean() < EMPTY * filled.mean():  # levels are in a few other beams
+        chosen = np.arange(beams)
     counts = np.zeros((NUM_SIZES * NUM_TRENDS, SIZE))
     low_bits = 0.0
     for contexts, symbols, low in _symbols(coder, levels, factor, chosen):

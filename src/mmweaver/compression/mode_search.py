@@ -21,6 +21,8 @@ CLOSE_ERROR = 1.01  # times the error allowed that is as good
 OVER_RANGE_LOSES = 1.7  # times the error estimated: cells are predicted by neighbours, which no estimate knows
 CLEARLY_FINER = 0.9  # steps that a noise layer must have where there need not be one
 NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
+NOISE_ERROR = 0.5  # of the error over all cells: with less in active cells, all may be coded as noise
+PICTURE_BYTES = 0.6  # of the bytes: with so many a noise layer of everything is as good as codecs of pictures with all
 MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 12, 7
 NOISE_COUNTS, SAME_NOISE = 2, 0.05  # counts of a noise layer; share of the signal's bytes that an estimate may mistake
@@ -120,10 +122,10 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found) -> Plan:
     """
     bounds, samples = segment.bounds, first.samples
     own = Plan.of(first, num_bytes, bounds)
-    step = step_of_size(segment.samples(), SPARE * num_bytes / first.bytes_factor, 1, bounds)
-    if own.all_error <= sum_at(segment.samples(), step, 1).all_error:
+    evens = _even_plans(segment, num_bytes, first, own)
+    if not evens:
         return _with_noise(segment, num_bytes, own.all_error, first, CLEARLY_FINER * own.step) or own
-    even = _in_modes(segment, segment.plain_modes(), num_bytes)
+    even = min(evens, key=lambda plan: plan.all_error)
     allowed = even.all_error * 10 ** (EVEN_DB / 10)
     if own.all_error <= allowed:
         return _with_noise(segment, num_bytes, own.all_error, first, CLEARLY_FINER * own.step) or own
@@ -145,7 +147,30 @@ def _evened(segment: SegmentEncoder, num_bytes: int, first: Found) -> Plan:
     if segment.decide(step, 1):  # modes were chosen for cells without signal that count less
         size = COUNT_AIM * num_bytes / even.found.bytes_factor
         step = step_of_size(segment.decided_samples(), size, 1, bounds)
-    return Plan.of(_counted(segment, num_bytes, step, 1), num_bytes, bounds)
+    by_cell = Plan.of(_counted(segment, num_bytes, step, 1), num_bytes, bounds)
+    if not all(chunk.mode.only_noise for chunk in even.found.coded):
+        return by_cell
+    return min(by_cell, Plan.of(even.found, num_bytes, bounds), key=lambda plan: plan.badness)
+
+
+def _even_plans(segment: SegmentEncoder, num_bytes: int, first: Found, own: Plan) -> list[Plan]:
+    """Even coders that by estimates have less error over all cells: of cells, and of a noise layer of everything.
+
+    The latter has fewer bytes, about as many as codecs of pictures make use of: the rest is for the signal, if any.
+    """
+    plans, bounds = [], segment.bounds
+    step = step_of_size(segment.samples(), SPARE * num_bytes / first.bytes_factor, 1, bounds)
+    if own.all_error > sum_at(segment.samples(), step, 1).all_error:
+        plans.append(_in_modes(segment, segment.plain_modes(), num_bytes))
+    has_signal = segment.active_share < 1
+    is_noise = own.active_error < NOISE_ERROR * own.all_error or not has_signal
+    if is_noise and "noise layer" not in segment.without:
+        size = num_bytes * (PICTURE_BYTES if has_signal else 1)
+        step = step_of_size(segment.samples_as_noise(), size, 1, bounds)
+        if own.all_error > sum_at(segment.samples_as_noise(), step, 1).all_error:
+            found = _in_modes(segment, segment.modes_as_noise(), num_bytes).found
+            plans.append(Plan.at(found, found.step_of_size(COUNT_AIM * size, bounds)))
+    return plans
 
 
 def _in_modes(segment: SegmentEncoder, modes: list[ChunkMode], num_bytes: int) -> Plan:

@@ -12,7 +12,14 @@ from jaxtyping import Bool, Complex
 from scipy import fft
 
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.residual_stream import QuantizedCells, code_plain_cells, estimated_cell_bits, quantized
+from mmweaver.compression.residual_stream import (
+    USUAL_PRICE,
+    Price,
+    QuantizedCells,
+    code_plain_cells,
+    estimated_cell_bits,
+    quantized,
+)
 from mmweaver.compression.transforms import dct_matrix
 
 Array = np.ndarray
@@ -38,12 +45,13 @@ class NoiseLayer:
         coefficients: Complex[Array, "beam frame range doppler"],
         step: float,
         beams: Complex[Array, "beam antenna"],
+        price: Price = USUAL_PRICE,
         *,
         only_size: bool = False,
     ) -> "NoiseLayer":
-        """The layer of what `to_noise` makes of values without signal, see `without_signal`."""
+        """The layer of what `to_noise` makes of values without signal, see `without_signal`, or of all."""
         step = float(np.float32(step))
-        cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
+        cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool), price)
         stream, values = Encoder(), from_noise(cells.values(step, 1), beams)
         if only_size:
             near = np.zeros_like(cells.classes)

@@ -121,6 +121,14 @@ class SegmentEncoder:
         """Samples of the noise layers."""
         return [chooser.encoder.noise_sample() for chooser in self._choosers]
 
+    def modes_as_noise(self) -> list[ChunkMode]:
+        """The modes of a noise layer of everything."""
+        return [replace(chooser.plain, only_noise=True) for chooser in self._choosers]
+
+    def samples_as_noise(self) -> list[CellSample]:
+        """Samples of the chunks in these."""
+        return [chooser.encoder.sample_as_noise() for chooser in self._choosers]
+
     def plain_modes(self) -> list[ChunkMode]:
         """The modes without layers."""
         return [chooser.plain for chooser in self._choosers]
@@ -140,7 +148,8 @@ class SegmentEncoder:
 
     def mode_samples(self) -> list[CellSample]:
         """Samples of the transforms of the modes, without layers."""
-        return [chooser.encoder.sample(chooser.mode.transform) for chooser in self._choosers if chooser.mode]
+        modes = [(chooser.encoder, chooser.mode) for chooser in self._choosers if chooser.mode]
+        return [one.sample_as_noise() if mode.only_noise else one.sample(mode.transform) for one, mode in modes]
 
     def samples(self) -> list[CellSample]:
         """Samples of the chunks without layers."""

@@ -158,6 +158,7 @@ def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: i
                 range_window_m=window,
                 person=Person(height_m=PEOPLE_HEIGHT_M[spec.person]),
                 is_varied=False,
+                may_touch=False,
             )
             return replace(motion.pose, subject=spec.person)
         except InputError:

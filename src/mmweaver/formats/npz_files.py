@@ -165,6 +165,6 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
 
 
 def _read(path: Path, mapped: tuple[str, ...] = ()) -> NpzArrays:
-    """Reads an archive once it was held against the checksums of its folder."""
+    """Reads an archive once it was checked against the checksums of its folder."""
     check_file(path)
     return read_npz(path, mapped=mapped)

@@ -71,7 +71,10 @@ def _checked_axes(path: Path, names: list[str], shape: tuple[int, ...], sizes: d
     ]
     wanted = ", ".join(f"{name} {size}" for name, size in zip(names, expected, strict=True))
     if missing := [name for name in ORDER if name not in parts and sizes.get(name, 1) != 1]:
-        raise InputError(f"the axes {','.join(names)} lack {missing[0]}, of which the radar has {sizes[missing[0]]}")
+        hint = "; vrx is tx and rx in one" if missing[0] in ("tx", "rx") else ""
+        raise InputError(
+            f"the axes {','.join(names)} lack {missing[0]}, of which the radar has {sizes[missing[0]]}{hint}"
+        )
     fits = len(shape) == len(names) and all(
         size in ("any", str(length)) for size, length in zip(expected, shape, strict=True)
     )

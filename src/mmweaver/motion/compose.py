@@ -63,6 +63,7 @@ def compose(
     others: tuple[PoseSequence, ...] = (),
     has_photo: bool = True,
     after: BodyState | None = None,
+    may_touch: bool = True,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
@@ -81,6 +82,8 @@ def compose(
         has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
             walk leads where there is room, and an assumption says so.
         after: how the motion before ended, which this one goes on from (see `continuous`).
+        may_touch: where nothing else has room, what travels is done on the spot, falls go another way, and who lies
+            touches furniture, all of it said. False raises instead.
 
     Raises InputError where the room has no place for the motion.
     """
@@ -117,7 +120,7 @@ def compose(
 
         return least_collision(candidates, animate, CollisionMap.of(scene))
 
-    plan, best, room_notes = with_more_room(plan, floor, compose_on)
+    plan, best, room_notes = with_more_room(plan, floor, compose_on, may_touch=may_touch)
     described = (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
     placed = best.placement

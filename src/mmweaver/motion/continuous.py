@@ -79,15 +79,22 @@ class ContinuousMotion:
         usual = with_habits(plan, person)
         try:
             whole = continued(usual, before, seat_m=self._way_to_seat_m(plan, person))
-            part = self._compose(whole, person, plan.text)
+            part = self._compose(whole, person, plan.text, may_touch=False)
         except NoRoomError:
-            if before is None or before.posture != "feet" or plan.steps[0].moves:
-                raise
-            walk = replace(plan.steps[0], lower="walk", upper="", direction="", seconds=WALK_ON_S)
-            walked = replace(usual, steps=(walk, *usual.steps), notes=(*usual.notes, WALKS_ON))
-            part = self._compose(continued(walked, before), person, plan.text)
+            part = self._walked_on(usual, before, plan, person) or self._compose(whole, person, plan.text)
         self._said = plan
         return part
+
+    def _walked_on(self, usual: MotionPlan, before: Step | None, plan: MotionPlan, person: Person) -> MotionPart | None:
+        """The plan after a walk to where there is room for it; None where nobody can walk, or there is none."""
+        if before is None or before.posture != "feet" or plan.steps[0].moves:
+            return None
+        walk = replace(plan.steps[0], lower="walk", upper="", direction="", seconds=WALK_ON_S)
+        walked = replace(usual, steps=(walk, *usual.steps), notes=(*usual.notes, WALKS_ON))
+        try:
+            return self._compose(continued(walked, before), person, plan.text, may_touch=False)
+        except NoRoomError:
+            return None
 
     def go_on(self, refused: str = "") -> MotionPart:
         """Nothing new: the last activity goes on, or the posture is held. Never raises after the first sentence."""
@@ -111,7 +118,7 @@ class ContinuousMotion:
     def _base(self) -> MotionPlan:
         return parse(_NOTHING_SAID) if self._said is None else replace(self._said, notes=(), clauses=())
 
-    def _compose(self, plan: MotionPlan, person: Person, text: str) -> MotionPart:
+    def _compose(self, plan: MotionPlan, person: Person, text: str, *, may_touch: bool = True) -> MotionPart:
         number = self._parts
         frames = max(1, math.ceil(natural_s(plan) / self.frame_period_s - 1e-6))
         scheduled = schedule(plan, frames * self.frame_period_s)
@@ -120,6 +127,7 @@ class ContinuousMotion:
         motion = compose(
             scheduled, self.scene, seed=seed, range_window_m=self.range_window_m, person=person, after=self._state(),
             start_m=self._start_m if is_first else None, heading_rad=self._heading_rad if is_first else None,
+            may_touch=may_touch,
         )  # fmt: skip
         begins = 0 if self._last is None else self._last.end_frame
         begin_s = begins * self.frame_period_s

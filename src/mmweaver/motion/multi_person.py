@@ -48,13 +48,13 @@ def compose_people(
         who[0] = first.pose.subject
     numbers = _subjects(seed, who)
 
-    def alone(index: int, own_seed: int, others: tuple[PoseSequence, ...]) -> Motion:
+    def alone(index: int, own_seed: int, others: tuple[PoseSequence, ...], *, may_touch: bool = True) -> Motion:
         plan = plans[index]
         assert plan is not None
         return compose(
             plan, scene, seed=own_seed, range_window_m=range_window_m, start_m=starts[index],
             height_m=heights[index], subject=numbers[index], others=others,
-            heading_rad=None if index or first is not None else heading_rad,
+            heading_rad=None if index or first is not None else heading_rad, may_touch=may_touch,
         )  # fmt: skip
 
     if len(plans) == 1:
@@ -83,14 +83,13 @@ def compose_people(
     )
 
 
-def _join(
-    people: list[Motion], alone: Callable[[int, int, tuple[PoseSequence, ...]], Motion], numbers: tuple[int, int, int]
-) -> Motion:
+def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int, int, int]) -> Motion:
     """One more person, clear of the others; `numbers` are seed, index of the person and attempt."""
     seed, index, attempt = numbers
     others = tuple(one.pose for one in people)
     for retry in range(TRIES_PER_PERSON):
-        motion = alone(index, _seed_of(seed, index, attempt, retry), others)
+        may_touch = not others or attempt == TRIES_FOR_ALL - 1  # other orders of the people are tried before
+        motion = alone(index, _seed_of(seed, index, attempt, retry), others, may_touch=may_touch)
         if all(are_separate(motion.pose, other) for other in others):
             return motion
     raise InputError(f"person {index + 1} comes too near to somebody else; try another place")

@@ -1,4 +1,4 @@
-"""Features of recordings held against those of generated windows, without labels: quantiles, matching, distances.
+"""Features of recordings compared with those of generated windows, without labels: quantiles, matching, distances.
 
 Matching maps each feature of recorded windows monotonically, so that its distribution becomes the generated one. It
 presumes that the unlabelled recordings hold about the same mixture of activities as was generated.

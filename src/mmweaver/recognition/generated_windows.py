@@ -159,7 +159,7 @@ def _pose(
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
         schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
-        start_m=start_m, person=Person(height_m=now.height_m), is_varied=False,
+        start_m=start_m, person=Person(height_m=now.height_m), is_varied=False, may_touch=False,
     ).pose  # fmt: skip
     joints_m = scaled_excursion(pose.joints_m, now.vigour)
     if moves and tempo * pelvis_speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:

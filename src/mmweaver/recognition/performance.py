@@ -159,7 +159,7 @@ def perform(
     window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
     pose = compose(
         scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
-        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person,
+        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person, may_touch=False,
         heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
     ).pose  # fmt: skip
     if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:

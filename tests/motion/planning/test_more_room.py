@@ -8,8 +8,9 @@ import pytest
 from mmweaver.core.errors import NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.language.plan import APPROXIMATED
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.planning.more_room import going_on_elsewhere
+from mmweaver.motion.planning.more_room import NARROW_FLOOR, going_on_elsewhere, on_the_spot
 from tests.motion.rooms import WINDOW_M, room
 
 FULL = ((-3.0, 3.0, 0.0, 6.0),)
@@ -63,3 +64,52 @@ def test_who_has_no_room_to_walk_on_ahead_turns_and_it_is_said():
     assert [note for note in made.assumptions if "no room to go on ahead for 'walks on'" in note]
     assert made.plan.steps[-1].moves
     assert going_on_elsewhere(plan_motion("a person walks, stops, then walks forward", 6.0))[1] == ()
+
+
+GAP = ((-3.0, -0.22, 0.0, 6.0), (0.22, 3.0, 0.0, 6.0))
+ALL_THAT_TRAVELS_OR_LIES = (
+    "he stumbles and falls forward, gets up and limps away", "a child crawls to the left",
+    "he jumps forward", "he hops to the left on one leg", "he does push-ups", "a person lies down on the floor",
+    "a person kneels down", "she falls off the chair", "a person lies down on the bed",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ALL_THAT_TRAVELS_OR_LIES)
+def test_what_finds_no_room_is_approximated_and_said_in_its_clause(text: str):
+    made = compose(plan_motion(text), room(boxes=CELL), seed=0, range_window_m=WINDOW_M)
+    assert np.isfinite(made.pose.joints_m).all()
+    assert any(record.status == APPROXIMATED for record in made.clauses) or any("bed" in n for n in made.assumptions)
+    with pytest.raises(NoRoomError):
+        compose(plan_motion(text), room(boxes=CELL), seed=0, range_window_m=WINDOW_M, may_touch=False)
+
+
+def test_who_stumbles_on_the_spot_lifts_the_feet_and_stays():
+    plan, notes = on_the_spot(plan_motion("he stumbles", 2.0), lambda step: step.moves)
+    assert notes == ("there is no room for 'he stumbles': the person stumbles on the spot",)
+    joints_m = compose(plan, room(), seed=0, range_window_m=WINDOW_M).pose.joints_m
+    assert np.ptp(joints_m[:, 0, :2], axis=0).max() < 0.2
+    assert np.ptp(joints_m[:, 7:9, 2], axis=0).min() > 0.02
+
+
+def test_a_fall_goes_where_there_is_floor_and_so_does_getting_up():
+    plan = plan_motion("he falls forward, then gets up")
+    short = room(boxes=((-3.0, 3.0, 0.0, 1.0), (-3.0, 3.0, 3.2, 6.0), (-3.0, -1.1, 0.0, 6.0), (1.1, 3.0, 0.0, 6.0)))
+    made = compose(plan, short, seed=0, range_window_m=WINDOW_M)
+    styles = {step.style for step in made.plan.steps}
+    assert len(styles) == 1
+    assert "front" not in styles
+    assert any("instead" in note for note in made.assumptions)
+    assert not any("reaches beyond" in note for note in made.assumptions)
+
+
+def test_a_lying_body_is_where_most_of_it_is_on_free_floor():
+    lane = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.7, 6.0)))
+    pose = compose(plan_motion("he lies on his stomach"), lane, seed=0, range_window_m=WINDOW_M).pose
+    along = np.ptp(pose.joints_m[0, :, :2], axis=0)
+    assert along[1] > along[0], "the body lies along the lane"
+
+
+def test_in_a_gap_narrower_than_a_body_somebody_stands_and_it_is_said():
+    made = _composed("a person waves", room(boxes=GAP))
+    assert abs(made.pose.joints_m[0, 0, 0]) < 0.12
+    assert NARROW_FLOOR in made.assumptions

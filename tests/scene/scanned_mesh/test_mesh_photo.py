@@ -65,6 +65,27 @@ def test_unit_and_gravity_are_found(name: str, transform: np.ndarray, factor: fl
     assert said in " ".join(found.assumptions)
 
 
+def test_a_modelled_room_that_stands_on_a_slab_has_the_floor_that_people_stand_on(tmp_path: Path):
+    scene = trimesh.Scene([walls()])
+    slab = trimesh.creation.box((5.0, 6.0, 0.15))
+    slab.apply_translation((2.5, 3.0, -0.075))
+    podium = trimesh.creation.box((2.0, 2.0, 0.3))
+    podium.apply_translation((1.0, 1.0, 0.15))
+    scene.add_geometry([slab, podium])
+    scene.export(str(tmp_path / "room.ply"))
+    found = upright(tmp_path / "room.ply", read_mesh(tmp_path / "room.ply"))
+    assert found.of_file(np.zeros(3))[2] == pytest.approx(0, abs=0.02)
+
+
+def test_what_a_glb_contradicts_is_said(tmp_path: Path):
+    lying = furnished(tmp_path / "lying.glb", np.eye(4))  # z up, against the format
+    assert "--mesh-up z" in " ".join(upright(lying, read_mesh(lying)).assumptions)
+    assert not upright(lying, read_mesh(lying), up="z").assumptions
+    millimetres = furnished(tmp_path / "mm.glb", Y_UP, 1000.0)
+    with pytest.raises(InputError, match="in mm it would be 6 m"):
+        upright(millimetres, read_mesh(millimetres))
+
+
 def test_the_room_is_the_one_that_was_modelled(tmp_path: Path):
     """From a place that is given: walls, floor and the seat of the sofa where they were put."""
     path = furnished(tmp_path / "room.glb", Y_UP)
@@ -87,6 +108,10 @@ def test_names_and_a_table_say_what_things_are(tmp_path: Path):
     classes = read_mesh_photo(path, eye=(2.5, 1.1, -0.5), look_deg=90.0, materials=table).photo.classes
     assert classes is not None
     assert {NAMES[index] for index in np.unique(classes.index)} == {"unlabeled", "couch", "metal"}
+    table.write_text(json.dumps({"Material.03": "metal"}))
+    said = " ".join(read_mesh_photo(path, eye=(2.5, 1.1, -0.5), look_deg=90.0, materials=table).assumptions)
+    assert "no 'Material.03'; it has " in said
+    assert "'Material.003'" in said
 
 
 @pytest.mark.parametrize("content", [b"", b"no mesh", b"ply\nformat ascii 1.0\nend_header\n", b"glTF\2\0\0\0\xff"])

@@ -74,6 +74,15 @@ def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPo
     assert scene.floor_z_m == pytest.approx(-EYE_M, abs=0.02)
 
 
+def test_a_stated_place_that_nothing_bears_out_is_said():
+    true = RadarPose(x_m=SECOND.x_m, y_m=SECOND.y_m, yaw_deg=SECOND.yaw_deg)
+    elsewhere = RadarPose(x_m=30.0, y_m=3.9, yaw_deg=SECOND.yaw_deg + 35)
+    for stated, is_said in ((true, False), (elsewhere, True)):
+        scene = reconstruct_together(photo(RadarPose()), [PosedPhoto(photo=photo(SECOND), pose=stated)])
+        note = next(one for one in scene.assumptions if "photos were joined, 1 of them by rough places;" in one)
+        assert ("Nothing in photo 2 bears out where it was taken" in note) == is_said
+
+
 def test_floor_that_the_first_photo_cannot_see_is_free():
     alone = reconstruct(photo(FIRST)).free_space
     free = reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose_of(SECOND))]).free_space

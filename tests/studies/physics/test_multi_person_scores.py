@@ -1,5 +1,7 @@
 """The study on one pair of people."""
 
+from dataclasses import replace
+
 import pytest
 
 from mmweaver.core.presets import AWR1843
@@ -25,3 +27,8 @@ def test_who_stands_behind_is_dimmed_and_the_plain_sum_does_not_know_it(behind: 
     assert row["n"] == 1
     assert row["metrics"]["rd_ssim"]["baseline"].keys() == {"without_second"}
     assert row["metrics"]["rd_ssim"]["oracle"].keys() == {"other_noise", "realization"}
+
+
+def test_a_prediction_that_is_the_truth_has_a_finite_score(behind: Pair):
+    scores = scores_of(replace(behind, plain=behind.mutual))
+    assert scores["nmse_active_db"]["superposition"] == multi_person_scores.EXACT_DB

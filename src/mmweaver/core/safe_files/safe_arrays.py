@@ -1,4 +1,4 @@
-"""Arrays of .npy, .npz and raw files: what a header says is held against the file before memory is taken for it.
+"""Arrays of .npy, .npz and raw files: what a header says is checked against the file before memory is taken for it.
 
 Pickled objects are never loaded. Reference: numpy.lib.format; PKWARE APPNOTE.TXT for zip.
 """

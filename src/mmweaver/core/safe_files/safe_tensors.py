@@ -49,7 +49,7 @@ def read_tensor_metadata(path: Path | str) -> dict[str, str]:
 
 
 def check_header(path: Path | str) -> dict[str, Any]:
-    """The header of a safetensors file, after it was held against the size of the file."""
+    """The header of a safetensors file, after it was checked against the size of the file."""
     size = check_regular(path)
     with open_regular(path) as file, foreign_errors(path, NO_TENSORS):
         start = file.read(8)

@@ -1,4 +1,4 @@
-"""Zarr (v3) groups and arrays on the disk: what metadata promises is held against the chunk files before memory is
+"""Zarr (v3) groups and arrays on the disk: what metadata promises is checked against the chunk files before memory is
 taken for it, and a chunk that would grow beyond its array is refused (`bounded_codecs`).
 
 Read are arrays as mmWeaver writes them: numbers or texts, Zstandard or Blosc, CRC-32C, shards. Reference: Zarr v3 core

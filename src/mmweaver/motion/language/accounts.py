@@ -1,7 +1,7 @@
 """Every word of the sentence that says what is seen is shown by a step of its clause, or it is named as not shown.
 
 `coverage` and `mentions` look for what the grammar is known to lose. Here it is the other way round: the words of the
-sentence as it was given (verbs, parts of the body, ways, sides, numbers, manners) are held against the steps of the
+sentence as it was given (verbs, parts of the body, ways, sides, numbers, manners) are checked against the steps of the
 clause that they stand in, whatever patterns have made of it, and a word that no step accounts for is named.
 """
 

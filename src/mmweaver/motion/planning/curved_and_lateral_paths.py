@@ -21,7 +21,10 @@ from mmweaver.motion.planning.trajectory import (
 Array = np.ndarray
 SPECIAL = ("sidestep", "stumble", "leap")
 LYING_ROOM_M = 0.22  # clearance on either side of a lying body
+_TIGHT_COST = 40.0  # of a body none of which is on free floor: more than all else that a trajectory costs
 SIDESTEP_M = 0.3  # length of one sidestep
+_OUT_OF_VIEW = 0.5  # as bad as so much of the room being short
+_TIGHT = "the free floor has no room"
 _BEND_RADII_M = (1.3, 1.0, 0.8, 0.65, 0.5, 0.4)
 
 
@@ -142,8 +145,19 @@ def turn_by(trajectory: Trajectory, step: Step) -> None:
     trajectory.heading_rad += angle_rad
 
 
+def _tight_note(step: Step) -> str:
+    """What is said of a body on a floor too small for it."""
+    how = (
+        "on hands and knees" if step.lower == "crawl" else "on the knees" if step.posture == "knees" else "full length"
+    )
+    return f"{_TIGHT} for {step.clause or step.name!r} {how}: the body reaches beyond it, where it touches least"
+
+
 def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProportions) -> None:
-    """Raises NoTrajectory where a kneeling, falling or lying body would be in furniture or out of view."""
+    """Raises NoTrajectory where a kneeling, falling or lying body would be in furniture.
+
+    On a floor that is tight that costs the more, the less of the body is on free floor, and is said.
+    """
     if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
         return
     h = body.height_m
@@ -163,6 +177,13 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     ahead_m = OFF_SEAT_AHEAD_M if step.lower == "fall_off" else 0.0
     ahead = np.array([np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)])
     places = trajectory.position_m + ahead_m * ahead + along
-    if float(trajectory.floor.clearance_at(places).min()) < LYING_ROOM_M:
-        raise NoTrajectory("no floor to lie on")
+    short_m = np.maximum(LYING_ROOM_M - trajectory.floor.clearance_at(places), 0.0)
+    if short_m.any():
+        if not trajectory.floor.is_tight:
+            raise NoTrajectory("no floor to lie on")
+        out_of_view = _OUT_OF_VIEW * ~trajectory.floor.sees(places)
+        trajectory.cost += _TIGHT_COST * float(np.maximum(short_m / LYING_ROOM_M, out_of_view).mean())
+        rises = step.lower in ("kneel_up", "get_up")  # from where it was said that the body is
+        if not (rises and any(note.startswith(_TIGHT) for note in trajectory.notes)):
+            trajectory.notes.append(_tight_note(step))
     trajectory.cost += float(trajectory.floor.cost_at(places).mean())

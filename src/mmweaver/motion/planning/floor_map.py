@@ -16,6 +16,7 @@ Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
 
 BODY_RADIUS_M = 0.25  # half the width of the shoulders
+SIDEWAYS_RADIUS_M = 0.15  # half the depth of the trunk
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
@@ -37,23 +38,29 @@ class FloorMap:
     range_window_m: tuple[float, float]
     height_m: float
     with_assumed: bool = False  # whether floor that was only assumed counts as free
+    is_tight: bool = False  # whether who kneels, lies or stands in a gap may touch what stands about
 
     @classmethod
     def of(
-        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False
-    ) -> "FloorMap":
+        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False,
+        is_tight: bool = False,
+    ) -> "FloorMap":  # fmt: skip
         """The map for a body of about this height; the last ones are cached, as many motions are placed in one scene.
 
         A step in height of `HEIGHT_STEP_M` moves what is in view by less than a cell.
         """
         height_m = round(height_m / HEIGHT_STEP_M) * HEIGHT_STEP_M
-        key = (range_window_m, height_m, with_assumed)
+        key = (range_window_m, height_m, with_assumed, is_tight)
         for floor in _latest:
-            if floor.scene is scene and (floor.range_window_m, floor.height_m, floor.with_assumed) == key:
+            if floor.scene is scene and floor._key == key:
                 return floor
         floor = cls(scene, *key)
         _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MOST_CACHED]
         return floor
+
+    @property
+    def _key(self) -> tuple[tuple[float, float], float, bool, bool]:
+        return self.range_window_m, self.height_m, self.with_assumed, self.is_tight
 
     @cached_property
     def cell_m(self) -> float:
@@ -98,8 +105,11 @@ class FloorMap:
 
     @cached_property
     def walkable(self) -> Bool[Array, "y x"]:
-        """Whether a body can stand in a cell: enough clearance, and in view."""
-        return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+        """Whether a body can stand in a cell: enough clearance, and in view; if tight and none has it, sideways."""
+        is_wide = (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+        if self.is_tight and not is_wide.any():
+            return (self.clearance_m >= SIDEWAYS_RADIUS_M) & self.in_view
+        return is_wide
 
     @cached_property
     def walkable_m(self) -> Float[Array, "cell 2"]:

@@ -1,4 +1,8 @@
-"""What is tried where a motion finds no room: going elsewhere, floor that is only assumed, walking on the spot."""
+"""What is tried where a motion finds no room, from what changes least to what changes most; and ways on.
+
+Going on elsewhere; floor that is only assumed; walking on the spot; everything else that travels on the spot, and falls another way; at
+last, lying where furniture is touched least.
+"""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -9,11 +13,19 @@ import numpy as np
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import Scene
-from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.targets import SEATS
 
 Result = TypeVar("Result")
-_ON_THE_SPOT = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
+_WALKS = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
+# What is done on the spot instead of what travels, and its word; all else marches, and walks.
+_ON_THE_SPOT = {
+    "jog": ("jog", "runs"), "stumble": ("stumble", "stumbles"), "crawl": ("crawl", "crawls"), "hop": ("hop", "hops"),
+    "hop_one_leg": ("hop_one_leg", "hops"), "leap": ("jump", "jumps"),
+}  # fmt: skip
+_FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
+_FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 _ANY_WINDOW_M = (0.2, 30.0)
 _MOST_RADARS = 3
@@ -22,18 +34,24 @@ ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
     " fills the picture, and may be occluded"
 )
+NARROW_FLOOR = (
+    "no free floor is as wide as a body: the person stands in a gap that is deep enough for the trunk, and may touch"
+    " what is beside it"
+)
+Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
 def with_more_room(
-    plan: MotionPlan, floor: FloorMap, compose_on: Callable[[MotionPlan, FloorMap], Result]
+    plan: MotionPlan, floor: FloorMap, compose_on: Callable[[MotionPlan, FloorMap], Result], *, may_touch: bool = True
 ) -> tuple[MotionPlan, Result, tuple[str, ...]]:
     """The first of several ways to compose a plan that finds room: the plan then, its result, and notes.
 
-    In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot. Raises
-    the error of the first way, with ways on where no floor is free at all.
+    In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot; where
+    `may_touch`, all that travels on the spot, falls another way, and at last kneeling or lying where furniture is
+    touched least. Raises the error of the first way, with ways on where no floor is free at all.
     """
     first_error: InputError | None = None
-    for way, way_floor, notes in _ways(plan, floor):
+    for way, way_floor, notes in _ways(plan, floor, may_touch=may_touch):
         try:
             return way, compose_on(way, way_floor), notes
         except InputError as error:
@@ -44,20 +62,35 @@ def with_more_room(
     raise first_error
 
 
-def _ways(plan: MotionPlan, floor: FloorMap) -> Iterator[tuple[MotionPlan, FloorMap, tuple[str, ...]]]:
+def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way]:
     yield plan, floor, ()
     elsewhere, turned_notes = going_on_elsewhere(plan)
     if turned_notes:
         yield elsewhere, floor, turned_notes
-    assumed = FloorMap.of(floor.scene, floor.range_window_m, floor.height_m, with_assumed=True)
-    more = bool((assumed.walkable & ~floor.walkable).any())
-    if more:
-        yield plan, assumed, (ASSUMED_FLOOR,)
-    still, still_notes = on_the_spot(plan)
-    if still_notes:
-        yield still, floor, still_notes
-        if more:
-            yield still, assumed, (*still_notes, ASSUMED_FLOOR)
+    assumed = _like(floor, with_assumed=True)
+    floors: list[tuple[FloorMap, tuple[str, ...]]] = [(floor, ())] + [(assumed, (ASSUMED_FLOOR,))] * bool(
+        (assumed.walkable & ~floor.walkable).any()
+    )
+    walks_still = on_the_spot(plan, _walks_somewhere)
+    all_still = on_the_spot(plan, _travels)
+    plans = [(plan, ()), walks_still] + [all_still] * may_touch
+    plans = [one for k, one in enumerate(plans) if not k or one[1] != plans[k - 1][1]]
+    falls = [
+        (other, (*notes, *fall_notes))
+        for style in _FALL_STYLES
+        for step_plan, notes in (plans[0], plans[-1])[: len(plans)]
+        for other, fall_notes in [falling(step_plan, style)]
+        if may_touch and fall_notes
+    ]
+    for one, notes in (*plans, *falls):
+        for some_floor, floor_notes in floors:
+            if one is not plan or some_floor is not floor:
+                yield one, some_floor, (*notes, *floor_notes)
+    wide = [one for one in floors if one[0].walkable.any()]
+    narrow = [(floor, (NARROW_FLOOR,)), (assumed, (ASSUMED_FLOOR, NARROW_FLOOR))]
+    for one, notes in plans * may_touch:
+        for some_floor, floor_notes in wide or narrow:
+            yield one, _like(some_floor, is_tight=True), (*notes, *floor_notes)
 
 
 def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
@@ -74,23 +107,54 @@ def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
     return replace(plan, steps=steps), notes
 
 
-def on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
-    """The plan with walks in a direction shown on the spot, and notes on them; walks to a seat or landmark stay."""
-    walks = [
-        step for step in plan.steps if step.moves and step.lower in _ON_THE_SPOT and not step.target
-        and step.direction != "seat" and step.place is None and not step.route_m
-    ]  # fmt: skip
-    gaits = {"jog": "runs"}
-    notes = tuple(
-        f"there is no room for {step.clause or step.name!r}: the person {gaits.get(step.lower, 'walks')} on the spot"
-        for step in walks
-    )
-    steps = tuple(
-        replace(step, lower="jog" if step.lower == "jog" else "march", direction="spot", count=0, arc_deg=0.0)
-        if step in walks else step
-        for step in plan.steps
+def _like(floor: FloorMap, *, with_assumed: bool = False, is_tight: bool = False) -> FloorMap:
+    return FloorMap.of(
+        floor.scene, floor.range_window_m, floor.height_m, with_assumed=with_assumed or floor.with_assumed,
+        is_tight=is_tight,
     )  # fmt: skip
-    return replace(plan, steps=steps), notes
+
+
+def _walks_somewhere(step: Step) -> bool:
+    """Whether a step is a walk that leads to nothing in the room."""
+    return step.moves and step.lower in _WALKS and not step.target and step.direction != "seat" and _is_free(step)
+
+
+def _travels(step: Step) -> bool:
+    """Whether a step leads anywhere; what goes to a place or a landmark other than a seat is done there or refused."""
+    return step.moves and (not step.target or step.target in SEATS) and _is_free(step)
+
+
+def _is_free(step: Step) -> bool:
+    return step.place is None and not step.route_m
+
+
+def on_the_spot(plan: MotionPlan, is_meant: Callable[[Step], bool]) -> tuple[MotionPlan, tuple[str, ...]]:
+    """The plan with some of its steps that move shown on the spot, and notes on them."""
+    steps, notes = [], []
+    for step in plan.steps:
+        if is_meant(step):
+            lower, does = _ON_THE_SPOT.get(step.lower, ("march", "walks"))
+            notes.append(f"there is no room for {step.clause or step.name!r}: the person {does} on the spot")
+            step = replace(step, lower=lower, direction="spot", count=0, arc_deg=0.0, target="")
+        steps.append(step)
+    return replace(plan, steps=tuple(steps)), tuple(notes)
+
+
+def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
+    """The plan with its falls another way (back, left, right or front), and notes on them.
+
+    What is done lying after a fall, and getting up, goes the same way.
+    """
+    steps, notes, fallen = [], [], False
+    for step in plan.steps:
+        falls_otherwise = step.lower == "fall" and step.style != style
+        fallen = falls_otherwise or (fallen and step.lower in _FALLEN and step.lower != "fall")
+        steps.append(replace(step, style=style) if fallen else step)
+        if falls_otherwise:
+            notes.append(
+                f"there is no floor for {step.clause or step.name!r}: the person falls {_FALL_STYLES[style]} instead"
+            )
+    return replace(plan, steps=tuple(steps)), tuple(notes)
 
 
 def ways_on(floor: FloorMap) -> dict[str, Any]:

@@ -113,9 +113,10 @@ def place(
     )
     trajectories: list[Trajectory] = []
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
-    is_small = len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
+    enough = MOST_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
+    is_small = not floor.is_tight and len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
     for tried in range(MOST_TRIES_WHERE_SMALL if is_small else MOST_TRIES):
-        if len(trajectories) >= enough or (trajectories and tried >= TRIES):
+        if len(trajectories) >= enough or (trajectories and tried >= TRIES and not floor.is_tight):
             break
         try:
             trajectory = sampler.sample()

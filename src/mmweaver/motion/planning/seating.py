@@ -246,11 +246,15 @@ def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProport
 
 
 def stool_fits(stool: Sitting, floor: FloorMap, *, is_bed: bool = False) -> bool:
-    """Whether there is free floor in view for a stool, or for a bed along whose edge the person sits."""
+    """Whether there is free floor in view for a stool, or for a bed along whose edge the person sits.
+
+    On a tight floor it only has to be in view.
+    """
     aside = np.array([-np.sin(stool.facing_rad), np.cos(stool.facing_rad)])
     reach = np.linspace(-0.9, 0.9, 5) if is_bed else np.zeros(1)
     places = stool.seat_m + reach[:, None] * aside
-    return bool((floor.clearance_at(places) >= 0.2).all()) and bool(floor.sees(stool.seat_m))
+    is_free = floor.is_tight or bool((floor.clearance_at(places) >= 0.2).all())
+    return is_free and bool(floor.sees(stool.seat_m))
 
 
 def pulled_note(chair: PulledChair) -> str:

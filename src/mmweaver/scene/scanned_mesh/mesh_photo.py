@@ -24,6 +24,7 @@ from mmweaver.scene.scanned_mesh.viewpoint import Viewpoint, find_viewpoint
 
 WIDTH, HEIGHT, VIEW_DEG = 640, 480, 100.0
 UPWARDS_RAD = np.deg2rad(40.0)
+MOST_NAMES = 12  # that a note lists
 FEWEST_SEEN = 0.2  # share of a picture's pixels
 TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
 # of the classes that imply a material, the one that says least else
@@ -73,6 +74,7 @@ def read_mesh_photo(
         f"The radar's place in the mesh, {place} m (z above its floor), was {chosen}; it looks at"
         f" {np.rad2deg(view.azimuth_rad):.0f} degrees from the mesh's x axis.",
         *found.assumptions,
+        *_unused(mesh, given),
         *(() if mesh.has_colours else ("The mesh has no colours: materials follow from names and geometry alone.",)),
     )
     return CapturedPhoto(
@@ -137,6 +139,15 @@ def _class_in(name: str) -> str:
     words = "".join(one if one.isalpha() else " " for one in name.lower()).split()
     pairs = [" ".join(words[at : at + 2]) for at in range(len(words) - 1)]
     return next((found for word in (*pairs, *words) if (found := coco_class(word)) is not None), UNLABELED)
+
+
+def _unused(mesh: ColouredMesh, given: dict[str, str]) -> tuple[str, ...]:
+    """Names of the table that the mesh has not, and those that it has: a name that is misspelt changes nothing."""
+    unused = [name for name in given if name not in mesh.names]
+    if not unused:
+        return ()
+    has = ", ".join(repr(name[:40]) for name in mesh.names[:MOST_NAMES] if name) or "no names at all"
+    return (f"The mesh has no {', '.join(repr(name[:40]) for name in unused[:MOST_NAMES])}; it has {has}.",)
 
 
 def _table(path: Path) -> dict[str, str]:

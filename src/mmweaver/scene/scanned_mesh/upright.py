@@ -16,6 +16,8 @@ HEIGHT_M, WIDTH_M = (1.6, 12.0), (1.5, 80.0)  # of rooms
 LEVEL = np.cos(np.deg2rad(12))  # cosine between up and the normals of level surfaces, at least
 FEWEST_LEVEL = 0.08  # share of the area: of floors, and tops of furniture
 FLOOR_BIN_M = 0.05
+THICKEST_FLOOR_M, SLAB_SHARE = 0.4, 0.7  # of a modelled slab: its top has nearly the area of its underside
+CLEARLY_MORE = 1.2  # level area with another axis up, before it is said
 UPWARDS = {"y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
@@ -45,7 +47,8 @@ def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str 
         raise InputError(f"up must be y or z, not {up!r}")
     normals, area = _normals_and_areas(mesh)
     named = "y" if path.suffix.lower() == ".glb" else None  # glTF: +y is up
-    axis = up or named or max(UPWARDS, key=lambda name: area[np.abs(normals @ UPWARDS[name]) > LEVEL].sum())
+    level = {name: float(area[np.abs(normals @ along) > LEVEL].sum()) for name, along in UPWARDS.items()}
+    axis = up or named or max(level, key=lambda name: level[name])
     direction, is_level = _refined(np.array(UPWARDS[axis]), normals, area)
     if area[is_level].sum() < FEWEST_LEVEL * area.sum():
         raise InputError(f"{path}: no level surfaces with {axis} up; say which axis is up, or turn the mesh upright")
@@ -54,6 +57,11 @@ def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str 
     unit_m, said = _unit(path, turned, unit or ("m" if named else None))
     floor = _floor(turned[:, 2], mesh.faces[is_level], area[is_level], unit_m)
     notes = [] if up or named else [f"{axis} was taken as upwards: more of the mesh is level that way."]
+    if named and not up and level["z"] > CLEARLY_MORE * level["y"]:
+        notes = [
+            "y was taken as upwards, as glTF says, though more of the mesh is level with z up: if the room lies on its"
+            " side, z is up (--mesh-up z)."
+        ]
     moved = replace(mesh, vertices=unit_m * (turned - np.array([0.0, 0.0, floor])))
     return UprightMesh(
         mesh=moved, to_mesh=to_mesh, unit_m=unit_m, floor=floor, assumptions=(*notes, *said)
@@ -93,7 +101,9 @@ def _unit(path: Path, turned: np.ndarray, unit: str | None) -> tuple[float, tupl
     width, height = float((high - low)[:2].max()), float((high - low)[2])
     if unit is not None:
         if not WIDTH_M[0] <= width * UNITS_M[unit] <= WIDTH_M[1]:
-            raise InputError(f"{path} is {width * UNITS_M[unit]:.3g} m wide in {unit}; is that the right unit?")
+            fitting = [name for name in GUESSED if HEIGHT_M[0] <= height * UNITS_M[name] <= HEIGHT_M[1]]
+            other = f"; in {fitting[0]} it would be {width * UNITS_M[fitting[0]]:.3g} m" if fitting else ""
+            raise InputError(f"{path} is {width * UNITS_M[unit]:.3g} m wide in {unit}; is that the right unit{other}?")
         return UNITS_M[unit], ()
     for name in GUESSED:
         fits = WIDTH_M[0] <= width * UNITS_M[name] <= WIDTH_M[1] and height * UNITS_M[name] <= HEIGHT_M[1]
@@ -104,12 +114,14 @@ def _unit(path: Path, turned: np.ndarray, unit: str | None) -> tuple[float, tupl
 
 
 def _floor(height: np.ndarray, faces: np.ndarray, area: np.ndarray, unit_m: float) -> float:
-    """The lowest height with much level surface."""
+    """The lowest height with much level surface; of a slab its top, on which people stand."""
     middle = unit_m * height[faces].mean(axis=1)
     bins = np.floor((middle - middle.min()) / FLOOR_BIN_M).astype(int)
     held = np.bincount(bins, weights=area)
     lowest = int(np.flatnonzero(held > 0.15 * held.max())[0])
-    chosen = np.abs(bins - lowest) <= 1
+    slab = held[lowest : lowest + round(THICKEST_FLOOR_M / FLOOR_BIN_M) + 1]
+    top = lowest + int(np.flatnonzero(slab > SLAB_SHARE * held[lowest])[-1])
+    chosen = np.abs(bins - top) <= 1
     order = np.argsort(middle[chosen])
     share = np.cumsum(area[chosen][order])
     return float(middle[chosen][order][np.searchsorted(share, share[-1] / 2)] / unit_m)

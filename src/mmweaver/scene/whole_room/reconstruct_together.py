@@ -141,9 +141,15 @@ def _note(given: Sequence[LevelPose], placed: Sequence[LevelPose], others: Seque
         abs(np.degrees(np.angle(np.exp(1j * (b.azimuth_rad - a.azimuth_rad)))))
         for a, b in zip(given, placed, strict=True)
     ]
-    rough = sum(one.is_rough for one in others)
-    how = "by their poses" if not rough else f"{rough} of them by rough places"
+    rough = [one.is_rough for one in others]
+    how = "by their poses" if not any(rough) else f"{sum(rough)} of them by rough places"
+    unmoved = [
+        str(number)
+        for number, (is_rough, shift_m, turn_deg) in enumerate(zip(rough, shifts_m, turns_deg, strict=True), start=2)
+        if is_rough and shift_m == 0 and turn_deg == 0
+    ]
+    alone = f" Nothing in photo {', '.join(unmoved)} bears out where it was taken: that stays as stated."
     return (
-        f"{1 + len(others)} photos were joined {how}; common walls moved them by up to {max(shifts_m):.2f} m and"
-        f" {max(turns_deg):.1f} degrees."
+        f"{1 + len(others)} photos were joined, {how}; common walls moved them by up to {max(shifts_m):.2f} m and"
+        f" {max(turns_deg):.1f} degrees.{alone if unmoved else ''}"
     )

@@ -61,7 +61,10 @@ def stumbling(context: StepContext) -> Controls:
         style, steps_hz=context.tempo(2.3, 2.7, 3.0), double_support=0.05, arm_swing_rad=0.1, toe_off_rad=0.35,
         heel_strike_rad=0.05, lift_m=0.05, bob_m=0.01, sink=0.965, half_stance_m=1.5 * style.half_stance_m,
     )  # fmt: skip
-    controls = stepping(context, style, jog=False)
+    on_spot = context.step.direction == "spot"  # the feet are lifted, though they come down where they were
+    if on_spot:
+        style = replace(style, spot_lift_m=style.lift_m)
+    controls = stepping(context, style, jog=on_spot)
     time_s, jolt = context.time_s, float(context.rng.uniform(0.25, 0.45))
     u = (time_s - context.start_s) / max(min(context.duration_s, 1.5), 0.9)
     early, late = bump(u / 0.6), bump((u - 0.3) / 0.7)
