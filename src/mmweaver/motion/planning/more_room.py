@@ -1,7 +1,7 @@
 """What is tried where a motion finds no room, from what changes least to what changes most; and ways on.
 
-Going on elsewhere; floor that is only assumed; walking on the spot; everything else that travels on the spot, and falls another way; at
-last, lying where furniture is touched least.
+Going on elsewhere; floor that is only assumed; walking on the spot; everything else that travels on the spot, and falls
+another way; at last, lying where furniture is touched least.
 """
 
 from collections.abc import Callable, Iterator
