@@ -1,13 +1,13 @@
-"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 450 more.
+"""How many everyday sentences does the default command make? 200, written before the grammar was changed, and 600 more.
 
 python -m studies run strangers
 python -m studies run strangers --draw second
 
 The 200 are in studies/motion/sentences/strangers.txt, written by one person as a stranger might say them; the grammar
-was developed on others. The 150 of strangers_second.txt, of strangers_third.txt and of strangers_fourth.txt were
-written by a language model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`).
-Each is parsed and composed in the bundled room with seed 0 and no other option. A sentence is made whole where every
-clause is done, approximated where one is shown as something similar or left out.
+was developed on others. The 150 of strangers_second.txt, _third, _fourth and _fifth each were written by a language
+model that had not seen the grammar, and were read after it was frozen (see `unread_prompts`). Each is parsed and
+composed in the bundled room with seed 0 and no other option. A sentence is made whole where every clause is done,
+approximated where one is shown as something similar or left out.
 Refusals are counted by their reason. The baseline is what the same command made before (commit 238a8a5).
 """
 
@@ -28,6 +28,7 @@ SENTENCES = Path(__file__).parent / "sentences" / "strangers.txt"
 DRAWS = {
     "default": SENTENCES, "second": SENTENCES.with_name("strangers_second.txt"),
     "third": SENTENCES.with_name("strangers_third.txt"), "fourth": SENTENCES.with_name("strangers_fourth.txt"),
+    "fifth": SENTENCES.with_name("strangers_fifth.txt"),
 }  # fmt: skip
 BEFORE = 72 / 200  # made at commit 238a8a5, by the same steps
 REASONS = {"names no activity": "unknown", "was found in the photo": "not in the room", "no room": "no room",

@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Ten draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Eleven draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -16,11 +16,12 @@ the 150 sentences of studies/motion/sentences/strangers_second.txt, written for 
 seen the grammar: short ones, everyday ones and hard ones; `strangers_second`: the 150 of strangers_third.txt, by a
 language model that had not seen it either, in the style of captions of motion capture; `strangers_third`: the 150 of
 strangers_fourth.txt, likewise, after the other two had been used to mend the grammar (one was in strangers_third.txt,
-too). Each prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and
-right swapped.
+too); `strangers_fourth`: the 150 of strangers_fifth.txt, after the other three had (two were in earlier files). Each
+prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right
+swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6 and 8f1f1f1 before the last five); what was understood
-was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1 and b85c0dc before the last six); what was
+understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
 results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
@@ -43,7 +44,7 @@ DRAWS = {  # -> ending of the names of their files
     "first": "", "second": "_second", "captions": "_captions", "third": "_third",
     "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
     "strangers": "_strangers", "strangers_second": "_strangers_second",
-    "strangers_third": "_strangers_third",
+    "strangers_third": "_strangers_third", "strangers_fourth": "_strangers_fourth",
 }  # fmt: skip
 
 

@@ -16,7 +16,9 @@ def test_outcomes_and_shares():
     assert row["reasons"] == {"unknown": 1}
 
 
-@pytest.mark.parametrize(("draw", "count"), [("default", 200), ("second", 150), ("third", 150), ("fourth", 150)])
+@pytest.mark.parametrize(
+    ("draw", "count"), [("default", 200), ("second", 150), ("third", 150), ("fourth", 150), ("fifth", 150)]
+)
 def test_all_sentences_differ(draw: str, count: int):
     texts = DRAWS[draw].read_text(encoding="utf-8").splitlines()
     assert len(set(texts)) == len(texts) == count
