@@ -45,6 +45,8 @@ EXERCISES = {
     "a man does ten sit-ups": ("sit_ups", ""),
     "a person pedals": ("pedal", ""),
     "a baby crawls on hands and knees": ("crawl", ""),
+    "someone is crawling forward on hands and knees": ("crawl", ""),
+    "a man squats down slowly and stays there": ("crouch", ""),
 }
 
 
@@ -62,6 +64,11 @@ def test_a_gesture_is_known_by_its_instruction(text: str, upper: str):
 def test_an_exercise_is_known_with_its_side(text: str, known: tuple[str, str]):
     (step,) = parse(text).steps
     assert (step.lower, step.foot) == known
+
+
+def test_a_bat_is_swung_as_a_golf_club_whatever_it_hits():
+    (step,) = parse("she hits a baseball with a bat").steps
+    assert step.upper == "golf"
 
 
 def test_counts_and_hands_held_up_belong_to_the_exercise():

@@ -58,7 +58,7 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?! (?:stroller|carriage|seat|to (?!sleep)|towards?|through|across|away|around|over|forwards?|up|down|into|out|upstairs|downstairs))"
      r"(?: (?:to sleep|back and forth|to and fro|gently|softly|from side to side|(?:in|on) (?:his|her|their|the) (?:arms?|chest|lap))\b)*", " cradle "),
     (r"\bwhile on (?:the |his |her )?phone\b", " while phone "),
-    (r"\bcrawl(s|ing|ed)? (?:on|around on) (?:his |her |the |all )*(?:hands and knees|fours)\b", " crawls "),
+    (r"\bcrawl(?:s|ing|ed)?((?: (?!on\b|and\b|then\b)[a-z]+){0,3}) on (?:his |her |the |all )*(?:hands and knees|fours)\b", r" crawls\1 "),
     # Gestures of one arm; the arm may be what acts: "the right arm falls straight down"
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:is lifted|is raised|rises|goes) straight up"
      r"(?:,? (?:and )?stays (?:up|there|above the head))?\b", r" raise_and_hold \1 \2 "),

@@ -45,7 +45,7 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
     (r",? (?:but|and|yet|without)? ?(?:does|did|do|is)(?: not|n't) (?:fall|falling)(?: down| over)?\b", " "),  # true of all but falls
     (r"\b(?:rotat|mov|swivel)(?:e?s|ing) (?:his|her|its|their|the) head\b(?: (?:a?round|from side to side|in circles|up and down))?", " look_around "),
-    (r"\bsquat(s|ting)?(?: down)? (?:and|then|,)+ (?:stays?|remains?|holds?|staying|remaining) (?:it|there|down|low|in (?:it|position|(?:this|that|the|a) (?:[a-z]+ )?(?:position|pose|posture|squat)))\b", " crouches "),
+    (r"\bsquat(?:s|ting)?(?: down)?((?: (?:slowly|quickly|carefully|deeply|low))*) (?:and|then|,)+ (?:stays?|remains?|holds?|staying|remaining) (?:it|there|down|low|in (?:it|position|(?:this|that|the|a) (?:[a-z]+ )?(?:position|pose|posture|squat)))\b", r" crouches\1 "),
     (r"\b(?:nearly|almost) (?:falls?|falling|topples?|trips?|slips?)(?: (?:down|over|forwards?|backwards?))?\b", " stumbles "),
     # where somebody faces who walks anyway, and from where somebody gets up
     (r"\b(?:is |are )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)(?= and\b| then\b|,)", " stands "),
