@@ -67,7 +67,7 @@ def fit_elevation(clouds: Sequence[PointCloud], config: RadarConfig, body_z_m: f
 def _bodies(cloud: PointCloud) -> np.ndarray:
     """Median range and height (frame, 2) of the points near the middle of each frame's points."""
     found = []
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     order = np.argsort(cloud.frame, kind="stable")
     for part in np.split(order, np.flatnonzero(np.diff(cloud.frame[order])) + 1):
         place = np.stack([cloud.x_m[part], cloud.y_m[part]], axis=1)

@@ -149,7 +149,7 @@ class SignalEvidence:
     def points(self) -> PointCloud:
         """The signal's points, or those of CFAR, within the common ranges."""
         cloud = self.signal.points if self.signal.points is not None else point_cloud(self.signal.cube)
-        distance = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+        distance = cloud.range_m
         return cloud.select((distance >= self.points_m[0]) & (distance <= self.points_m[1]))
 
     @property

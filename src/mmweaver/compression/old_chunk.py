@@ -13,6 +13,7 @@ from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.entropy import BitStream, Decoder
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness
 from mmweaver.compression.residual_coder import ResidualCoder
+from mmweaver.compression.static_levels import static_of
 from mmweaver.compression.transforms import beams_of, from_coefficients
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
@@ -72,7 +73,7 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         cells = from_coefficients(values[0] + 1j * values[1], beams)
         residual = cells.astype(np.complex64)
     layers = Layers(
-        points=points, static=_static_of(static, fit_window, beams, step), calibration=gains,
+        points=points, static=static_of(static, fit_window, beams, step), calibration=gains,
         noise_power=10 ** (-noise / 20),
     )  # fmt: skip
     return DecodedChunk(
@@ -99,16 +100,6 @@ def _dequantize(coded, fit_window: FitWindow, steps: PointSteps) -> Points:
 
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
     ResidualCoder(levels.shape[1:]).code(stream, levels, np.zeros(levels.shape[2:], np.int64))
-
-
-def _static_step(fit_window: FitWindow, step: float) -> float:
-    kernel = fit_window.response.doppler_kernel(fit_window.axes.doppler_bin)[0]
-    return step / math.sqrt(fit_window.num_working_frames * float(kernel.double().square().sum()))
-
-
-def _static_of(levels: np.ndarray, fit_window: FitWindow, beams: np.ndarray, step: float) -> Tensor:
-    values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(fit_window, step)
-    return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
 
 
 def _code_residual(stream: BitStream, levels: np.ndarray, classes: np.ndarray | None, near: np.ndarray) -> None:

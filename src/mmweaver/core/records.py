@@ -115,6 +115,11 @@ class PointCloud(ShownByFacts):
     radial_velocity_mps: PerPoint
     snr_db: PerPoint
 
+    @property
+    def range_m(self) -> np.ndarray:
+        """Distance of each point from the radar, (point,)."""
+        return np.sqrt(self.x_m**2 + self.y_m**2 + self.z_m**2)
+
     def select(self, which: np.ndarray) -> "PointCloud":
         """The points selected by mask or index (point,)."""
         return PointCloud(**{field.name: getattr(self, field.name)[which] for field in fields(PointCloud)})

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mmweaver.core.records import PointCloud
 from mmweaver.core.skeleton import joint
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.power_panels import note, with_colours
@@ -71,20 +70,16 @@ def _draw_side(axes: "Axes", view: FigureData) -> None:
 def _draw_over_time(axes: "Axes", view: FigureData) -> None:
     points = view.shown_points
     time_s = view.cube.grid.frame_time_s[points.frame] + view.cube.config.frame_period_s / 2
-    _scatter(axes, view, time_s, _range_m(points))
+    _scatter(axes, view, time_s, points.range_m)
     axes.set(xlim=view.time_edges_s, ylim=(0, view.range_edges_m[1]))
     label_axes(axes, "Points over time (no elevation)", "time (s)", "range (m)", grid=True)
 
 
 def _draw_over_velocity(axes: "Axes", view: FigureData) -> None:
     points = view.shown_points
-    _scatter(axes, view, points.radial_velocity_mps, _range_m(points))
+    _scatter(axes, view, points.radial_velocity_mps, points.range_m)
     axes.set(xlim=view.velocity_edges_mps, ylim=(0, view.range_edges_m[1]))
     label_axes(axes, "Points by velocity (no elevation)", "radial velocity (m/s), away +", "range (m)", grid=True)
-
-
-def _range_m(points: PointCloud) -> np.ndarray:
-    return np.sqrt(points.x_m**2 + points.y_m**2 + points.z_m**2)
 
 
 def _velocities(view: FigureData) -> "ScalarMappable":

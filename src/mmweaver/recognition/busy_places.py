@@ -1,6 +1,6 @@
 """Where something moves that is nobody: places in which a recording of the empty place has moving points.
 
-What moves there is left out of all windows, generated and recorded, so that a fan is no runner.
+Moving points there are left out of all windows, generated and recorded, so that a fan is no runner.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ def busy_cells(empty_place: Sequence[PointRecording]) -> Cells:
 
 
 def without_busy(window: PointRecording, cells: Cells) -> PointRecording:
-    """The window without what moves in these cells."""
+    """The window without the moving points in these cells."""
     if not len(cells):
         return window
     own, width = _cells(window.cloud) - cells.min(axis=0), np.ptp(cells, axis=0) + 1

@@ -116,7 +116,7 @@ def draw_confusions(
 
 def _scatter(upper: "Axes", lower: "Axes", window: PointRecording) -> None:
     cloud = window.cloud
-    range_m, moving = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2), np.abs(cloud.radial_velocity_mps) > STILL_MPS
+    range_m, moving = cloud.range_m, np.abs(cloud.radial_velocity_mps) > STILL_MPS
     middle = moving if moving.any() else ~moving
     time_s = cloud.frame / window.frame_rate_hz
     for axis, values in ((upper, range_m), (lower, cloud.z_m)):

@@ -39,7 +39,7 @@ def course_features(window: PointRecording) -> Row:
         return np.where(known, weight @ values / np.maximum(total, 1e-12), np.nan)
 
     aside = cloud.x_m - np.median(cloud.x_m)
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     found = {
         "share": total / max(float(total.sum()), 1e-12), "velocity": mean(velocity),
         "up": mean(cloud.z_m - np.median(cloud.z_m)), "out": mean(range_m - np.median(range_m)), "aside": mean(aside),

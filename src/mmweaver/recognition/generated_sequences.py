@@ -141,7 +141,7 @@ def _is_seen(recording: PointRecording, pose: PoseSequence) -> bool:
     """Whether the body is detected often enough: a radar that misses the person would be placed elsewhere."""
     cloud = recording.cloud
     body_m = np.interp(cloud.frame / recording.frame_rate_hz, pose.time_s, pelvis_distance_m(pose))
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     there = cloud.frame[np.abs(range_m - body_m) < REACH_M]
     return len(np.unique(there)) >= SEEN_SHARE * recording.num_frames
 

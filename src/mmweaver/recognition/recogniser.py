@@ -64,7 +64,7 @@ class Recogniser:
     outside_above: float  # a window is outside where this share of its features is exceeded
     matching: FeatureMatching | None  # learned from unlabelled recordings
     meta: dict[str, Any]
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # where the empty place is busy: what moves there is left out
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # of the empty place: moving points there are left out
 
     @property
     def labels(self) -> tuple[str, ...]:

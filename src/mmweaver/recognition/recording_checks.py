@@ -134,7 +134,7 @@ def _ways(recordings: Sequence[PointRecording], fastest_mps: float) -> tuple[np.
         if frames <= lag:
             continue
         count = np.bincount(cloud.frame, minlength=frames)
-        range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+        range_m = cloud.range_m
         mean_m, velocity = (
             np.bincount(cloud.frame, values, minlength=frames) / np.maximum(count, 1)
             for values in (range_m, cloud.radial_velocity_mps)
@@ -167,7 +167,7 @@ def neighbour_shares(recordings: Sequence[PointRecording], facts: RadarFacts) ->
     shares, cells = [], []
     for recording in recordings:
         cloud = recording.cloud
-        range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+        range_m = cloud.range_m
         step = np.round(cloud.radial_velocity_mps / facts.velocity_step_mps)
         cells.append(np.unique(np.stack([cloud.frame, np.round(range_m / facts.range_step_m), step], axis=1), axis=0))
     for column in (1, 2):

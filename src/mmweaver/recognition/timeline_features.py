@@ -24,7 +24,7 @@ def timeline_features(window: PointRecording) -> Row:
     cloud = of_the_body(window.cloud)
     time_s = cloud.frame / window.frame_rate_hz
     velocity = cloud.radial_velocity_mps
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     places = {"up": cloud.z_m, "out": range_m, "aside": cloud.x_m}
     if len(time_s) < FEWEST:
         return dict.fromkeys(_names(), np.nan)

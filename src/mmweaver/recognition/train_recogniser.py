@@ -137,7 +137,7 @@ def generated_windows(
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
-    What moves where the empty place is busy is left out.
+    Moving points where the empty place is busy are left out.
 
     Raises InputError where an activity gave no window.
     """

@@ -48,7 +48,7 @@ class TrainingWindows:
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
     importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # where what moves is left out
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # where moving points are left out
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:

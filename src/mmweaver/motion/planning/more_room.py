@@ -36,7 +36,7 @@ ASSUMED_FLOOR = (
 )
 NARROW_FLOOR = (
     "no free floor is as wide as a body: the person stands in a gap that is deep enough for the trunk, and may touch"
-    " what is beside it"
+    " what is next to it"
 )
 Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
