@@ -34,7 +34,7 @@ def test_every_pattern_compiles_and_every_replacement_is_understood():
         ("a person walks in a clockwise circle", ["walk"], "done"),
         ("a person walks and sings", ["walk"], "approximated"),
         ("a person dances the waltz", ["dance"], "approximated"),
-        ("a jab and an uppercut", ["punch", "punch"], "approximated"),
+        ("a jab and an uppercut", ["jab", "uppercut"], "done"),
         ("a person drinks coffee standing up", ["drink"], "done"),
         ("walks over some rubble, mumbling", ["walk"], "approximated"),
         ("dances to the left", ["dance"], "approximated"),

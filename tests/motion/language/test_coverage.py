@@ -16,7 +16,6 @@ from mmweaver.motion.language.sentence import parse
         ("a man jumps high", "high"),
         ("a person walks through the door", "through the door"),
         ("a person walks quickly and angrily", "angrily"),
-        ("a person does a side kick", "the side"),
         ("a person walks from the door to the table", "from the door"),
         ("a person stands in front of the sofa facing the wall", "facing the wall"),
         ("a person walks with the hands behind the back", "behind the back"),

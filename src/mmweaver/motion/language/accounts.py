@@ -40,7 +40,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
         """
         kick stomp raise_leg one_leg hop_one_leg lunge side_lunge limb_extension kneel kneel_down kneel_up squat crouch
         march limp tree_pose warrior_pose downward_dog stairs crawl push_ups sit_ups jump leap hop jumping_jacks bend
-        pedal
+        pedal roundhouse side_kick walking_lunge
         """,
     ),
     (
@@ -49,7 +49,7 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
     ),
     ("elbow elbows", "knock_elbow plank"),
     ("shoulder shoulders", "shrug arm_circles arms_out look_around stumble"),
-    ("hip hips waist pelvis", "hips twist dance lean"),
+    ("hip hips waist pelvis", "hips twist dance lean hula_hoop"),
     (
         "torso trunk chest stomach belly sternum breast",
         """
@@ -81,10 +81,11 @@ SHOWN_BY: tuple[tuple[str, str], ...] = (
     (
         "forward forwards front ahead",
         """
-        kick punch push throw reach lunge bend bow fall point push_hand golf carry open_door knock wipe sweep vacuum
+        kick punch jab cross hook uppercut push throw reach lunge bend bow fall point push_hand golf forehand backhand
+        forward_roll roundhouse carry open_door knock wipe sweep vacuum
         """,
     ),
-    ("high higher", f"kick stretch crouch jumping_jacks {_LIFTED}"),
+    ("high higher", f"kick roundhouse side_kick stretch crouch jumping_jacks {_LIFTED}"),
     ("low lower", "crouch squat bend bow lower_arm lunge"),
     ("diagonal diagonally sideways laterally", ""),
     ("toward towards", "reach turn point push"),
@@ -237,7 +238,7 @@ def _side(tokens: list[str], i: int, own: list[Step]) -> str:
     aimed = len(before) == 2 and before[0] in _TO and before[1] in _WHOSE
     if not aimed or any(goes_aside(step) or step.turn_deg for step in own):
         return ""
-    shown = any(step.direction in ("left", "right") and step.lower in ("kick", "fall_off") for step in own)
+    shown = any(step.direction in ("left", "right") and step.lower in ("kick", "fall_off", "side_kick") for step in own)
     shown = shown or any(step.lower == "side_lunge" for step in own)
     return "" if shown else "the side is not shown"
 
@@ -348,7 +349,8 @@ _ALIKE = tuple(
         "raise raise_hold arms_out arm_extension hands_up stretch limb_extension raise_leg knock_elbow pick_up",
         "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",
         "wipe brush_teeth sweep stir", "fall lower_arm", "stretch push_hand", "turn twist", "kick raise_leg",
-        "read text type", "throw punch", "throw roll_over roll_in_bed",
+        "read text type", "throw punch jab cross hook uppercut", "throw roll_over roll_in_bed", "turn roundhouse",
+        "turn hula_hoop", "walk lunge walking_lunge",
         "turn roll_over roll_in_bed", "carry walk",
     )
 )  # fmt: skip

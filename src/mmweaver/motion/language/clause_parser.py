@@ -424,7 +424,7 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
-    if {word.text for word in words} & {"uppercut", "uppercuts", "hook", "hooks"}:
+    if {word.text for word in words} & {"hook", "hooks"}:
         parsed.approximations.append("the kind of punch is not distinguished")
     if moved is not None and {word.text for word in words} & ARMS and sum(word.is_activity for word in words):
         parsed.approximations.append("how the arms move is not shown")

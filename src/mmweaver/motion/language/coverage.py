@@ -19,7 +19,7 @@ _WITH_ARMS = words_in(
     """
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
     get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
-    bow stairs side_lunge lunge sit_ups pedal roll_over roll_in_bed
+    bow stairs side_lunge lunge sit_ups pedal roundhouse side_kick hula_hoop forward_roll roll_over roll_in_bed
     """
 )
 
@@ -27,11 +27,13 @@ _WITH_ARMS = words_in(
 # Activities in which one hand or foot is not distinguished from the other.
 _WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms shrug stretch hands_up breathe")
 _EITHER_WAY = words_in("draw_circle")
-_TO_A_SIDE = words_in("swipe roll_over roll_in_bed sidestep side_lunge limb_extension lean arms_out arm_extension")
+_TO_A_SIDE = words_in(
+    "side_kick swipe roll_over roll_in_bed sidestep side_lunge limb_extension lean arms_out arm_extension"
+)
 _WITH_ONE_FOOT = words_in(
     """
-    limp hop_one_leg one_leg kick stomp raise_leg lunge side_lunge limb_extension kneel_down kneel_up stairs tree_pose
-    warrior_pose
+    limp hop_one_leg one_leg kick roundhouse side_kick stomp raise_leg lunge side_lunge limb_extension kneel_down
+    kneel_up stairs tree_pose warrior_pose
     """
 )
 

@@ -1,11 +1,14 @@
 """The lexicon: words that a sentence may contain, by their function. Lists of words stand in `lexicon.toml`."""
 
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.sided_phrases import SIDED_PHRASES
+from mmweaver.motion.language.sport_phrases import SPORT_PHRASES
 from mmweaver.motion.language.verbs import words_in
 
 _WORDS = {name: words_in(words) for name, words in read_toml(Path(__file__).with_suffix(".toml")).items()}
@@ -33,8 +36,10 @@ IRREGULAR = {
 }  # fmt: skip
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
 
-PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anything is looked up
+# Replaced in this order before anything is looked up.
+PHRASES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bfor (?:a|quite a) (?:little |short |long )?while\b", " "),
+    *SPORT_PHRASES,
     *SIDED_PHRASES,
     *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,

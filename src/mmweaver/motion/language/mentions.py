@@ -43,9 +43,9 @@ _PARTS = (
         words=rf"{_LEG}|tip-?toes?",
         activities=words_in(
             """
-            kick stomp raise_leg one_leg hop_one_leg lunge side_lunge limb_extension kneel kneel_down kneel_up squat
-            crouch march limp tree_pose warrior_pose downward_dog stairs crawl push_ups jump leap hop jumping_jacks bend
-            sit_ups pedal
+            kick roundhouse side_kick stomp raise_leg one_leg hop_one_leg lunge walking_lunge side_lunge limb_extension
+            kneel kneel_down kneel_up squat crouch march limp tree_pose warrior_pose downward_dog stairs crawl push_ups
+            jump leap hop jumping_jacks bend sit_ups pedal
             """
         ),
     ),
@@ -60,7 +60,7 @@ _PARTS = (
     ),
     _Part(words="elbows?", activities=words_in("knock_elbow plank raise")),
     _Part(words="shoulders?", activities=words_in("shrug arm_circles arms_out raise look_around stumble")),
-    _Part(words="hips?", activities=words_in("hips twist dance lean")),
+    _Part(words="hips?", activities=words_in("hips twist dance lean hula_hoop")),
     _Part(
         words=r"torso|trunk|waist|upper body|chest|stomach|belly",
         activities=words_in(

@@ -21,7 +21,19 @@ ONE_ARMED = words_in(
     """
 )
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
-ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
+ARMS_TAKEN = {
+    "jumping_jacks",
+    "pick_up",
+    "put_down",
+    "throw",
+    "fall",
+    "lie_down",
+    "get_up",
+    "stumble",
+    "leap",
+    "jump",
+    "forward_roll",
+}
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
 _REST_S = 0.5  # before a hand is raised to wave
 _WALKS_ON = re.compile(

@@ -19,7 +19,7 @@ AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
-GAITS = ("walk", "jog", "limp", "stagger", "crawl")
+GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
 
 def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
@@ -133,7 +133,8 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
     if (aside and step.lower == "walk") or _is_step_aside(step, words, at):
         return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == "spot":
-        return replace(step, lower="march" if step.lower == "walk" else step.lower, arc_deg=0.0, turn_deg=0.0)
+        still = {"walk": "march", "walking_lunge": "lunge"}.get(step.lower, step.lower)
+        return replace(step, lower=still, arc_deg=0.0, turn_deg=0.0)
     return _bent(step)
 
 
@@ -292,14 +293,14 @@ def facing_of(words: list[Word]) -> str:
 
 
 _BY_LOWER = {
-    **dict.fromkeys(("walk", "jog", "limp", "stagger", "crawl"), _going_step),
+    **dict.fromkeys(GAITS, _going_step),
     "turn": _turning_step,
     **dict.fromkeys(("jump", "hop"), _jumping_step),
     "stumble": _stumbling_step,
     **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
     **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
     "fall_off": _falling_off_step,
-    **dict.fromkeys(("kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
+    **dict.fromkeys(("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
     "lean": _leaning_step,
 }

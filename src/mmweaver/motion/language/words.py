@@ -48,7 +48,9 @@ def _phrases() -> list[tuple[str, str | Callable[[re.Match[str]], str]]]:
     return [(pattern, _as_participle(replacement) or replacement) for pattern, replacement in PHRASES]
 
 
-def _as_participle(replacement: str) -> Callable[[re.Match[str]], str] | None:
+def _as_participle(replacement: str | Callable[[re.Match[str]], str]) -> Callable[[re.Match[str]], str] | None:
+    if not isinstance(replacement, str):
+        return None
     token = next(iter(replacement.split()), "")
     lower, upper = ACTIVITY_OF_LEMMA.get(token, ("", ""))
     if lower or not upper:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.motion.animation.library.uneven_gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
 from mmweaver.motion.language.plan import HOPPING, Step
 from mmweaver.motion.planning.collision import PulledChair
@@ -13,6 +14,7 @@ from mmweaver.motion.planning.floor_map import FloorMap
 Array = np.ndarray
 SLOWEST_MPS = {
     "walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15, "hop": 0.25, "hop_one_leg": 0.25,
+    "walking_lunge": 0.3,
 }  # fmt: skip
 RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
@@ -42,6 +44,8 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
         low, high = ((2.1, 2.6), (2.7, 3.3), (3.5, 4.2))[step.speed + 1]
     elif step.lower == "crawl":
         low, high = ((0.2, 0.25), (0.28, 0.45), (0.5, 0.7))[step.speed + 1]
+    elif step.lower == "walking_lunge":
+        low, high = ((0.36, 0.44), (0.46, 0.58), (0.6, 0.72))[step.speed + 1]
     elif step.lower in ("limp", "stagger"):
         low, high = ((0.45, 0.6), (0.6, 0.9), (0.9, 1.1))[step.speed + 1]
     elif step.lower in HOPPING:
@@ -176,6 +180,7 @@ def _stop_s(step: Step, begin: float) -> float:
     if not step.count or step.upper:
         return step.end_s
     each = 0.38 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
+    each = 1 / LUNGES_HZ[step.speed + 1] if step.lower == "walking_lunge" else each
     return min(step.end_s, begin + each * step.count + 0.3)
 
 

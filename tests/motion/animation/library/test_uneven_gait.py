@@ -52,3 +52,14 @@ def test_a_limp_is_uneven(seed: int):
         return stands[0] - stands[1]
 
     assert longer_on_the_left("right") - longer_on_the_left("left") > 0.1
+
+
+def test_walking_lunges_go_ahead_and_down_with_every_step():
+    for seed in range(2):
+        joints = act_out("a person does four walking lunges to the left", seed=seed, height_m=1.75).pose.joints_m
+        high = joints[:, 0, 2].astype(float)
+        lowest = (high[1:-1] < high[:-2]) & (high[1:-1] <= high[2:]) & (high[1:-1] < high.max() - 0.15)
+        assert 3 <= lowest.sum() <= 6
+        apart = np.linalg.norm(joints[:, joint("left_ankle"), :2] - joints[:, joint("right_ankle"), :2], axis=1)
+        assert apart.max() > 0.5
+        assert np.linalg.norm(joints[-1, 0, :2] - joints[0, 0, :2]) > 1.5

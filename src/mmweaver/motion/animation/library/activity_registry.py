@@ -10,6 +10,7 @@ from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library import (
     arm_gestures,
     bending,
+    boxing,
     cycling,
     dancing,
     floor_exercises,
@@ -25,7 +26,9 @@ from mmweaver.motion.animation.library import (
     rehabilitation,
     sitting,
     standing,
+    tennis,
     throwing_and_carrying,
+    turned_kicks,
     uneven_gait,
     yoga,
 )  # fmt: skip
@@ -78,6 +81,10 @@ POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
         ("sit_ups", floor_exercises.sit_ups),
         ("crawl", floor_exercises.crawling),
         ("pedal", cycling.pedalling),
+        ("roundhouse", turned_kicks.roundhouse),
+        ("side_kick", turned_kicks.side_kick),
+        ("walking_lunge", uneven_gait.walking_lunges),
+        ("hula_hoop", dancing.hula_hooping),
         ("roll_over", on_the_floor.rolling_over),
         ("roll_in_bed", on_furniture.rolling_in_bed),
         ("lie_on_seat", on_furniture.lying_on_seat),
@@ -148,6 +155,13 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
         ("count_fingers", hand_activities.counting_on_fingers),
         ("tremble", household.trembling),
         ("cradle", throwing_and_carrying.cradling),
+        ("jab", boxing.jab),
+        ("cross", boxing.cross),
+        ("hook", boxing.hook),
+        ("uppercut", boxing.uppercut),
+        ("forehand", tennis.forehand),
+        ("backhand", tennis.backhand),
+        ("tennis_serve", tennis.serving),
     ],
 )
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.movement_primitives import shift_foot, shift_pelvis, vary
+from mmweaver.motion.animation.library.movement_primitives import OUTWARD, mix_arm, shift_foot, shift_pelvis, vary
 from mmweaver.motion.animation.library.standing import SIDE_SIGN, upright
 from mmweaver.motion.animation.profiles import bump, plateau, rise
 from mmweaver.motion.animation.step_context import StepContext
@@ -74,3 +74,26 @@ def _arms(
             arm[:, 0] += on * 2.1
             arm[:, 1] += on * 0.45 + 0.25 * size * other
             arm[:, 3] += on * 0.8
+
+
+def hula_hooping(context: StepContext) -> Controls:
+    """The hips go round and round over feet a little apart, the chest staying behind; the arms are out of the way."""
+    controls, time_s, rng, h = upright(context), context.time_s, context.rng, context.body.height_m
+    begin, end = context.start_s, context.end_s
+    on = np.ones_like(time_s) if context.first else rise((time_s - begin) / 0.6)
+    on = on if context.last else on * rise((end - time_s) / 0.6)
+    turn = 2 * np.pi * context.tempo(0.9, 1.4, 1.9) * float(rng.choice([-1.0, 1.0])) * (time_s - begin)
+    ahead, left = vary(context, 0.032) * np.cos(turn) * on, vary(context, 0.03) * np.sin(turn) * on
+    shift_pelvis(controls, ahead * h, left * h, -0.012 * h * on)
+    controls.pelvis_rad[:, 1] -= 2.2 * ahead  # the hips lead, so the pelvis tilts against its way
+    controls.pelvis_rad[:, 0] += 2.2 * left
+    controls.spine_rad[:, 1] -= 2.6 * ahead  # and the chest stays over the feet
+    controls.spine_rad[:, 0] += 2.6 * left
+    controls.knee_room[:] = np.maximum(controls.knee_room, 0.5 * on)
+    out = float(rng.uniform(0.6, 1.1))
+    for side in (LEFT, RIGHT):
+        shift_foot(controls, side, 0.0, 0.03 * h, 0.0)
+        arm = np.tile([0.35, out, -0.3, 1.5], (len(time_s), 1))
+        arm[:, 0] += 0.1 * np.cos(turn + 0.5 * OUTWARD[side])
+        mix_arm(controls, side, arm, on)
+    return controls

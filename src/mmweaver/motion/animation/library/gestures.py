@@ -16,6 +16,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 PerTime = Float[Array, " n"]
+QUICK_STRIKE_S = 0.46  # of a fist, from the guard and back
 
 
 def waving(context: StepContext, controls: Controls) -> Controls:
@@ -138,13 +139,16 @@ def _sway(controls: Controls, context: StepContext, lunge_m: PerTime) -> None:
 def punching(context: StepContext, controls: Controls) -> Controls:
     """Fists in front of the face; one after the other shoots forward at shoulder height and comes back."""
     time_s, rng, body = context.time_s, context.rng, context.body
-    rate, _ = cycles(context, context.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
+    one_arm = context.step.hand in ("left", "right")
+    rate, _ = cycles(context, context.tempo(1.1, 1.7, 2.0 if one_arm else 2.3), 0.9, 2.6)
     period = 1 / rate
     count = context.step.count or int(np.ceil(context.duration_s / period - 0.2))
-    arms = sides(context) if context.step.hand in ("left", "right") else (LEFT, RIGHT)
+    arms = sides(context) if one_arm else (LEFT, RIGHT)
     first = int(rng.integers(2))
     out = [np.zeros_like(time_s), np.zeros_like(time_s)]
-    strike = float(np.clip(0.75 * period, 0.34, 0.62))
+    # Who hurries strikes more often, but a fist that is there and back sooner would pass what fists reach (100 m/s2).
+    shortest_s = 0.34 if context.step.speed <= 0 else min(QUICK_STRIKE_S, 0.95 * period * len(arms))
+    strike = float(np.clip(0.75 * period, shortest_s, 0.62))
     for k in range(max(count, 1)):
         begin = context.start_s + 0.06 + k * period
         side = arms[(k + first) % len(arms)]

@@ -1,4 +1,4 @@
-"""Irregular gait: sidestepping, limping, staggering, and stumbling after a push."""
+"""Irregular gait: sidestepping, limping, staggering, walking lunges, and stumbling after a push."""
 
 from dataclasses import replace
 
@@ -9,6 +9,8 @@ from mmweaver.motion.animation.library.gait import cruise_mps, stepping, walking
 from mmweaver.motion.animation.library.movement_primitives import leg_side
 from mmweaver.motion.animation.profiles import bump, wander
 from mmweaver.motion.animation.step_context import StepContext
+
+LUNGES_HZ = (0.58, 0.7, 0.9)  # steps a second of walking lunges: slowly, usually, quickly
 
 
 def sidestepping(context: StepContext) -> Controls:
@@ -52,6 +54,20 @@ def staggering(context: StepContext) -> Controls:
         controls.arm_rad[:, side, 0] += 0.2 * wander(time_s, rng, slow_hz=0.4, fast_hz=1.0)
         controls.arm_rad[:, side, 1] += 0.15 + 0.12 * wander(time_s, rng, slow_hz=0.4, fast_hz=1.0)
     return controls
+
+
+def walking_lunges(context: StepContext) -> Controls:
+    """Long slow steps, each of them down until the thigh ahead is nearly level, the heel behind raised."""
+    speed, h = max(cruise_mps(context), 0.3), context.body.height_m
+    steps_hz = context.tempo(*LUNGES_HZ, spread=0.04)
+    style = walking_style(context, 0.8)
+    style = replace(
+        style, steps_hz=steps_hz, double_support=0.34, ahead_m=0.0, heel_strike_rad=0.2, toe_off_rad=1.7,
+        heel_rises=0.42, folded=0.2, half_stance_m=0.045 * h, arm_swing_rad=0.08, elbow_swing_rad=0.0, bob_m=0.075 * h,
+        highest=0.72, sink=0.985, surge_mps=0.75 * speed, surge_sharp=0.0, fastest=0.62, lift_m=0.06, sway_m=0.022,
+        lean_rad=0.06, pelvis_yaw_rad=0.03, twist_rad=0.05,
+    )  # fmt: skip
+    return stepping(context, style, jog=False)
 
 
 def stumbling(context: StepContext) -> Controls:
