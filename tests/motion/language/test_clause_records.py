@@ -10,14 +10,14 @@ from mmweaver.motion.language.plan import DONE
 from mmweaver.motion.language.sentence import parse
 
 SENTENCES = (Path(__file__).parents[3] / "studies/motion/sentences/strangers.txt").read_text(encoding="utf-8")
-MESSAGES = re.compile(r"(?:the clause )?'([^']+)'(?: names| says| speaks| is|:)|in '([^']+)',")
+MESSAGES = re.compile(r"(?:the clause )?'([^']+)'(?: names| says| speaks| is|:| cannot)|in '([^']+)',")
 
 
 @pytest.mark.parametrize(
     "text",
     [
         "a person does a cartwheel around the corner",
-        "someone somersaults in a circle",
+        "someone cartwheels in a circle",
         "two people walk back and forth",
         "Nobody walks 90 degrees to the left",
         "a person turns in the air while jumping in a circle",

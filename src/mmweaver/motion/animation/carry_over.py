@@ -16,6 +16,7 @@ from mmweaver.motion.animation.profiles import bump
 FADING_S = 0.6
 LANDING_S = 0.06  # of a sole that is still in the air, at least
 STEP_SHARE = 0.55  # of that time, in which one foot steps over
+ROLLED = ("pelvis_rad", "knee_up_rad", "foot_rad")  # angles that go round in a forward roll
 STEP_HEIGHT_M, SHUFFLE_M = 0.05, 0.1  # of a step over much more than the second
 
 
@@ -34,6 +35,8 @@ class ControlsState:
 
         near = np.abs(time_s - at_s) < 0.2
         parts = {field.name: getattr(controls, field.name)[near] for field in fields(Controls)}
+        for name in ROLLED:
+            parts[name] = np.unwrap(parts[name], axis=0)
         flat = [part.reshape(len(part), -1) for part in parts.values()]
         spline = CubicSpline(time_s[near], np.concatenate(flat, axis=1), axis=0)
         ends = np.cumsum([part.shape[1] for part in flat])[:-1]
@@ -60,8 +63,8 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
                 (before.value, own.value), (before.rate, own.rate), (before.acceleration, own.acceleration),
             )
         ]  # fmt: skip
-        if field.name in ("heading_rad", "foot_rad"):
-            gaps[0] = _smallest_turn(gaps[0], is_yaw_first=field.name == "foot_rad")
+        if field.name in ("heading_rad", *ROLLED):
+            gaps[0] = np.asarray(gaps[0] - whole_turns(gaps[0]))
         if field.name == "arm_rad":
             gaps[0][..., TURNING] -= whole_turns(gaps[0][..., TURNING])
         values = getattr(controls, field.name)
@@ -114,11 +117,3 @@ def _left(u: Array) -> Array:
 
 def _over(share: Array, ndim: int) -> Array:
     return share.reshape(share.shape + (1,) * (ndim - share.ndim))
-
-
-def _smallest_turn(gap_rad: Array, *, is_yaw_first: bool) -> Array:
-    """Differences of headings without whole turns; of a foot only its yaw is a heading."""
-    rest = gap_rad - whole_turns(gap_rad)
-    if not is_yaw_first:
-        return np.asarray(rest)
-    return np.stack([rest[..., 0], gap_rad[..., 1]], axis=-1)

@@ -74,6 +74,15 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
     return joints
 
 
+def chest_of(body: SkeletonProportions, controls: Controls) -> tuple[Vectors, Frames]:
+    """Places (n, 3) in metres of spine3 in the floor frame, and rotations (n, 3, 3) of the chest."""
+    joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
+    pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
+    joints[:, 0] = _pelvis(body, controls, pelvis_frame, [_ankle(body, controls, side) for side in (LEFT, RIGHT)])
+    chest_frame = _place_trunk(joints, body, controls, pelvis_frame)
+    return joints[:, joint("spine3")], chest_frame
+
+
 def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
     """Rotation of the upper arm in the chest's frame, (n, 3, 3)."""
     sign = 1.0 if side == LEFT else -1.0

@@ -25,6 +25,20 @@ from mmweaver.motion.language.paraphrases import PARAPHRASES
 from mmweaver.motion.language.words import word_of
 
 NEAR = 0.6  # least similarity for a suggestion
+ON_HANDS = frozenset(  # movements over the hands or through the air, of which none is known
+    [
+        "handstand",
+        "handstands",
+        "headstand",
+        "headstands",
+        "cartwheel",
+        "cartwheels",
+        "flip",
+        "backflip",
+        "backflips",
+        "handspring",
+    ]
+)
 _EMPTY = PRONOUNS | PEOPLE | FILLERS  # words that name no movement
 _KNOWN = frozenset().union(
     _EMPTY, ARMS, DIRECTIONS, MANNERS, NUMBERS, OWN, RADAR, SEATS, SIZES, SPEEDS, TARGETS
@@ -34,6 +48,11 @@ _KNOWN = frozenset().union(
 def not_known(clause_text: str, word: str = "") -> str:
     """One line: what was not understood, the nearest known activity, and how many more there are."""
     which = f" because of {word.replace('_', ' ')!r}" if word else ""
+    if ON_HANDS & {word, *clause_text.lower().replace("_", " ").split()}:
+        return (
+            f"the clause {clause_text!r} cannot be shown{which}: a body upside down on stretched arms or in the air"
+            " is not modelled; of such movements only a forward roll is known"
+        )
     found = nearest(word if word and nearest(word) else clause_text)
     guess = f"did you mean {found[0][1]!r}? " if found and found[0][0] >= NEAR else ""
     first = [activity.name for activity in list(BY_KEY.values())[:2]]

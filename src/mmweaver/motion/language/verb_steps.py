@@ -47,6 +47,8 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if step.lower == "roll_over":
         lower = "roll_in_bed" if step.seat else "roll_over"
         return replace(step, lower=lower, style="", direction=step.direction if step.direction in SIDES else "")
+    if step.lower == "forward_roll":
+        return replace(step, direction="forwards", hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:

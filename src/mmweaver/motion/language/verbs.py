@@ -85,6 +85,7 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     "roundhouse": ("roundhouse", ""),
     "side_kick": ("side_kick", ""),
     "walking_lunge": ("walking_lunge", ""),
+    "forward_roll": ("forward_roll", ""),
     "hula_hoop": ("hula_hoop", ""),
     **_all("throw toss hurl lob", "", "throw"),
     **_all("push shove", "", "push"),

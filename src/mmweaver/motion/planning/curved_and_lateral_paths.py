@@ -19,7 +19,8 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
-SPECIAL = ("sidestep", "stumble", "leap")
+SPECIAL = ("sidestep", "stumble", "leap", "forward_roll")
+ROLL_M = 1.85  # of a forward roll, from standing to standing
 LYING_ROOM_M = 0.22  # clearance on either side of a lying body
 _TIGHT_COST = 40.0  # of a body none of which is on free floor: more than all else that a trajectory costs
 SIDESTEP_M = 0.3  # length of one sidestep
@@ -118,12 +119,14 @@ def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None)
     if step.lower == "stumble":
         length, span = float(trajectory.rng.uniform(0.3, 0.6)), min(step.end_s - step.start_s, 1.2)
         begin = step.start_s + 0.12
+    elif step.lower == "forward_roll":
+        length, begin, span = ROLL_M * max(step.count, 1), step.start_s, step.end_s - step.start_s
     else:
         each = (0.2, 0.35) if step.speed < 0 else (0.3, 0.6)
         length = float(trajectory.rng.uniform(*each)) * max(step.count, 1)
         begin, span = step.start_s, step.end_s - step.start_s
     free = trajectory.free_length_m(direction, length)
-    if free < 0.6 * length:
+    if free < (0.93 if step.lower == "forward_roll" else 0.6) * length:
         raise NoTrajectory(f"only {free:.1f} m")
     ramp = min(0.3, 0.4 * span)
     trajectory.go(step, direction, free, (begin, begin + span), (ramp, ramp))

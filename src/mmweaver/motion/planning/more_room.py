@@ -22,7 +22,8 @@ _WALKS = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the sp
 # What is done on the spot instead of what travels, and its word; all else marches, and walks.
 _ON_THE_SPOT = {
     "jog": ("jog", "runs"), "stumble": ("stumble", "stumbles"), "crawl": ("crawl", "crawls"), "hop": ("hop", "hops"),
-    "hop_one_leg": ("hop_one_leg", "hops"), "leap": ("jump", "jumps"), "walking_lunge": ("lunge", "lunges"),
+    "hop_one_leg": ("hop_one_leg", "hops"), "leap": ("jump", "jumps"),
+    "forward_roll": ("squat", "squats"), "walking_lunge": ("lunge", "lunges"),
 }  # fmt: skip
 _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
 _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way

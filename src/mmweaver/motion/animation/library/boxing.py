@@ -38,12 +38,12 @@ class Punch:
 
 
 JAB = Punch(
-    on_the_way=(0.215, 0.055, 0.115), hits=(0.275, 0.035, 0.11), turn_rad=0.35, dip=0.0, elbow=(-0.1, 0.4, -1.0),
-    leads=True, lasts_s=0.72,
+    on_the_way=(0.215, 0.055, 0.115), hits=(0.265, 0.04, 0.11), turn_rad=0.35, dip=0.0, elbow=(-0.1, 0.4, -1.0),
+    leads=True, lasts_s=0.58,
 )  # fmt: skip
 CROSS = Punch(
     on_the_way=(0.21, 0.045, 0.115), hits=(0.265, 0.01, 0.11), turn_rad=0.6, dip=0.008, elbow=(-0.1, 0.45, -1.0),
-    leads=False, lasts_s=0.8,
+    leads=False, lasts_s=0.68,
 )  # fmt: skip
 HOOK = Punch(
     on_the_way=(0.165, 0.15, 0.095), hits=(0.21, 0.02, 0.115), turn_rad=0.6, dip=0.01, elbow=(-0.2, 1.0, -0.15),
@@ -78,7 +78,7 @@ def uppercut(context: StepContext, controls: Controls) -> Controls:
 def _punched(context: StepContext, controls: Controls, punch: Punch) -> Controls:
     """One fist after the other where both punch, else the same one; the other one stays in the guard."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
-    size, restless = vary(context, 1.0, 0.05), float(rng.uniform(0.003, 0.01))
+    size, restless = min(vary(context, 0.98, 0.05), 1.02), float(rng.uniform(0.003, 0.01))
     fists = [place_of(_GUARD, n) for _ in (LEFT, RIGHT)]
     out = [np.zeros(n), np.zeros(n)]
     for fist in fists:
