@@ -33,6 +33,10 @@ def test_what_is_none_is_said(tmp_path: Path):
         OfferedRecordings([tmp_path / "none"])
     assert read_recorded(tmp_path) is None
     with pytest.raises(InputError, match="holds no recording"):
-        OfferedRecordings([tmp_path]).get(tmp_path.name)
+        OfferedRecordings([tmp_path])
+    for name, said in (("log.dat", "empty"), ("adc_data.bin", "with its .cfg")):
+        (tmp_path / name).write_bytes(b"" if name == "log.dat" else b"12345678")
+        with pytest.raises(InputError, match=said):
+            OfferedRecordings([tmp_path / name])
     with pytest.raises(InputError, match="not known"):
         OfferedRecordings([]).get("/etc/passwd")
