@@ -139,7 +139,7 @@ def _panels(
 
         def image(axes: "Axes", column: int) -> None:
             draw_power_map(axes, scale, power_db[column], (-edge, edge, *range_m))
-            label_axes(axes, f"Dynamic range-angle image, {when[column]}", "azimuth (degrees), right +", "range (m)")
+            label_axes(axes, f"Dynamic range-angle, {when[column]}", "azimuth (degrees), right +", "range (m)")
 
         return image
     is_azimuth = name == "ra"
