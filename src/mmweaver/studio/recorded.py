@@ -5,16 +5,18 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular
+from mmweaver.formats.capture_std import is_capture
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.recordings.processing import process_recording
 from mmweaver.stored_result import read_result
+from mmweaver.stream_folder import is_stream
 from mmweaver.studio.sessions import Result
 
 PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg
 SETTINGS = (".cfg", ".json")
 ALONE = (".dat", ".npy", ".npz")  # files that can be read without a .cfg
-NONE_FOUND = "holds no recording: no radar.npz, .bin with its .cfg, capture or .dat"
+NONE_FOUND = "holds no recording: no radar.npz, .bin with its .cfg, capture, stream or .dat"
 
 
 class OfferedRecordings:
@@ -58,7 +60,7 @@ def _check_offered(path: Path) -> None:
 
 
 def _is_result_or_capture(folder: Path) -> bool:
-    return (folder / "radar.npz").is_file() or (folder / "dca.pcap").is_file()
+    return (folder / "radar.npz").is_file() or is_capture(folder) or is_stream(folder)
 
 
 def _samples_or_log(folder: Path) -> list[Path]:
