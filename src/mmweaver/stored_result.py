@@ -7,6 +7,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.npz_files import read_points_npz, read_poses_npz, read_radar_npz
@@ -51,6 +52,7 @@ class StoredResult:
 
 def read_result(folder: Path) -> StoredResult:
     """Reads a result folder. Raises InputError where it is none, or damaged."""
+    check_exists(folder, "a folder of mmweaver generate or mmweaver process")
     if not (folder / "radar.npz").is_file():
         raise InputError(f"{folder} holds no radar.npz; give a folder of mmweaver generate or mmweaver process")
     meta = read_json(folder / "meta.json") if (folder / "meta.json").is_file() else {}

@@ -1,12 +1,16 @@
 """The documentation: links resolve, files that are named exist, every decision has a status."""
 
 import re
+import shlex
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from mmweaver import PRESETS
+from mmweaver.cli.arguments import glued
+from mmweaver.cli.main import build_parser
+from mmweaver.core.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + [
@@ -41,6 +45,30 @@ def test_links_resolve(page: Path):
         assert file.exists(), f"{page.relative_to(ROOT)} links to {target}"
         if anchor and file.suffix == ".md":
             assert anchor in _anchors(file), f"{page.relative_to(ROOT)} links to {target}"
+
+
+def _commands(page: Path) -> list[str]:
+    """The mmweaver commands of a page's indented blocks, without comments."""
+    text = page.read_text(encoding="utf-8").replace("\\\n", " ")
+    lines = re.findall(r"^    (.*\bmmweaver .*)$", text, flags=re.MULTILINE)
+    parts = [part.strip() for line in lines for part in re.split(r"&&|\||#|;|>", line)]
+    return [part for part in parts if part.startswith("mmweaver ") and "..." not in part]
+
+
+def test_commands_of_pages_are_understood():
+    parser = build_parser()
+    seen = 0
+    for page in PAGES:
+        for command in _commands(page):
+            words = glued(shlex.split(command)[1:])
+            if "--config" in words:  # whose file has the rest
+                continue
+            try:
+                parser.parse_args(words)
+            except InputError as error:
+                pytest.fail(f"{page.relative_to(ROOT)}: {command}: {error}")
+            seen += 1
+    assert seen > 100
 
 
 def test_source_files_that_pages_name_exist():

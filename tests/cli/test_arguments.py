@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from mmweaver.cli.arguments import Parser, glued, landmark, number, place, transmitters, whole
+from mmweaver.cli.arguments import Parser, glued, landmark, number, place, radar_pose, transmitters, whole
 from mmweaver.core.errors import InputError
 
 
@@ -23,6 +23,7 @@ def test_values():
         (place, "a,b"),
         (transmitters, "0;2"),
         (landmark, "door"),
+        (radar_pose, "0,0,0"),
         (whole, "1.5"),
         (number, "x"),
     ],

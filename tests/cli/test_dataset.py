@@ -31,7 +31,12 @@ def test_a_small_set_and_going_on(tmp_path: Path, capsys: pytest.CaptureFixture[
 
 @pytest.mark.parametrize(
     ("words", "shown"),
-    [(["--rooms", "castle"], "unknown kind of room"), (["--layouts", "0"], "num_layouts"), (["--radar", "x"], "x")],
+    [
+        (["--rooms", "castle"], "unknown kind of room"),
+        (["--layouts", "0"], "num_layouts"),
+        (["--radar", "x"], "x"),
+        (["--workers", "0", "--dry-run"], "--workers must be 1 to"),
+    ],
 )
 def test_bad_requests_make_nothing(words: list[str], shown: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["dataset", str(tmp_path / "d"), *words]) == 2

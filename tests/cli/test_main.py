@@ -111,4 +111,7 @@ def test_rare_options_are_in_the_full_help_alone(capsys: pytest.CaptureFixture[s
     assert "--segmenter" not in texts[0]
     assert "more options: mmweaver generate --help-all" in texts[0]
     assert "--segmenter" in texts[1]
+    with pytest.raises(SystemExit):
+        main(["radar", "--help"])
+    assert "\n1 more option: mmweaver radar --help-all" in capsys.readouterr().out
     assert "--empty-room" not in texts[1]

@@ -42,6 +42,8 @@ def test_the_page_holds_the_room_of_unchanged_files(made: Path, tmp_path: Path):
 def test_what_is_no_result_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["view", str(tmp_path), "--no-browser"]) == 2
     assert "holds no radar.npz" in capsys.readouterr().err
+    assert main(["view", str(tmp_path / "absent"), "--no-browser"]) == 2
+    assert "absent does not exist; give a folder of mmweaver generate" in capsys.readouterr().err
 
 
 def test_a_rerun_recording_is_opened_in_its_viewer(

@@ -17,6 +17,12 @@ def test_a_strip_and_a_sheet_are_drawn(tmp_path: Path):
     assert len(one.convert("RGB").getcolors(1 << 24) or []) > 10, "something is drawn"
 
 
+def test_nothing_is_cut_off(tmp_path: Path):
+    draw_strip(act_out("a person falls").pose, tmp_path / "fall.png", title="a person falls")
+    grey = np.asarray(Image.open(tmp_path / "fall.png").convert("L"))
+    assert min(edge.min() for edge in (grey[0], grey[-1], grey[:, 0], grey[:, -1])) == 255
+
+
 def test_a_strip_is_the_same_wherever_the_body_faces(tmp_path: Path):
     pose = act_out("a person bows", duration_s=1.5).pose
     cos, sin = np.cos(2.0), np.sin(2.0)

@@ -147,6 +147,20 @@ def test_loops_in_reverse_order():
     assert any("reverse order" in text for text in implausible(backwards, radar_cube(backwards)))
 
 
+def test_somebody_who_claps_on_the_spot_is_no_reverse_order():
+    """Now one hand is the strongest, now the other: where the energy is moves against its velocity."""
+    adc = room(RADAR, 16)
+    cube = radar_cube(adc)
+    rng = np.random.default_rng(0)
+    values = rng.standard_normal(cube.values.shape) + 1j * rng.standard_normal(cube.values.shape)
+    speed = np.abs(cube.grid.radial_velocity_mps - 0.5).argmin()
+    for frame in range(16):
+        nearer, receding = frame % 4 in (1, 2), frame % 4 in (0, 1)
+        values[frame, 24 if nearer else 27, speed if receding else -speed] += 1000
+    clapping = replace(cube, values=values.astype(np.complex64))
+    assert implausible(adc, clapping) == []
+
+
 def test_what_is_too_fast_for_the_radar_is_no_reverse_order():
     slow = replace(RADAR, idle_time_s=5e-4)
     assert slow.max_velocity_mps < 0.9  # of the point that comes nearer: it is seen as going away

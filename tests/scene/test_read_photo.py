@@ -223,6 +223,7 @@ def test_a_gigantic_picture_is_refused_unread(files: Files):
         ({"fx": 0}, "positive"),
         ({"fy": "80"}, "finite number"),
         ({"cx": True}, "finite number"),
+        ({"fx": 5e9}, "0.001 to 1e+06"),
         ({"cx": 900}, "principal point"),
         ({"cy": -300}, "principal point"),
         ({"fx": 0.08, "fy": 0.08}, "view of"),

@@ -1,6 +1,6 @@
 """The bundled room: small, reproducible from its seed, and reconstructed as it was built."""
 
-import importlib.util
+import importlib
 from pathlib import Path
 from types import ModuleType
 
@@ -11,20 +11,21 @@ from mmweaver.core.records import Scene
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import SAMPLE_FOLDER, sample_photo
 
-TOOL = Path(__file__).resolve().parents[2] / "tools" / "make_sample_room.py"
+TOOLS = Path(__file__).resolve().parents[2] / "tools"
 
 
 @pytest.fixture(scope="module")
 def maker() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("make_sample_room", TOOL)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    import sys
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(TOOLS))
+        return importlib.import_module("make_sample_room")
 
-    sys.modules["make_sample_room"] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
+
+@pytest.fixture(scope="module")
+def living_room() -> ModuleType:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(TOOLS))
+        return importlib.import_module("sample_room.living_room")
 
 
 @pytest.fixture(scope="module")
@@ -37,15 +38,15 @@ def test_it_is_small():
     assert sum(file.stat().st_size for file in SAMPLE_FOLDER.iterdir()) < 600_000
 
 
-def test_its_geometry_is_reconstructed(scene: Scene, maker: ModuleType):
+def test_its_geometry_is_reconstructed(scene: Scene, maker: ModuleType, living_room: ModuleType):
     assert scene.floor_z_m == pytest.approx(-maker.CAMERA_HEIGHT_M, abs=0.01)
     pitch = np.rad2deg(np.arcsin(-scene.radar_from_camera[2, 2]))
     assert pitch == pytest.approx(maker.PITCH_DEG, abs=0.5)
     walls = [plane for plane in scene.planes if plane.kind == "wall"]
     for normal, distance in (
-        ((0, -1, 0), maker.BACK_WALL_M),
-        ((1, 0, 0), -maker.LEFT_WALL_M),
-        ((-1, 0, 0), maker.RIGHT_WALL_M),
+        ((0, -1, 0), living_room.BACK_WALL_M),
+        ((1, 0, 0), -living_room.LEFT_WALL_M),
+        ((-1, 0, 0), living_room.RIGHT_WALL_M),
     ):
         errors = [abs(abs(wall.normal @ wall.centre_m) - distance) for wall in walls if wall.normal @ normal > 0.999]
         assert min(errors) < 0.03

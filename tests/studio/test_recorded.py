@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.dca1000 import write_bin
+from mmweaver.stream_folder import StreamFolder
 from mmweaver.studio.recorded import OfferedRecordings, read_recorded
 from tests import captures
 from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
@@ -28,11 +32,27 @@ def test_folders_and_files_by_name(tmp_path: Path):
     assert np.isclose(log.points.snr_db, 12.3).all()
 
 
+def test_a_stream_is_one_recording(tmp_path: Path):
+    cube = radar_cube(captures.counts(captures.radar_of_cfg(tmp_path)))
+    poses = (PoseSequence(time_s=cube.grid.frame_time_s, joints_m=np.zeros((3, 22, 3)), height_m=1.7),)
+    stream = StreamFolder(tmp_path / "live", {})
+    for _ in range(2):
+        stream.add(cube, point_cloud(cube), poses, None, {})
+    stream.finish()
+    live = OfferedRecordings([tmp_path / "live"]).get("live")
+    assert live.cube is not None
+    assert len(live.cube.values) == 2 * len(cube.values)
+
+
 def test_what_is_none_is_said(tmp_path: Path):
     with pytest.raises(InputError, match="No such file"):
         OfferedRecordings([tmp_path / "none"])
     assert read_recorded(tmp_path) is None
     with pytest.raises(InputError, match="holds no recording"):
-        OfferedRecordings([tmp_path]).get(tmp_path.name)
+        OfferedRecordings([tmp_path])
+    for name, said in (("log.dat", "empty"), ("adc_data.bin", "with its .cfg")):
+        (tmp_path / name).write_bytes(b"" if name == "log.dat" else b"12345678")
+        with pytest.raises(InputError, match=said):
+            OfferedRecordings([tmp_path / name])
     with pytest.raises(InputError, match="not known"):
         OfferedRecordings([]).get("/etc/passwd")

@@ -42,7 +42,8 @@ class Parser(argparse.ArgumentParser):
         finally:
             for action, text in zip(rare, texts, strict=True):
                 action.help = text
-        return f"{shown}\n{len(rare)} more options: {self.prog} --help-all\n" if rare else shown
+        options = "option" if len(rare) == 1 else "options"
+        return f"{shown}\n{len(rare)} more {options}: {self.prog} --help-all\n" if rare else shown
 
     def format_help_all(self) -> str:
         """The help with every option."""
@@ -112,7 +113,10 @@ def radar_pose(word: str) -> "RadarPose":
     """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees."""
     from mmweaver.core.radar_pose import RadarPose
 
-    return RadarPose.of_words(word)
+    try:
+        return RadarPose.of_words(word)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def transmitters(word: str) -> tuple[int, ...]:

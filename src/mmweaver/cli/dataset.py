@@ -9,6 +9,7 @@ from mmweaver.cli.arguments import add_board_option, add_board_options, add_rang
 from mmweaver.cli.config_file import write_request
 from mmweaver.core.errors import InputError
 
+MOST_WORKERS = 1024
 EXAMPLES = """examples:
   mmweaver dataset set/ --room lab/ --activities activities.toml --each 50     # labelled, in your own room
   mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
@@ -95,7 +96,9 @@ def run(arguments: argparse.Namespace) -> int:
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
         geometry_only=arguments.geometry_only, board=_board(arguments),
     )  # fmt: skip
-    workers = max(1, arguments.workers)
+    workers = arguments.workers
+    if not 1 <= workers <= MOST_WORKERS:
+        raise InputError(f"--workers must be 1 to {MOST_WORKERS}, not {workers}")
     check_for_leaks(plan.rooms())
     cost = estimate_cost(plan, config, arguments.out)
     if arguments.dry_run:

@@ -72,7 +72,9 @@ def _say(written: dict[str, str], arguments: argparse.Namespace) -> int:
 def _results(folder: Path) -> dict[Path, str]:
     """Result folders, with their names below --out ("" for a single one). Raises InputError where there is none."""
     from mmweaver.core.errors import InputError
+    from mmweaver.core.safe_files.regular_files import check_exists
 
+    check_exists(folder, "a folder of mmweaver generate or mmweaver process")
     if (folder / "radar.npz").is_file():
         return {folder: ""}
     inside = sorted(file.parent for file in folder.glob("*/radar.npz")) if folder.is_dir() else []

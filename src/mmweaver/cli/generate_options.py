@@ -41,7 +41,7 @@ def add_generate_options(parser: argparse.ArgumentParser) -> None:
     advanced.add_argument(
         "--method", default="auto",
         help="which paths make the signal: weaver, those of the trained network (default, also called auto), or"
-        " physics, those of the ray tracer, at four to five times the cost",
+        " physics, those of the ray tracer, at about five times the cost",
     )  # fmt: skip
     advanced.add_argument(
         "--bounces", type=int, choices=(1, 2),

@@ -12,6 +12,7 @@ from mmweaver.compression.mmw_codec import read_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.capture_std import is_capture
 from mmweaver.recordings.read_recording import read_recording
@@ -66,8 +67,7 @@ def _of_record(source: Any, name: str) -> ComparedSignal:
 
 
 def _of_path(path: Path, reading: RawReading) -> list[ComparedSignal]:
-    if not path.exists():
-        raise InputError(f"{path} does not exist; give a recording, a result folder or a .mmw file")
+    check_exists(path, "a recording, a result folder or a .mmw file")
     if not path.is_dir() or _is_signal(path) or reading.layout == "hupr":
         return [_of_one(path, reading)]
     inside = sorted(one for one in path.iterdir() if _is_signal(one))
@@ -102,14 +102,20 @@ def _of_one(path: Path, reading: RawReading) -> ComparedSignal:
         return ComparedSignal(name=path.name, cube=read_cube(path))
     if path.is_dir() and (path / CUBE).is_file() and (path / POINTS).is_file():
         return _of_result(read_result(path))
-    brings_its_radar = path.suffix == ".npz" or (path.is_dir() and _is_signal(path))
-    given = RawReading() if brings_its_radar else reading
-    if path.suffix != ".npy" and not path.is_dir():
-        given = replace(given, axes=None, layout=None)  # meant for the other side
+    given = _reading_of(path, reading)
     found = read_recording(
         path, given.radar, layout=given.layout, axes=given.axes, iq_order=given.iq_order, tx_order=given.tx_order
     )
     return replace(_of_record(found, path.name), name=path.name or str(path))
+
+
+def _reading_of(path: Path, reading: RawReading) -> RawReading:
+    """What of the options is for this path; the rest is for the other side."""
+    if path.is_dir() and _is_signal(path):
+        return RawReading()
+    if path.suffix == ".npz":
+        return RawReading(radar=None if path.with_name("radar.json").is_file() else reading.radar)
+    return reading if path.is_dir() or path.suffix == ".npy" else replace(reading, axes=None, layout=None)
 
 
 def _of_result(result: StoredResult) -> ComparedSignal:

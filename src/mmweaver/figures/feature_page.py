@@ -29,6 +29,7 @@ from mmweaver.figures.theme import label_axes, shortened
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+TITLES = {"ra": "Range-azimuth", "re": "Range-elevation"}
 FEATURES = ("rd", "ra", "re", "drai", "micro_doppler", "points")  # names as `RadarDataset` has them
 OVER_TIME = ("micro_doppler",)
 HEIGHT = {"ra": 0.58, "points": 0.56, "re": 1.28}  # of a panel relative to its width, where axes are in equal metres
@@ -112,7 +113,7 @@ def _panels(
 
         def over_time(axes: "Axes", _: int) -> None:
             draw_power_map(axes, scale, power_db.T, (*view.time_edges_s, *view.velocity_edges_mps))
-            label_axes(axes, "micro_doppler, clutter removed", "time (s)", "radial velocity (m/s), away +")
+            label_axes(axes, "Micro-Doppler, clutter removed", "time (s)", "radial velocity (m/s), away +")
 
         return over_time
     if name == "points":
@@ -120,16 +121,16 @@ def _panels(
         def from_above(axes: "Axes", column: int) -> None:
             own = view.points.select(view.points.frame == frames[column])
             draw_points_top(axes, replace(view, points=own))
-            axes.set_title(f"points, {when[column]}", y=1.0)
+            axes.set_title(f"Points from above, {when[column]}", y=1.0)
 
         return from_above
-    said = "clutter removed" if moving or name == "drai" else "with clutter"
+    said = "no clutter" if moving else "with clutter"
     if name == "rd":
         power_db = range_doppler_db(cube, moving=moving)
 
         def range_doppler(axes: "Axes", column: int) -> None:
             draw_power_map(axes, scale, power_db[column], (*view.velocity_edges_mps, *range_m))
-            label_axes(axes, f"rd, {when[column]}, {said}", "radial velocity (m/s), away +", "range (m)")
+            label_axes(axes, f"Range-Doppler, {said}, {when[column]}", "radial velocity (m/s), away +", "range (m)")
 
         return range_doppler
     if name == "drai":
@@ -138,7 +139,7 @@ def _panels(
 
         def image(axes: "Axes", column: int) -> None:
             draw_power_map(axes, scale, power_db[column], (-edge, edge, *range_m))
-            label_axes(axes, f"drai, {when[column]}", "azimuth (degrees), right +", "range (m)")
+            label_axes(axes, f"Dynamic range-angle, {when[column]}", "azimuth (degrees), right +", "range (m)")
 
         return image
     is_azimuth = name == "ra"
@@ -151,7 +152,7 @@ def _panels(
         draw_power_map(axes, scale, laid if is_azimuth else laid.T, fan.extent if is_azimuth else (0.0, far, low, high))
         axes.set_aspect("equal", anchor="NW")
         words = ("right (m)", "ahead (m)") if is_azimuth else ("ahead (m)", "up (m)")
-        label_axes(axes, f"{name}, {when[column]}, {said}", *words)
+        label_axes(axes, f"{TITLES[name]}, {said}, {when[column]}", *words)
 
     return from_above_or_side
 

@@ -47,7 +47,8 @@ def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: 
             cell.set_title(title)
         figure.tight_layout(pad=0.4)
         with atomic_file(path) as temporary:
-            figure.savefig(temporary, dpi=80, format=path.suffix.removeprefix(".") or "png")
+            kind = path.suffix.removeprefix(".") or "png"
+            figure.savefig(temporary, dpi=80, format=kind, bbox_inches="tight", pad_inches=0.06)
         plt.close(figure)
 
 

@@ -88,7 +88,7 @@ def draw_displacement(axes: "Axes", view: FigureData) -> None:
         axes.plot(time_s, 1e3 * cell.displacement_m, color=colour, linewidth=1.0)
         entries.append((f"at {cell.range_m:.2f} m", colour))
     legend(axes, entries)
-    label_axes(axes, "Displacement where most changes", "time (s)", "mm, away +", grid=True)
+    label_axes(axes, "Displacement where most changes", "time (s)", "displacement (mm), away +", grid=True)
 
 
 # maps ---------------------------------------------------------------------------------------------------------------

@@ -55,10 +55,10 @@ def _slow_time_figure(
         spectra.append(level_db[shown])
         axes[2].plot(frequency_hz[shown], level_db[shown], color=colour, linewidth=1.0)
     axes[1].set_xlim(float(time_s[0]), float(time_s[-1]))
-    label_axes(axes[1], "Displacement of the cells that move most (away +)", "time (s)", "mm", grid=True)
+    label_axes(axes[1], "Cells that move most", "time (s)", "displacement (mm), away +", grid=True)
     top_db = 10.0 * np.ceil((max(float(level.max()) for level in spectra) + 5.0) / 10.0) if spectra else 0.0
     axes[2].set(xlim=(0.0, FASTEST_SHOWN_HZ), ylim=(min(FAINTEST_DB, top_db - 10.0), top_db))
-    label_axes(axes[2], "Its spectrum", "frequency (Hz)", "dB relative to 1 mm", grid=True)
+    label_axes(axes[2], "Spectrum of their displacement", "frequency (Hz)", "dB relative to 1 mm", grid=True)
     for name, rate in rates.items():
         if rate is not None and rate.is_clear:
             style = ":" if name == "breathing" else "--"
@@ -114,7 +114,7 @@ def _people_figure(title: str, people: Sequence[PersonTrack], far_m: float) -> "
     far = max([1.0, *(float(one.place_m[:, 1].max()) for one in people)]) * 1.2
     axes[0].set(xlim=(-reach, reach), ylim=(0, min(far, far_m)), aspect="equal")
     label_axes(axes[0], "Tracked people from above (dot: first seen)", "right of the radar (m)", "away (m)")
-    label_axes(axes[1], "Distance over time", "time (s)", "m")
+    label_axes(axes[1], "Range over time", "time (s)", "range (m)")
     legend(axes[0], entries)
     return figure
 

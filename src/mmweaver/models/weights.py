@@ -14,6 +14,7 @@ import torch
 from torch import nn
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_tensors import read_tensor_metadata
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.tensor_files import read_tensors, write_tensors
@@ -114,8 +115,7 @@ def shipped_weights() -> Path:
 
 
 def _read(file: Path) -> tuple[WeightsCard, dict[str, torch.Tensor]]:
-    if not file.exists():
-        raise InputError(f"{file} does not exist; give a .safetensors file that mmweaver train wrote")
+    check_exists(file, "a .safetensors file that mmweaver train wrote")
     header = read_tensor_metadata(file)
     if header.get("format") != FORMAT:
         raise InputError(f"{file} is not a weight file of mmweaver; give one that mmweaver train wrote")

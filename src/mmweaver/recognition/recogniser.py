@@ -16,6 +16,7 @@ from jaxtyping import Bool, Float
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.body_features import body_features
@@ -165,6 +166,7 @@ def save_recogniser(folder: Path, model: Recogniser) -> None:
 def load_recogniser(folder: Path | str) -> Recogniser:
     """Reads a folder of `mmweaver recognise train`. Raises InputError where it is none, or is damaged."""
     folder = Path(folder)
+    check_exists(folder, "a folder of mmweaver recognise train")
     if not (folder / META_FILE).is_file():
         raise InputError(f"{folder} holds no recogniser; mmweaver recognise train TASK.toml --out {folder} makes one")
     meta = read_json(folder / META_FILE)

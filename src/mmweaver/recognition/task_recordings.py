@@ -7,6 +7,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.formats.point_clouds.read_points import read_points
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
@@ -28,8 +29,7 @@ def read_task_recordings(
     there are none, one names no activity or several, or cannot be read.
     """
     place = Path(place)
-    if not place.exists():
-        raise InputError(f"{place} does not exist; give a folder of recordings")
+    check_exists(place, "a folder of recordings")
     files = [place]
     if place.is_dir():
         files = sorted(path for path in place.rglob("*") if path.suffix.lower() in SUFFIXES and path.is_file())

@@ -44,6 +44,7 @@ SAME_LIKENESS = 0.05
 USUAL_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
 OTHER_PERIOD = 0.15  # of the time between frames
 FEWEST_MOVING_FRAMES = 6
+LEAST_TRAVEL = 6.0  # range bins that velocities must add up to: of hands and a trunk that sways the range says little
 UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen with the other sign
 
 
@@ -302,6 +303,8 @@ def _velocity_sign(cube: RadarCube) -> Iterator[str]:
     if np.percentile(steady_mps, 75) > UNFOLDED * np.abs(cube.grid.radial_velocity_mps).max():
         return
     expected = (speed[1:] + speed[:-1]) / 2 * config.frame_period_s
+    if np.ptp(np.cumsum(expected)) < LEAST_TRAVEL * config.range_resolution_m:
+        return
     sure = np.abs(expected) > 0.2 * config.range_resolution_m
     if sure.sum() < FEWEST_MOVING_FRAMES - 1:
         return

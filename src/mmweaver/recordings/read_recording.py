@@ -20,6 +20,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
+from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.dsp.cube import adc_from_cube, cropped, radar_cube, tdm_compensation
 from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
 from mmweaver.formats.dca1000 import read_bin
@@ -122,8 +123,7 @@ def _read(
     """The recording with the range bins of its radar."""
     if layout is not None and (layout not in LAYOUTS or axes is not None):
         raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
-    if not path.exists():
-        raise InputError(f"{path} does not exist; give a recording or a capture folder")
+    check_exists(path, "a recording or a capture folder")
     if path.is_dir() and layout is None:
         given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
         found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames, mapped)

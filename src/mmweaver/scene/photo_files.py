@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import check_exists
 
 COLOUR, DEPTH, CAMERA = (
     ("rgb.png", "rgb.jpg", "rgb.jpeg", "rgb.webp"),
@@ -23,6 +24,7 @@ class RoomFiles:
     @classmethod
     def in_folder(cls, folder: Path) -> "RoomFiles":
         """The files of a folder, by name. Raises InputError where the photo or the depth is missing."""
+        check_exists(folder, f"a folder with {COLOUR[0]} and {DEPTH[0]}")
         rgb = next((folder / name for name in COLOUR if (folder / name).is_file()), None)
         depth = next((folder / name for name in DEPTH if (folder / name).is_file()), None)
         if rgb is None or depth is None:

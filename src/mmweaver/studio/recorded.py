@@ -5,24 +5,30 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular
+from mmweaver.formats.capture_std import is_capture
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.recordings.processing import process_recording
 from mmweaver.stored_result import read_result
+from mmweaver.stream_folder import is_stream
 from mmweaver.studio.sessions import Result
 
 PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg
 SETTINGS = (".cfg", ".json")
+ALONE = (".dat", ".npy", ".npz")  # files that can be read without a .cfg
+NONE_FOUND = "holds no recording: no radar.npz, .bin with its .cfg, capture, stream or .dat"
 
 
 class OfferedRecordings:
-    """Folders and files that every session may watch and compare with, by name."""
+    """Folders and files that every session may watch and compare with, by name.
+
+    They are read when somebody asks for them. Raises InputError where one holds nothing that can be read.
+    """
 
     def __init__(self, paths: list[Path]):
         self._paths: dict[str, Path] = {}
         for path in paths:
-            if not path.is_dir():
-                check_regular(path)
+            _check_offered(path)
             name = path.resolve().name
             while name in self._paths:
                 name += "-2"
@@ -39,8 +45,28 @@ class OfferedRecordings:
             raise InputError("this recording is not known here; choose another one")
         found = read_recorded(self._paths[name])
         if found is None:
-            raise InputError(f"{name} holds no recording: no radar.npz, .bin with its .cfg, capture or .dat")
+            raise InputError(f"{name} {NONE_FOUND}")
         return found
+
+
+def _check_offered(path: Path) -> None:
+    if path.is_dir():
+        if not _is_result_or_capture(path) and not any(_samples_or_log(path)):
+            raise InputError(f"{path} {NONE_FOUND}")
+    elif not check_regular(path):
+        raise InputError(f"{path} is empty")
+    elif path.suffix.lower() not in ALONE:
+        raise InputError(f"{path}: give a folder that holds it with its .cfg; only {', '.join(ALONE)} are read alone")
+
+
+def _is_result_or_capture(folder: Path) -> bool:
+    return (folder / "radar.npz").is_file() or is_capture(folder) or is_stream(folder)
+
+
+def _samples_or_log(folder: Path) -> list[Path]:
+    """Raw samples and logs of a data port in a folder, samples first."""
+    inside = sorted(folder.iterdir())
+    return [file for suffix in (".bin", ".dat") for file in inside if file.suffix.lower() == suffix]
 
 
 def read_recorded(path: Path, radar: RadarConfig | None = None) -> Result | None:
@@ -54,14 +80,10 @@ def read_recorded(path: Path, radar: RadarConfig | None = None) -> Result | None
     if (path / "radar.npz").is_file() and (path / "points.npz").is_file():
         stored = read_result(path)
         return Result(cube=stored.cube, points=stored.points, poses=stored.poses, meta=_named(stored.meta, path.name))
-    if (path / "radar.npz").is_file() or (path / "dca.pcap").is_file():
+    if _is_result_or_capture(path):
         return _processed(path, None)
-    inside = sorted(path.iterdir())
-    settings = next((file for file in inside if file.suffix.lower() in SETTINGS), None)
-    for suffix in (".bin", ".dat"):
-        if (file := next((one for one in inside if one.suffix.lower() == suffix), None)) is not None:
-            return _of_file(file, settings, radar)
-    return None
+    settings = next((file for file in sorted(path.iterdir()) if file.suffix.lower() in SETTINGS), None)
+    return next((_of_file(file, settings, radar) for file in _samples_or_log(path)), None)
 
 
 def _of_file(file: Path, settings: Path | None, radar: RadarConfig | None) -> Result:

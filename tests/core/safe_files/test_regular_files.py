@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.regular_files import check_regular, foreign_errors, open_regular, read_bytes
+from mmweaver.core.safe_files.regular_files import check_exists, check_regular, foreign_errors, open_regular, read_bytes
 
 
 def test_a_file_is_read_whole_or_refused(tmp_path: Path):
@@ -16,6 +16,12 @@ def test_a_file_is_read_whole_or_refused(tmp_path: Path):
     assert read_bytes(tmp_path / "a", max_bytes=3_000_000) == b"x" * 3_000_000
     with pytest.raises(InputError, match="is larger than"):
         read_bytes(tmp_path / "a", max_bytes=2_999_999)
+
+
+def test_a_path_that_names_nothing_is_said(tmp_path: Path):
+    check_exists(tmp_path, "a folder")
+    with pytest.raises(InputError, match="absent does not exist; give a folder"):
+        check_exists(tmp_path / "absent", "a folder")
 
 
 def test_links_are_followed(tmp_path: Path):

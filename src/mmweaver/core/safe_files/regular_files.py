@@ -13,6 +13,12 @@ from mmweaver.core.errors import InputError, one_line
 MEGABYTE = 2**20
 
 
+def check_exists(path: Path, what: str) -> None:
+    """Raises InputError where a path names nothing; `what` should be given in its place."""
+    if not path.exists():
+        raise InputError(f"{path} does not exist; give {what}")
+
+
 def check_regular(path: Path | str) -> int:
     """The size of a regular file in bytes. Raises InputError for folders, FIFOs, devices, sockets and missing files."""
     try:

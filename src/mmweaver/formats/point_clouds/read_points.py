@@ -9,7 +9,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.array_checks import ArrayChecks
-from mmweaver.core.safe_files.regular_files import open_regular
+from mmweaver.core.safe_files.regular_files import check_exists, open_regular
 from mmweaver.formats.npz_files import POINT_COLUMNS, read_points_npz
 from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
 from mmweaver.formats.point_clouds.point_tables import read_csv_points, read_mmfi, read_point_npz, read_radhar_text
@@ -34,8 +34,7 @@ def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
     cannot be read so.
     """
     path = Path(path)
-    if not path.exists():
-        raise InputError(f"{path} does not exist; give a file or a folder of point clouds")
+    check_exists(path, "a file or a folder of point clouds")
     kind = kind or points_kind(path)
     if kind not in KINDS:
         raise InputError(f"unknown kind of point cloud {kind!r}; known: {', '.join(KINDS)}")

@@ -101,6 +101,6 @@ def _check(path: Path, camera: CameraIntrinsics) -> None:
 
 
 def _number(path: Path, key: str, value: Any) -> float:
-    if type(value) not in (int, float) or not abs(value) < 1e9:
+    if type(value) not in (int, float) or not abs(value) < 1e300:
         raise InputError(f"{path}: {key} is {value!r}; it must be a finite number")
     return float(value)

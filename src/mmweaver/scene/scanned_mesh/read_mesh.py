@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int, UInt8
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, read_bytes
+from mmweaver.core.safe_files.regular_files import MEGABYTE, check_exists, foreign_errors, read_bytes
 from mmweaver.core.shapes import Array, Faces
 
 SUFFIXES = (".glb", ".ply", ".obj")
@@ -41,6 +41,7 @@ def read_mesh(path: Path) -> ColouredMesh:
     except ModuleNotFoundError:
         raise InputError(f"{path.name} is a mesh, which needs trimesh; pip install 'mmweaver[mesh]'") from None
     suffix = path.suffix.lower()
+    check_exists(path, f"a mesh: {', '.join(SUFFIXES)}")
     if suffix not in SUFFIXES:
         raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}")
     content = read_bytes(path, max_bytes=MAX_BYTES)
