@@ -113,6 +113,7 @@ _ALSO: dict[str, Callable[[Step], bool]] = {
 _RISES = words_in("stand sit get wind come")
 _ANGLES = words_in("90 180 270 360")
 _ROUND, _NOT_OUT = words_in("draw_circle stir arm_circles"), words_in("raise raise_hold wave clap hands_up")
+_ONE_LEGGED = words_in("kick stomp raise_leg one_leg hop_one_leg lunge")
 _COUNTED = words_in("few several multiple couple many")
 _SIDE = re.compile(r"(?:left|right)(?:wards?)?")
 _OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
@@ -260,8 +261,16 @@ def _one_step(tokens: list[str], i: int, own: list[Step]) -> str:
         or not {"a", "an", "one", "another", "single"} & set(tokens[max(i - 3, 0) : i])
     ):
         return ""
-    going = [step for step in own if step.lower in ("walk", "sidestep", "jog")]
+    going = [step for step in own if step.lower in ("walk", "sidestep", "jog", "limp", "stagger")]
     return "that it is one step is not kept" if going and not any(step.count for step in going) else ""
+
+
+def _each_leg(tokens: list[str], i: int, own: list[Step]) -> str:
+    """Both legs or each, where the steps have one or leave it open."""
+    if tokens[i] not in ("both", "each", "alternating", "alternate") or not LEGS & {*tokens[i + 1 : i + 3]}:
+        return ""
+    feet = [step.foot for step in own if step.lower in _ONE_LEGGED]
+    return f"{tokens[i]!r} is not shown" if feet and not {"left", "right"} <= {*feet} else ""
 
 
 def _turn(tokens: list[str], i: int, own: list[Step]) -> str:
@@ -380,4 +389,4 @@ def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
     return f"{token!r} is not shown"
 
 
-_CHECKS = (_side, _number, _turn, _one_step, _way, _verb, _manner)
+_CHECKS = (_side, _number, _turn, _one_step, _each_leg, _way, _verb, _manner)

@@ -146,7 +146,7 @@ def goes_round(step: Step) -> bool:
 
 def _is_counted(step: Step) -> bool:
     """Whether it is done as often as the sentence says."""
-    countable = BY_KEY[step.upper or step.lower].counted_s is not None
+    countable = any(BY_KEY[key].counted_s is not None for key in (step.upper or step.lower, step.lower))
     return bool(
         (step.count and (countable or step.count == 1)) or abs(step.turn_deg) >= 360.0 or abs(step.arc_deg) >= 360.0
     )

@@ -14,6 +14,7 @@ from mmweaver.motion.language.clause_records import in_own_words, in_the_given_w
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.durations import in_seconds
+from mmweaver.motion.language.held import with_what_is_held
 from mmweaver.motion.language.left_out import (
     EXACT,
     LEAVING_OUT,
@@ -30,6 +31,7 @@ from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
+from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
@@ -69,7 +71,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = in_seconds(_YOUR.sub("his", text))
+    text = reworded(in_seconds(_YOUR.sub("his", text)))
     try:
         return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
@@ -137,6 +139,11 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
+    steps, lost = with_what_is_held(
+        steps, {number: f"{record.clause} {record.how}" for number, record in records.items()}
+    )
+    for number, how in lost:
+        records[number] = records[number].lowered_to(APPROXIMATED, how)
     note_what_is_not_shown(given_text, every_clause, steps, records)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")

@@ -90,3 +90,11 @@ def test_a_waving_hand_also_comes_and_goes():
     assert min(shares) > 0.1
     assert max(shares) < 0.67
     assert np.median(shares) > 0.2
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_who_has_turned_points_to_the_side_that_is_named(seed: int):
+    """Left in the photo is x < 0; the heading of the pointing step counts, not that of the walk before."""
+    pose = joints("a person walks away and points to the left with the left hand", seed, 6.0)
+    reach = pose[:, LEFT_WRIST, 0] - pose[:, joint("left_shoulder"), 0]
+    assert reach.min() < -0.2

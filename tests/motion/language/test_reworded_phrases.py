@@ -1,0 +1,93 @@
+"""Rewordings of what means one thing only together, and what becomes of them."""
+
+import pytest
+
+from mmweaver.motion.language.reworded_phrases import reworded
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.verbs import words_in
+
+
+@pytest.mark.parametrize(
+    ("text", "other"),
+    [
+        ("walks with a slight limp on the right leg", "limps with the right leg"),
+        ("is walking forward with a limp", "is limping forward"),
+        ("turns left to turn around", "turns around to the left"),
+        ("walks right across a street", "walks across a street"),
+        ("turns right across from the door", "turns right across from the door"),
+        ("makes two full turns to the right", "turns 720 degrees to the right"),
+        ("types standing up", "types while standing"),
+        ("is standing up", "is standing up"),
+        ("plays the violin the goes back", "plays the violin then goes back"),
+        ("kicks with the left and right leg", "kicks with the left leg, then kicks with the right leg"),
+        ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
+    ],
+)
+def test_rewordings(text: str, other: str) -> None:
+    assert " ".join(reworded(f"a person {text}").split()) == f"a person {other}"
+
+
+@pytest.mark.parametrize(
+    ("text", "foot"),
+    [
+        ("kneels down on one knee", ""), ("drops to one knee and stays", ""), ("goes down on the left knee", "left"),
+        ("is kneeling on one knee", ""), ("lowers himself onto his right knee", "right"),
+    ],
+)  # fmt: skip
+def test_one_knee_is_one_knee_in_any_words(text: str, foot: str) -> None:
+    step = parse(f"a person {text}", in_part=True).steps[0]
+    assert step.lower in ("kneel", "kneel_down")
+    assert (step.style, step.foot) == ("knee", foot)
+
+
+@pytest.mark.parametrize(
+    ("text", "lowers"),
+    [
+        ("walks with a limp", "limp"),
+        ("walks, limping with the left leg", "limp"),
+        ("has a limp and walks to the door", "limp"),
+        ("leans forward and touches the toes", "bend"),
+        ("bends at the waist and touches his toes", "bend"),
+        ("bends forward as if to bow", "bend"),
+        ("is walking and seems to be drunk", "stagger"),
+        ("jumps and turns 180 degrees in the air", "jump turn"),
+        ("jumps, spinning 180 degrees", "jump turn"),
+        ("stays in a squat for five seconds", "crouch"),
+        ("gets up from a crouching position", "crouch stand"),
+        ("does a motion of throwing a skipping rock", "stand"),
+        ("walks forward; right, left, right, left, moving three paces", "walk"),
+        ("types standing up", "stand"),
+        ("plays the piano standing up", "stand"),
+    ],
+)
+def test_each_movement_comes_once(text: str, lowers: str) -> None:
+    steps = parse(f"a person {text}", in_part=True).steps
+    assert [step.lower for step in steps if step.clause or step.lower != "stand"] == lowers.split()
+
+
+@pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        ("jumps and spins in mid air", "after the jump"),
+        ("jumps, spinning 180 degrees", "after the jump"),
+        ("jogs and then speeds up", "a change of speed"),
+        ("walks faster and faster", "a change of speed"),
+        ("lunges with both legs", "'both'"),
+        ("ducks and side steps to the left", "upright"),
+    ],
+)
+def test_what_is_shown_otherwise_is_said(text: str, how: str) -> None:
+    assert how in "; ".join(clause.how for clause in parse(f"a person {text}", in_part=True).clauses)
+
+
+def test_counts_and_ways() -> None:
+    jumps, turn, bend = (
+        parse(f"a person {text}").steps[0]
+        for text in (
+            "jumps forward repeatedly",
+            "turns a full circle and a half",
+            "walks forward, slightly to the left",
+        )
+    )
+    assert (jumps.count, abs(turn.turn_deg), bend.arc_deg > 0) == (3, 540.0, True)
+    assert parse("a person walks straight back").steps[0].direction in words_in("back backwards")
