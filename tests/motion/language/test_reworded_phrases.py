@@ -91,3 +91,14 @@ def test_counts_and_ways() -> None:
     )
     assert (jumps.count, abs(turn.turn_deg), bend.arc_deg > 0) == (3, 540.0, True)
     assert parse("a person walks straight back").steps[0].direction in words_in("back backwards")
+
+
+def test_a_way_back_does_not_use_up_the_side_after_it() -> None:
+    steps = parse("a person steps to the left, back to the center, and then to the right").steps
+    assert [step.direction for step in steps] == ["left", "right", "right"]
+
+
+def test_right_after_is_a_side_of_a_turn() -> None:
+    plan = parse("a person walks three steps forward and turns right after each step")
+    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", "forwards"), ("turn", "right")]
+    assert "each" in plan.clauses[-1].how

@@ -1,6 +1,6 @@
 """What lasts: arms stay where they were put, and who stays down does so, until a clause says otherwise."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from mmweaver.motion.language.activities import BY_KEY
@@ -33,10 +33,13 @@ _SETTLING_S = 1.2  # into a posture that is held for a given time
 Lost = list[tuple[int, str]]
 
 
-def with_what_is_held(steps: Sequence[Step], clauses: Mapping[int, str]) -> tuple[list[Step], Lost]:
+def with_what_is_held(
+    steps: Sequence[Step], clauses: Mapping[int, str], afterwards: Collection[int] = ()
+) -> tuple[list[Step], Lost]:
     """The steps with postures that last, and (number of the clause, what is not shown) where they cannot.
 
-    `clauses`: the words of each clause by its number, and what is said of it.
+    `clauses`: the words of each clause by its number, and what is said of it; `afterwards`: those of the clauses that
+    begin with "then", before which an arm that was raised comes down.
     """
     result: list[Step] = []
     lost: Lost = []
@@ -53,6 +56,9 @@ def with_what_is_held(steps: Sequence[Step], clauses: Mapping[int, str]) -> tupl
         held = _held_pose(before, step) if stays else None
         if held is not None:
             result[-1] = held
+        elif _stays_raised(before, step) and not _follows(step, afterwards) and not own & ARMS:
+            raised = replace(before, upper="raise_hold")
+            result[-1:] = _with_the_arms(raised, step, moves_arms=False)
         elif before.upper in ARM_POSTURES and before.other_hand is None and not step.upper:
             result[-1:] = _with_the_arms(before, step, moves_arms=bool(own & ARMS))
         else:
@@ -62,6 +68,18 @@ def with_what_is_held(steps: Sequence[Step], clauses: Mapping[int, str]) -> tupl
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
     return result, lost
+
+
+def _follows(step: Step, afterwards: Collection[int]) -> bool:
+    """Whether a step begins a clause that follows with "then", or one that no clause names."""
+    return not step.clauses or min(step.clauses) in afterwards
+
+
+def _stays_raised(before: Step, step: Step) -> bool:
+    """Whether an arm that was raised is still up: the next movement leaves the arms alone."""
+    lifted = before.upper == "raise" and before.lower == "stand" and not (before.count or before.other_hand)
+    free = step.lower not in _NO_ARMS_FREE and step.lower != "stand" and BY_KEY[step.lower].posture == "feet"
+    return lifted and free and not step.upper
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:

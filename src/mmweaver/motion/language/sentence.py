@@ -139,9 +139,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
-    steps, lost = with_what_is_held(
-        steps, {number: f"{record.clause} {record.how}" for number, record in records.items()}
-    )
+    said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
+    steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
         records[number] = records[number].lowered_to(APPROXIMATED, how)
     note_what_is_not_shown(given_text, every_clause, steps, records)
@@ -152,9 +151,9 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leaving and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(given_text.strip()))
-    steps, clauses, said = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
+    steps, clauses, how_shown = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
     return MotionPlan(
-        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *said])), clauses=tuple(clauses),
+        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
 
@@ -324,7 +323,7 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
 
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
-    direction = parsed.about.direction
+    direction, came_back = parsed.about.direction, last.lower == "sidestep" and len(last.clauses) > 1
     ahead = ("forwards", "backwards", "back")
     sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
     sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
@@ -332,7 +331,7 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     return (
         (parsed.link in ("then", "comma") or (parsed.link == "and" and measured))
         and last.lower in ("walk", "jog", "sidestep")
-        and direction != last.direction
+        and (direction != last.direction or (parsed.link == "then" and came_back))
         and not last.arc_deg
         and sideways
     )

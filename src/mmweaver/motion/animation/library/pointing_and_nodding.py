@@ -26,6 +26,12 @@ def _held(context: StepContext, up_s: float = 0.6) -> np.ndarray:
     return begin * rise((context.end_s + 0.2 - context.time_s) / move) if falling else begin
 
 
+def _heading_rad(context: StepContext, controls: Controls) -> float:
+    """Where the body faces during the step, whatever came before."""
+    meanwhile = (context.time_s >= context.start_s) & (context.time_s <= context.end_s)
+    return float(np.median(controls.heading_rad[meanwhile] if meanwhile.any() else controls.heading_rad))
+
+
 def pointing(context: StepContext, controls: Controls) -> Controls:
     """An arm stretched towards the given side (the viewer's left or right), ahead if none is given."""
     time_s, rng = context.time_s, context.rng
@@ -34,9 +40,7 @@ def pointing(context: StepContext, controls: Controls) -> Controls:
     if goal is None:
         aside = 0.0 if context.step.facing else float(rng.uniform(-0.5, 0.1))
     else:  # the angle to the body's left
-        meanwhile = (time_s >= context.start_s) & (time_s <= context.end_s)
-        heading = np.median(controls.heading_rad[meanwhile] if meanwhile.any() else controls.heading_rad)
-        left = (goal - float(heading) + np.pi) % (2 * np.pi) - np.pi
+        left = (goal - _heading_rad(context, controls) + np.pi) % (2 * np.pi) - np.pi
         if not context.step.hand:
             side = LEFT if left > 0 else RIGHT
         aside = float(np.clip(left if side == LEFT else -left, -0.6, 1.5))
@@ -82,7 +86,7 @@ def looking_around(context: StepContext, controls: Controls) -> Controls:
         return controls
     if facing in ("left", "right"):
         sign = -1.0 if facing == "left" else 1.0  # the viewer's side of somebody who may face anywhere
-        sign *= 1.0 if np.sin(float(np.median(controls.heading_rad))) < 0 else -1.0
+        sign *= 1.0 if np.sin(_heading_rad(context, controls)) < 0 else -1.0
         yaw = sign * wide * plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
     else:
         at = [begin + share * lasts for share in (0.0, 0.25, 0.4, 0.7, 0.82, 1.0)]
