@@ -93,6 +93,41 @@ def test_counts_and_ways() -> None:
     assert parse("a person walks straight back").steps[0].direction in words_in("back backwards")
 
 
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("squats and returns to the starting position", [("squat", ""), ("stand", "")]),
+        ("turns left, then returns to the original position", [("turn", "left"), ("turn", "right")]),
+        ("walks forward and returns to the starting position", [("walk", "forwards"), ("walk", "back")]),
+    ],
+)
+def test_who_has_left_no_place_does_not_walk_back(text: str, steps: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.direction) for step in parse(f"a person {text}", in_part=True).steps] == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("raises one arm, then the other", "left right"),
+        ("kicks with one leg and then with the other", "left right"),
+        ("waves with the right hand, then the left, then both", "right left both"),
+        ("kicks alternately with the left and the right leg", "left right"),
+    ],
+)
+def test_one_and_then_the_other(text: str, sides: str) -> None:
+    steps = parse(f"a person {text}", in_part=True).steps
+    assert " ".join(step.hand or step.foot for step in steps if step.hand or step.foot) == sides
+
+
+def test_other_verbs_are_no_misspellings_of_movements() -> None:
+    assert [step.name for step in parse("this person waves off as if joking", in_part=True).steps] == ["waving"]
+
+
+def test_a_turn_of_who_crawls_is_said_to_be_shown_standing() -> None:
+    clauses = parse("someone crawls forward and turns around").clauses
+    assert "standing, after getting up" in clauses[-1].how
+
+
 def test_a_way_back_does_not_use_up_the_side_after_it() -> None:
     steps = parse("a person steps to the left, back to the center, and then to the right").steps
     assert [step.direction for step in steps] == ["left", "right", "right"]

@@ -56,6 +56,8 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
     if {"backwards", "backward"} & set(texts) and (aimed_back or not any(_goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
+    if "back_to_start" in texts and not any(step.moves or step.lower in ("stand", "turn") for step in steps):
+        lost.append("the way back is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
     if any(step.hand in _SIDES for step in steps) and not any(moves_one_hand(step) for step in steps):

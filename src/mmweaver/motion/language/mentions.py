@@ -149,6 +149,11 @@ _RISING = ("stand_up", "kneel_up", "get_up", "sit_up")
 _GOING_ON = ("walk", "jog", "turn", "sidestep", "leap", "stand")
 
 
+def _goes_on_feet(before: Step, after: Step) -> bool:
+    """Whether the movement needs feet anyway; who is on the knees or the floor may turn there."""
+    return after.lower in _GOING_ON and not (after.lower == "turn" and before.lower in ("kneel_up", "get_up"))
+
+
 def without_no_limbs(text: str) -> str:
     """The sentence in lower case, with "_" for the letters of phrases that name a limb and move none."""
     return _NO_LIMB.sub(lambda found: "_" * len(found[0]), " ".join(text.lower().split()))
@@ -206,5 +211,5 @@ def risings_that_no_clause_names(steps: Sequence[Step]) -> list[tuple[Step, str]
     return [
         (after, f"{after.name} is shown {'standing, ' * (after.posture == 'feet')}after getting up")
         for before, after in pairwise(steps)
-        if before.lower in _RISING and not before.clauses and after.lower not in _GOING_ON
+        if before.lower in _RISING and not before.clauses and not _goes_on_feet(before, after)
     ]

@@ -315,6 +315,8 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     counted = parsed.link == "and" and bool(about.count)  # "twice with the right fist and once with the left"
     in_turn = parsed.link in ("then", "comma") or aimed or counted
     side = about.hand or about.foot or about.direction
+    if side == "both" and parsed.link in ("then", "comma") and last.hand in OPPOSITE and not last.moves:
+        return replace(last, hand="both", count=about.count or last.count, clauses=(parsed.number,))
     if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
     limb = {"hand": side} if last.hand else {"foot": side}
@@ -329,7 +331,7 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
     measured = bool(parsed.about.seconds or parsed.about.distance_m)  # "to the left for 3 s and to the right for 5 s"
     return (
-        (parsed.link in ("then", "comma") or (parsed.link == "and" and measured))
+        (parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep")))
         and last.lower in ("walk", "jog", "sidestep")
         and (direction != last.direction or (parsed.link == "then" and came_back))
         and not last.arc_deg

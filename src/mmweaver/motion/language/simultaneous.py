@@ -204,7 +204,7 @@ def _is_meanwhile(one: Step, other: Step) -> bool:
     """Whether what "and" adds happens during the first: 'dances and claps', 'leans over and wipes'."""
     if other.lower in _GOING_ON and not (other.upper or other.moves):
         return one.upper in _PLAYED and one.lower in ("stand", "sit")
-    hands = bool(other.upper) and other.lower == "stand" and not (other.on_feet or other.seconds)
+    hands = other.upper not in ("", "stretch") and other.lower == "stand" and not (other.on_feet or other.seconds)
     if one.upper or one.moves or one.count > 1 or one.seconds or not hands:
         return False
     return one.lower in _GOING_ON | _LOW
