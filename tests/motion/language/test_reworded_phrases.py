@@ -119,6 +119,38 @@ def test_one_and_then_the_other(text: str, sides: str) -> None:
     assert " ".join(step.hand or step.foot for step in steps if step.hand or step.foot) == sides
 
 
+def test_a_run_that_is_shown_as_two_curves_is_run_to_the_end() -> None:
+    for way in ("in a zigzag", "in a figure eight"):
+        assert {step.lower for step in parse(f"a person runs {way}", in_part=True).steps} == {"jog"}
+
+
+def test_what_is_put_on_the_floor_goes_there() -> None:
+    text = "a person takes something off a shelf with the right hand and puts it on the floor"
+    assert [step.lower for step in parse(text).steps][-1] == "put_down"
+
+
+def test_another_speed_or_way_round_is_another_step() -> None:
+    assert [step.speed for step in parse("a person waves slowly, then quickly").steps] == [-1, 1]
+    circles = parse("a person walks in a circle to the left and then in a circle to the right").steps
+    assert [step.arc_deg for step in circles] == [360.0, -360.0]
+    assert [step.facing for step in parse("a person faces left, then right").steps] == ["left", "right"]
+
+
+def test_a_speed_that_no_step_has_is_said() -> None:
+    plan = parse("a person squats slowly and stands up fast")
+    assert plan.clauses[-1].how == "'fast' is not shown"
+
+
+def test_arms_held_out_are_shown_on_one_leg_and_in_a_walk() -> None:
+    for text in ("balances on one foot with the arms out", "walks forward with his arms out for balance"):
+        assert parse(f"a person {text}", in_part=True).steps[-1].upper == "arms_out"
+
+
+def test_what_is_stepped_on_and_off_is_said() -> None:
+    clauses = parse("a person steps up onto a box and jumps off", in_part=True).clauses
+    assert ["stepped on" in clauses[0].how, "jumped off" in clauses[1].how] == [True, True]
+
+
 def test_other_verbs_are_no_misspellings_of_movements() -> None:
     assert [step.name for step in parse("this person waves off as if joking", in_part=True).steps] == ["waving"]
 

@@ -371,6 +371,7 @@ def _is_like(step: Step, activity: str) -> bool:
     )
 
 
+_OF_SPEED = ("ly", "fast", "quick", "slow")
 _AGAIN = words_in("repeatedly continuously constantly")
 _NO_MANNER = words_in(
     "finally gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
@@ -382,9 +383,9 @@ def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
     token = tokens[i]
     if token in _AGAIN and all(BY_KEY[step.lower].once and not step.upper and not step.count for step in own):
         return f"{token!r} is not shown"
+    if token in SPEEDS and token.endswith(_OF_SPEED) and token not in _NO_MANNER:
+        return "" if any(step.speed == SPEEDS[token] for step in own) else f"{token!r} is not shown"
     if not token.endswith("ly") or token in FILLERS or token in _ALSO or token in _NO_MANNER:
-        return ""
-    if token in SPEEDS and any(step.speed for step in own):
         return ""
     return f"{token!r} is not shown"
 

@@ -18,7 +18,7 @@ _SIDES = frozenset({"left", "right"})
 _WITH_ARMS = words_in(
     """
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
-    get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
+    get_up stand_up stretch sit_down golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
     bow stairs side_lunge lunge sit_ups pedal roll_over roll_in_bed
     """
 )

@@ -57,7 +57,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b((?:walk|run|jog)(?:s|ing|ning|ging)?(?: [a-z]+ly)?) {_SLIGHTLY} (?:(?:to|towards) {_OWN}?)?(left|right)\b(?! (?:hand|foot|leg))", r"\1 in a slight curve to the \2"),
     (r"\b(?:walk|mov|go|step)(?:s|es|(?P<ending>ing))?(?P<way>(?: [a-z]+){0,3}?) with an? (?:(?:slight|heavy|bad|pronounced|visible|little|strong) )*limp\b(?: (?:on|in|with|of) (?:the|his|her|their) (?P<side>left|right) (?:leg|foot|side))?", _limps),
     (r"\b(?:walk|stroll|mov|go)(?P<ending>s|es|ing)?\b(?P<way>[^.;]*?),? (?:(?:and|while|who|that) )?(?:(?:as (?:if|though)|like)(?: (?:he|she|they|it))? ?)?(?:(?:seem|look|appear|act|is|are|was|were)(?:s|ing)?(?: to be| like)? )?(?:an? )?(?:very )?drunk(?:en)?(?: person| man| woman| guy)?(?= *(?:$|[.,;]| and\b| then\b))", lambda found: f"stagger{'ing' if found['ending'] == 'ing' else 's'}{found['way']}"),
-    (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|it|{_OWN}?(?:left |right |both )?(?:arms?|hands?)) (?:to )?(?:fall|drop|go|hang|sink)\b(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
+    (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|{_OWN}?(?:both )?(?:arms|hands)) (?:to )?(?:fall|drop|go|hang|sink)\b(?! straight)(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
     # postures
     (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
     (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),
@@ -74,6 +74,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(turn|spin|rotat)(s|es|ing|ning)?(?: around)? (?P<times>two|three|four|five) (?:full|complete|whole) (?:turns|circles|times|rotations)\b", _whole_turns),
     (r"\b(?:an? |one )?(?:full |whole |complete )?(?:circle|turn|rotation)s? and a half\b|\bone and a half (?:turns|circles|rotations)\b", "540 degrees"),
     (r"\b(?P<verb>[a-z]+(?:s|ing)) (?P<how>(?:up )?(?:with |on )?)(?:one|a) (?P<limb>arm|hand|leg|foot|knee|fist)(?P<more>(?: (?!and|then)[a-z]+){0,3}?)(?:,| and| then)+ (?:with |on )?the other(?: (?P=limb)| one)?(?=$|[,.;]| and\b| then\b)", _one_and_the_other),
+    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:held )?out\b(?: (?:for balance|for stability|(?:to|at|from) (?:{_OWN}|both )?sides?|wide|sideways))*(?! (?:in|ahead|forwards?|straight|of|like|as)\b)", r"with \1 held out to the sides"),
     # each leg in turn
     (r"\b(?P<verb>(?:kick|stomp|stamp|hop|punch)(?:s|es|ing|ping))(?: (?:alternately|alternatingly|in turn))? (?:with |on )?(?:(?:the|his|her|their) )?(?P<one>left|right)(?: (?:leg|foot|hand|arm|fist))? and (?:(?:the|his|her|their) )?(?P<other>left|right)(?: (?P<limb>leg|foot|hand|arm|fist))?(?: (?:alternately|alternatingly|in turn))?(?=$|[,.;]| and\b| then\b)", _one_then_other),
     (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?:(?:the|his|her|their) )?(?P<one>left|right) (?:leg|knee|foot) and (?:(?:the|his|her|their) )?(?P<other>left|right) (?P<limb>leg|knee|foot)(?: (?:alternately|alternatingly|in turn))?\b", _one_then_other),

@@ -43,6 +43,8 @@ LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
+_ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
+_WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
@@ -126,12 +128,15 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = in_sequence(parsed_clauses, leaving)
+    sequence = _at_one_gait(in_sequence(parsed_clauses, leaving), given_text)
+    on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
         taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
-        if step.lower == "put_down" and taken[-1:] == ["reach"]:  # what was taken from a table goes back there
+        if (
+            step.lower == "put_down" and taken[-1:] == ["reach"] and not on_the_floor
+        ):  # what was taken from a table goes back there
             sequence[number] = replace(step, lower="stand", upper="reach")
         if before.upper == "carry" and before.lower == "stand" and step.lower == "put_down":  # it is carried there
             walk = replace(before, lower="walk", place=step.place)
@@ -156,6 +161,12 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
+
+
+def _at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
+    """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
+    runs = any(step.lower == "jog" and step.arc_deg for step in steps) and not _WALKING.search(given_text.lower())
+    return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
 
 
 def _sideways_throughout(steps: list[Step]) -> list[Step]:
@@ -242,24 +253,17 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
-        other = _other_limb(found[-1].steps[-1], parsed)
-        other_side = _with_the_other_one(found[-1].steps[-1], parsed)
-        if other is None and other_side is not None:
-            found[-1].steps.append(other_side)
+        last = found[-1].steps[-1]
+        other, another = _other_limb(last, parsed), _another_step(last, parsed)
+        if other is not None:
+            found[-1].steps[-1] = overlay(last, other)
+        elif another is not None:
+            found[-1].steps.append(another)
             found[-1].forms.append("s")
-        elif other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
+        elif _goes_elsewhere(last, parsed):
             found[-1].go_on(parsed)
-        elif other is None and _faces_next(found[-1].steps[-1], parsed):
-            facing = parsed.about.facing or "towards"
-            found[-1].steps.append(Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,)))
-            found[-1].forms.append("s")
-        elif other is None and _once_more(found[-1].steps[-1], parsed):
-            found[-1].steps.append(replace(found[-1].steps[-1], direction=_own_side(parsed), clauses=(parsed.number,)))
-            found[-1].forms.append("s")
-        elif other is None:
-            found[-1].absorb(parsed)
         else:
-            found[-1].steps[-1] = overlay(found[-1].steps[-1], other)
+            found[-1].absorb(parsed)
     elif parsed.steps and _says_more_of_it(found, parsed):
         last, more = found[-1].steps[-1], parsed.steps[0]
         found[-1].steps[-1] = replace(
@@ -288,6 +292,17 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     return None
 
 
+def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
+    """The next step that a clause without a verb asks for: the last one with the other hand, to another side, ..."""
+    other_side = _with_the_other_one(last, parsed)
+    if other_side is not None or _goes_elsewhere(last, parsed):
+        return other_side
+    if _faces_next(last, parsed):
+        facing = parsed.about.facing or "towards"
+        return Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,))
+    return _to_the_other_side(last, parsed) if _once_more(last, parsed) else _again_otherwise(last, parsed)
+
+
 def _faces_next(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next turn to something: 'turns to the window, then to the radar'."""
     aimed = parsed.about.facing or any(word.text in RADAR for word in parsed.words)
@@ -299,6 +314,22 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
     other_side = parsed.link == "and" and last.direction == OPPOSITE.get(parsed.about.direction)
     return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
+
+
+def _to_the_other_side(last: Step, parsed: ParsedClause) -> Step:
+    if last.facing in OPPOSITE:  # "faces left, then right"
+        return replace(last, facing=parsed.about.direction, direction="", clauses=(parsed.number,))
+    return replace(last, direction=_own_side(parsed), clauses=(parsed.number,))
+
+
+def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
+    """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
+    about = parsed.about
+    if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
+        return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
+    if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
+        return replace(last, speed=about.speed, clauses=(parsed.number,))
+    return None
 
 
 def _own_side(parsed: ParsedClause) -> str:
