@@ -58,6 +58,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:walk|mov|go|step)(?:s|es|(?P<ending>ing))?(?P<way>(?: [a-z]+){0,3}?) with an? (?:(?:slight|heavy|bad|pronounced|visible|little|strong) )*limp\b(?: (?:on|in|with|of) (?:the|his|her|their) (?P<side>left|right) (?:leg|foot|side))?", _limps),
     (r"\b(?:walk|stroll|mov|go)(?P<ending>s|es|ing)?\b(?P<way>[^.;]*?),? (?:(?:and|while|who|that) )?(?:(?:as (?:if|though)|like)(?: (?:he|she|they|it))? ?)?(?:(?:seem|look|appear|act|is|are|was|were)(?:s|ing)?(?: to be| like)? )?(?:an? )?(?:very )?drunk(?:en)?(?: person| man| woman| guy)?(?= *(?:$|[.,;]| and\b| then\b))", lambda found: f"stagger{'ing' if found['ending'] == 'ing' else 's'}{found['way']}"),
     (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|{_OWN}?(?:both )?(?:arms|hands)) (?:to )?(?:fall|drop|go|hang|sink)\b(?! straight)(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
+    (rf"\bun(?:fold|cross)(?:s|es|ing)? (?:them|{_OWN}?arms)\b", "lowers them"),
     # postures
     (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
     (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),

@@ -165,7 +165,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
 
 def _at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
     """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
-    runs = any(step.lower == "jog" and step.arc_deg for step in steps) and not _WALKING.search(given_text.lower())
+    runs = any(step.lower == "jog" for step in steps) and not _WALKING.search(given_text.lower())
     return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
 
 
@@ -348,7 +348,8 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     side = about.hand or about.foot or about.direction
     if side == "both" and parsed.link in ("then", "comma") and last.hand in OPPOSITE and not last.moves:
         return replace(last, hand="both", count=about.count or last.count, clauses=(parsed.number,))
-    if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
+    is_aim = last.hand and not about.hand and not aimed and any(word.text == "to" for word in parsed.words)
+    if is_aim or not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
     limb = {"hand": side} if last.hand else {"foot": side}
     return replace(last, **limb, count=about.count or last.count, clauses=(parsed.number,))
