@@ -243,7 +243,7 @@ def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
         return None
     hand = one.hand or OPPOSITE.get(other.hand, "right")
     pair = replace(one, hand=hand), replace(other, hand=OPPOSITE[hand])
-    return pair[::-1] if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
+    return (pair[1], pair[0]) if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
 
 
 def overlay(one: Step, other: Step) -> Step:
