@@ -71,3 +71,12 @@ def test_arms_that_come_down_for_the_head_are_said() -> None:
 def test_a_raised_arm_stays_up_for_what_and_adds_not_for_what_follows() -> None:
     assert doing("raises the left arm and walks forward")[-1] == ("walk", "raise_hold")
     assert doing("raises the left arm, then walks forward")[-1] == ("walk", "")
+
+
+def test_the_hand_that_was_raised_does_what_comes_next() -> None:
+    for text in ("raises the left hand and scratches the head", "stretches the left arm out and points"):
+        assert parse(f"a person {text}", in_part=True).steps[-1].hand == "left"
+
+
+def test_who_stands_on_one_leg_moves_the_arms_there() -> None:
+    assert doing("stands on the left leg and stretches the arms out") == [("one_leg", "arms_out")]

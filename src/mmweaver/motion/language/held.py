@@ -7,7 +7,7 @@ from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import ARMS
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.simultaneous import ARMS_TAKEN
+from mmweaver.motion.language.simultaneous import ARMS_TAKEN, ONE_ARMED
 from mmweaver.motion.language.verbs import words_in
 
 # Postures of the arms, which last, and movements of the head alone, for which they come down.
@@ -44,8 +44,8 @@ def with_what_is_held(
     result: list[Step] = []
     lost: Lost = []
     for given in steps:
-        step = _kept_up(given, clauses)
         before = result[-1] if result else None
+        step = _with_the_raised_hand(before, _kept_up(given, clauses))
         own = words_in(" ".join(clauses.get(number, "") for number in step.clauses))
         if before is None or _comes_back(before, step, clauses):
             result.append(step)
@@ -80,6 +80,14 @@ def _stays_raised(before: Step, step: Step) -> bool:
     lifted = before.upper == "raise" and before.lower == "stand" and not (before.count or before.other_hand)
     free = step.lower not in _NO_ARMS_FREE and step.lower != "stand" and BY_KEY[step.lower].posture == "feet"
     return lifted and free and not step.upper
+
+
+def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
+    """The hand that was raised or held out is the one that does what comes next."""
+    lifted = before is not None and before.upper in ("raise", "raise_hold", "arms_out") and before.hand in OPPOSITE
+    if before is None or not lifted or step.upper not in ONE_ARMED or step.hand or step.other_hand:
+        return step
+    return replace(step, hand=before.hand)
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:

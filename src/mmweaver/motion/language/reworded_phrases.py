@@ -76,6 +76,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:an? |one )?(?:full |whole |complete )?(?:circle|turn|rotation)s? and a half\b|\bone and a half (?:turns|circles|rotations)\b", "540 degrees"),
     (r"\b(?P<verb>[a-z]+(?:s|ing)) (?P<how>(?:up )?(?:with |on )?)(?:one|a) (?P<limb>arm|hand|leg|foot|knee|fist)(?P<more>(?: (?!and|then)[a-z]+){0,3}?)(?:,| and| then)+ (?:with |on )?the other(?: (?P=limb)| one)?(?=$|[,.;]| and\b| then\b)", _one_and_the_other),
     (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:held )?out\b(?: (?:for balance|for stability|(?:to|at|from) (?:{_OWN}|both )?sides?|wide|sideways))*(?! (?:in|ahead|forwards?|straight|of|like|as)\b)", r"with \1 held out to the sides"),
+    (r"\b(wav(?:es|ing)(?: [a-z]+){0,3}? (?:hands?|arms?)) in the air\b", r"\1"),
     # each leg in turn
     (r"\b(?P<verb>(?:kick|stomp|stamp|hop|punch)(?:s|es|ing|ping))(?: (?:alternately|alternatingly|in turn))? (?:with |on )?(?:(?:the|his|her|their) )?(?P<one>left|right)(?: (?:leg|foot|hand|arm|fist))? and (?:(?:the|his|her|their) )?(?P<other>left|right)(?: (?P<limb>leg|foot|hand|arm|fist))?(?: (?:alternately|alternatingly|in turn))?(?=$|[,.;]| and\b| then\b)", _one_then_other),
     (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?:(?:the|his|her|their) )?(?P<one>left|right) (?:leg|knee|foot) and (?:(?:the|his|her|their) )?(?P<other>left|right) (?P<limb>leg|knee|foot)(?: (?:alternately|alternatingly|in turn))?\b", _one_then_other),

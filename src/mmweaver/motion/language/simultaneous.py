@@ -32,7 +32,14 @@ _TURNING_JUMPS = {(jump, "turn", "ing") for jump in ("jump", "leap", "hop")}
 # What goes on for as long as there is time, so that what "and" adds happens meanwhile.
 _GOING_ON = {"dance", "march", "hop", "twist"}
 _PLAYED = {"guitar", "violin"}
-_LOW = {"bend", "lean", "crouch", "squat"}  # the hands do what "and" adds before the body comes up
+_LOW = {
+    "bend",
+    "lean",
+    "crouch",
+    "squat",
+    "one_leg",
+    "raise_leg",
+}  # the hands do what "and" adds before the body comes up
 
 
 def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
@@ -62,9 +69,8 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
             if steps and (steps[-1].lower, first.lower, parsed.form) in _TURNING_JUMPS and parsed.link == "comma":
                 parsed.lost.append("the turn in the air is shown after the jump")
-            if (
-                steps and steps[-1].lower == "crouch" and first.moves and parsed.link == "and"
-            ):  # "ducks and steps aside"
+            low = bool(steps) and steps[-1].lower in ("crouch", "lean")
+            if low and first.moves and parsed.link == "and":  # "ducks and steps aside"
                 parsed.lost.append(f"{first.name} is shown upright, after {steps[-1].name}")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
