@@ -11,7 +11,8 @@ labels in BABEL's form, from characters 40,000 and 800,000).
 FlowMDM. `captions_second`: 142 further captions (from characters 1,150,000 and 1,400,000); those from 150,000, 250,000,
 400,000, 500,000, 600,000 and 700,000 were read to widen the grammar. `captions_third`: 210 further ones (from 90,000,
 320,000 and 1,470,000), after those from 900,000, 980,000, 1,050,000, 1,100,000, 1,250,000 and 1,330,000 had been read
-to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had. `strangers`:
+to widen it; `captions_fourth`: 218 (from 215,000, 1,200,000 and 1,290,000), after `captions_third` had;
+those from 436,000, 530,000, 560,000, 580,000, 640,000 and 660,000 were read to widen it since. `strangers`:
 the 150 sentences of studies/motion/sentences/strangers_second.txt, written for a radar by a language model that had not
 seen the grammar: short ones, everyday ones and hard ones; `strangers_second`: the 150 of strangers_third.txt, by a
 language model that had not seen it either, in the style of captions of motion capture; `strangers_third`: the 150 of

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.assemble import _merge_gait, assemble, dense_times
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
@@ -40,3 +41,21 @@ def test_a_motion_covers_its_duration_and_stands_on_its_floor():
     assert pose.time_s[-1] > 1.5
     assert -1.11 < pose.joints_m[..., 2].min() < -1.05
     assert np.abs(pose.joints_m[:, 0, :2] - [0.2, 2.0]).max() < 0.1
+
+
+def test_arms_that_are_held_through_two_steps_do_not_come_down_between():
+    steps = tuple(
+        PlacedStep(step=Step(lower=lower, upper="arms_out", hand="both", start_s=start, end_s=start + 2.0))
+        for lower, start in (("stand", 0.0), ("one_leg", 2.0))
+    )
+    pose = assemble(
+        steps,
+        RootPath(start_m=(0.0, 2.0), heading_rad=0.0),
+        SkeletonProportions(1.75),
+        seed=0,
+        duration_s=4.0,
+        floor_z_m=-1.1,
+    )
+    wrist, shoulder = (pose.joints_m[:, joint(f"left_{name}"), 2] for name in ("wrist", "shoulder"))
+    between = (pose.time_s > 1.5) & (pose.time_s < 2.5)
+    assert (wrist - shoulder)[between].min() > -0.25

@@ -81,3 +81,7 @@ def test_the_person_stays_seated_and_keeps_the_side():
 def test_furniture_that_no_step_uses_is_named(text: str, not_shown: str):
     said = "".join(clause.how for clause in parse(text, in_part=True).clauses)
     assert (not_shown in said) if not_shown else not said
+
+
+def test_two_sides_that_are_shown_one_after_the_other_are_shown():
+    assert [clause.status for clause in parse("a person turns to the left and to the right").clauses] == ["done"] * 2

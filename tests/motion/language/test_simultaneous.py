@@ -118,3 +118,28 @@ def test_who_trips_goes_on_ahead() -> None:
 def test_a_last_participle_on_the_spot_is_said_to_follow() -> None:
     plan = parse("a person is boxing, bouncing lightly on the feet")
     assert "one after the other" in plan.clauses[-1].how
+
+
+@pytest.mark.parametrize(
+    ("text", "lower", "upper"),
+    [
+        ("dances and claps to the rhythm", "dance", "clap"),
+        ("plays air guitar and moves the hips", "dance", "guitar"),
+        ("marches in place and waves", "march", "wave"),
+        ("leans over and wipes the table", "bend", "wipe"),
+        ("squats and raises both arms", "squat", "raise"),
+    ],
+)
+def test_what_and_adds_to_a_movement_that_goes_on_happens_meanwhile(text: str, lower: str, upper: str) -> None:
+    (step,) = parse(f"a person {text}", in_part=True).steps
+    assert (step.lower, step.upper) == (lower, upper)
+
+
+@pytest.mark.parametrize("text", ["bends down, then waves", "bows and waves", "walks forward and waves"])
+def test_what_follows_stays_a_step_of_its_own(text: str) -> None:
+    assert len(parse(f"a person {text}").steps) == 2
+
+
+def test_who_works_bent_stays_bent() -> None:
+    plan = plan_motion("a person leans over and wipes the table")
+    assert plan.steps[0].style == "held"

@@ -81,7 +81,8 @@ def assembled_controls(
         context = StepContext(
             time_s=own_time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
             moves=placed.moves, seat_height_m=placed.seat_height_m, habits=habits, first=k == 0,
-            last=k == len(steps) - 1,
+            last=k == len(steps) - 1, arms_before=k > 0 and _same_arms(steps[k - 1], placed),
+            arms_after=k + 1 < len(steps) and _same_arms(placed, steps[k + 1]),
         )  # fmt: skip
         parts.append(perform(context))
         before = steps[k - 1].step.end_s - steps[k - 1].step.start_s if k else step.end_s
@@ -89,6 +90,11 @@ def assembled_controls(
         starts.append(step.start_s + 0.5 * blends[-1] if k else step.start_s)
     controls = blended(parts, starts, blends, time_s)
     return controls if entry is None else carried_over(controls, time_s, entry)
+
+
+def _same_arms(one: PlacedStep, other: PlacedStep) -> bool:
+    """Whether two steps in a row hold the arms in the same posture."""
+    return bool(one.step.upper) and (one.step.upper, one.step.hand) == (other.step.upper, other.step.hand)
 
 
 def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:

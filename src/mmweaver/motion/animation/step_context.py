@@ -39,6 +39,8 @@ class StepContext:
     first: bool = True  # no step before: the motion is already under way at its start
     habits: Habits = field(default_factory=Habits)
     last: bool = True  # no step after: the motion continues at its end
+    arms_before: bool = False  # the step before holds the arms as this one does
+    arms_after: bool = False  # the step after holds the arms as this one does
 
     @property
     def start_s(self) -> float:

@@ -114,6 +114,7 @@ _ALSO: dict[str, Callable[[Step], bool]] = {
 _RISES = words_in("stand sit get wind come")
 _ANGLES = words_in("90 180 270 360")
 _ROUND, _NOT_OUT = words_in("draw_circle stir arm_circles"), words_in("raise raise_hold wave clap hands_up")
+_ONE_LEGGED = words_in("kick stomp raise_leg one_leg hop_one_leg lunge")
 _COUNTED = words_in("few several multiple couple many")
 _SIDE = re.compile(r"(?:left|right)(?:wards?)?")
 _OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
@@ -261,8 +262,16 @@ def _one_step(tokens: list[str], i: int, own: list[Step]) -> str:
         or not {"a", "an", "one", "another", "single"} & set(tokens[max(i - 3, 0) : i])
     ):
         return ""
-    going = [step for step in own if step.lower in ("walk", "sidestep", "jog")]
+    going = [step for step in own if step.lower in ("walk", "sidestep", "jog", "limp", "stagger")]
     return "that it is one step is not kept" if going and not any(step.count for step in going) else ""
+
+
+def _each_leg(tokens: list[str], i: int, own: list[Step]) -> str:
+    """Both legs or each, where the steps have one or leave it open."""
+    if tokens[i] not in ("both", "each", "alternating", "alternate") or not LEGS & {*tokens[i + 1 : i + 3]}:
+        return ""
+    feet = [step.foot for step in own if step.lower in _ONE_LEGGED]
+    return f"{tokens[i]!r} is not shown" if feet and not {"left", "right"} <= {*feet} else ""
 
 
 def _turn(tokens: list[str], i: int, own: list[Step]) -> str:
@@ -364,6 +373,7 @@ def _is_like(step: Step, activity: str) -> bool:
     )
 
 
+_OF_SPEED = ("ly", "fast", "quick", "slow")
 _AGAIN = words_in("repeatedly continuously constantly")
 _NO_MANNER = words_in(
     "finally gradually completely fully simultaneously alternately horizontally vertically counterclockwise directly"
@@ -375,11 +385,11 @@ def _manner(tokens: list[str], i: int, own: list[Step]) -> str:
     token = tokens[i]
     if token in _AGAIN and all(BY_KEY[step.lower].once and not step.upper and not step.count for step in own):
         return f"{token!r} is not shown"
+    if token in SPEEDS and token.endswith(_OF_SPEED) and token not in _NO_MANNER:
+        return "" if any(step.speed == SPEEDS[token] for step in own) else f"{token!r} is not shown"
     if not token.endswith("ly") or token in FILLERS or token in _ALSO or token in _NO_MANNER:
-        return ""
-    if token in SPEEDS and any(step.speed for step in own):
         return ""
     return f"{token!r} is not shown"
 
 
-_CHECKS = (_side, _number, _turn, _one_step, _way, _verb, _manner)
+_CHECKS = (_side, _number, _turn, _one_step, _each_leg, _way, _verb, _manner)

@@ -398,6 +398,9 @@ def _is_the_face(words: list[Word], i: int) -> bool:
 def _is_adjective(words: list[Word], i: int) -> bool:
     """'a clean kick', 'lowers the raised arms'."""
     word, before = words[i], words[i - 1].text if i else ""
+    noun = words[i + 1] if i + 1 < len(words) else None
+    if word.form == "ing" and before in ("a", "an") and noun is not None and not is_known(noun):
+        return any(other.is_verb for other in words[:i])  # "throws a skipping rock"
     if word.lemma == "clean" and word.form == "base" and (before in SIZES or before in ("a", "an", "the", "very")):
         return True
     of_a_turn = word.form == "ing" and before in ("a", "an") and len(words) > i + 2 and words[i + 2].is_activity
@@ -488,7 +491,7 @@ def is_known(word: Word) -> bool:
         or text in PEOPLE
         or text in LEGS
         or text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_"))
-        or text in ("onback", "onbelly", "highkick", "frontlunge", "reach_high")
+        or text in ("onback", "onbelly", "one_knee", "highkick", "frontlunge", "reach_high")
         or text.replace(".", "").isdigit()
         or len(text) == 1
     )

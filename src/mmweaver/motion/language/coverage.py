@@ -18,7 +18,7 @@ _SIDES = frozenset({"left", "right"})
 _WITH_ARMS = words_in(
     """
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
-    get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
+    get_up stand_up stretch sit_down golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
     bow stairs side_lunge lunge sit_ups pedal roundhouse side_kick hula_hoop forward_roll roll_over roll_in_bed
     """
 )
@@ -58,6 +58,8 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
     if {"backwards", "backward"} & set(texts) and (aimed_back or not any(_goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
+    if "back_to_start" in texts and not any(step.moves or step.lower in ("stand", "turn") for step in steps):
+        lost.append("the way back is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
     if any(step.hand in _SIDES for step in steps) and not any(moves_one_hand(step) for step in steps):
@@ -148,7 +150,7 @@ def goes_round(step: Step) -> bool:
 
 def _is_counted(step: Step) -> bool:
     """Whether it is done as often as the sentence says."""
-    countable = BY_KEY[step.upper or step.lower].counted_s is not None
+    countable = any(BY_KEY[key].counted_s is not None for key in (step.upper or step.lower, step.lower))
     return bool(
         (step.count and (countable or step.count == 1)) or abs(step.turn_deg) >= 360.0 or abs(step.arc_deg) >= 360.0
     )

@@ -36,7 +36,7 @@ NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bwalk(s|ing) in(?: a)? bend(?:ing)?(?: motion)?\b", r"walk\1 in a curve"), (r"\b(?:in|with) right angles\b", "by 90 degrees"), (r"\bforwards and (right|left)wards?\b", "forwards"),
     (r"\bthen (?:walks )?(\d+) (?:more|steps more)\b", r"then walks \1 steps"), (r"\b(\w+) slow and (\w+) fast steps\b", r"\1 slow step, then \2 fast steps"),
     (r"\bassumes? an upright (?:posture|stance|position)(?: after(?:wards?)?)?\b", "stands up"),
-    (r"(?:,? (?:and|before|then))* (?:returns?|goes back|gets? back|get back|recovers?) (?:in|into|to) (?:(?:the|his|her|its) )?(?:(?:previous|original|initial|old|former|starting) )?(?:position|place|spot)\b(?= *(?:$|[.,]))", ", then walks back"),
+    (r"(?:,? (?:and|before|then))* (?:returns?|goes back|gets? back|get back|recovers?) (?:in|into|to) (?:(?:the|his|her|its) )?(?:(?:previous|original|initial|old|former|starting) )?(?:position|place|spot)\b(?= *(?:$|[.,]))", ", then walks back to the starting position"),
     (r",? (?:in order |so as )?(?:not )?to (?:avoid|prevent|not|keep from|maintain|stay) [^,.;]*?(?=$|[,.;]| and\b| then\b)|,? so (?:that )?(?:it|he|she) (?:does|do|did) ?(?:not|n't) [^,.;]*", ""),
     (r"\b\d+ (strokes?|tones?|notes?) on (?=(?:an? |the )?(?:guitar|violin))", r"\1 on "), (r"\b(guitar|violine?) (?:moves?|motions?)\b", r"\1 playing"),
     (r"\bviolin[ae]\b", "violin"), (r"\binstuments?\b", "instrument"),

@@ -1,8 +1,10 @@
 """Keeps postures: sitting, kneeling and lying last until the person gets up; missing transitions are inserted."""
 
+import re
 from dataclasses import replace
 
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
@@ -10,6 +12,7 @@ STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # What is done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
+_ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -147,6 +150,15 @@ def _styled(steps: list[Step]) -> list[Step]:
     return steps
 
 
+def _back_in_place(before: Step, step: Step) -> Step:
+    """ "Returns to the starting position" of who has not walked: stands as before, or turns back."""
+    turned = before.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
+    if turned:
+        back = OPPOSITE.get(before.direction, "")
+        return replace(step, lower="turn", direction=back, turn_deg=-before.turn_deg)
+    return replace(step, lower="stand", direction="")
+
+
 def carried_over(steps: list[Step]) -> list[Step]:
     """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
 
@@ -154,7 +166,9 @@ def carried_over(steps: list[Step]) -> list[Step]:
     """
     gone = False
     for k, step in enumerate(steps):
-        if step.direction == "back" and not gone:  # "turns around and walks back" goes where the person faces then
+        if step.direction == "back" and not gone and k and _ITS_PLACE.search(step.clause):  # it has left no place
+            steps[k] = _back_in_place(steps[k - 1], step)
+        elif step.direction == "back" and not gone:  # "turns around and walks back" goes where the person faces then
             turned = k > 0 and steps[k - 1].lower == "turn"
             steps[k] = replace(step, direction="forwards" if turned else "backwards")
         gone = gone or step.moves

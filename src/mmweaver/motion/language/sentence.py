@@ -14,6 +14,7 @@ from mmweaver.motion.language.clause_records import in_own_words, in_the_given_w
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.durations import in_seconds
+from mmweaver.motion.language.held import with_what_is_held
 from mmweaver.motion.language.left_out import (
     EXACT,
     LEAVING_OUT,
@@ -30,6 +31,7 @@ from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
+from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
@@ -41,6 +43,8 @@ LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
+_ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
+_WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
@@ -69,7 +73,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = in_seconds(_YOUR.sub("his", text))
+    text = reworded(in_seconds(_YOUR.sub("his", text)))
     try:
         return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
@@ -124,12 +128,15 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = in_sequence(parsed_clauses, leaving)
+    sequence = _at_one_gait(in_sequence(parsed_clauses, leaving), given_text)
+    on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
         taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
-        if step.lower == "put_down" and taken[-1:] == ["reach"]:  # what was taken from a table goes back there
+        if (
+            step.lower == "put_down" and taken[-1:] == ["reach"] and not on_the_floor
+        ):  # what was taken from a table goes back there
             sequence[number] = replace(step, lower="stand", upper="reach")
         if before.upper == "carry" and before.lower == "stand" and step.lower == "put_down":  # it is carried there
             walk = replace(before, lower="walk", place=step.place)
@@ -137,6 +144,10 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
+    said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
+    steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
+    for number, how in lost:
+        records[number] = records[number].lowered_to(APPROXIMATED, how)
     note_what_is_not_shown(given_text, every_clause, steps, records)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
@@ -145,11 +156,17 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leaving and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(given_text.strip()))
-    steps, clauses, said = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
+    steps, clauses, how_shown = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
     return MotionPlan(
-        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *said])), clauses=tuple(clauses),
+        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
+
+
+def _at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
+    """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
+    runs = any(step.lower == "jog" for step in steps) and not _WALKING.search(given_text.lower())
+    return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
 
 
 def _sideways_throughout(steps: list[Step]) -> list[Step]:
@@ -236,24 +253,17 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
-        other = _other_limb(found[-1].steps[-1], parsed)
-        other_side = _with_the_other_one(found[-1].steps[-1], parsed)
-        if other is None and other_side is not None:
-            found[-1].steps.append(other_side)
+        last = found[-1].steps[-1]
+        other, another = _other_limb(last, parsed), _another_step(last, parsed)
+        if other is not None:
+            found[-1].steps[-1] = overlay(last, other)
+        elif another is not None:
+            found[-1].steps.append(another)
             found[-1].forms.append("s")
-        elif other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
+        elif _goes_elsewhere(last, parsed):
             found[-1].go_on(parsed)
-        elif other is None and _faces_next(found[-1].steps[-1], parsed):
-            facing = parsed.about.facing or "towards"
-            found[-1].steps.append(Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,)))
-            found[-1].forms.append("s")
-        elif other is None and _once_more(found[-1].steps[-1], parsed):
-            found[-1].steps.append(replace(found[-1].steps[-1], direction=_own_side(parsed), clauses=(parsed.number,)))
-            found[-1].forms.append("s")
-        elif other is None:
-            found[-1].absorb(parsed)
         else:
-            found[-1].steps[-1] = overlay(found[-1].steps[-1], other)
+            found[-1].absorb(parsed)
     elif parsed.steps and _says_more_of_it(found, parsed):
         last, more = found[-1].steps[-1], parsed.steps[0]
         found[-1].steps[-1] = replace(
@@ -282,6 +292,17 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     return None
 
 
+def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
+    """The next step that a clause without a verb asks for: the last one with the other hand, to another side, ..."""
+    other_side = _with_the_other_one(last, parsed)
+    if other_side is not None or _goes_elsewhere(last, parsed):
+        return other_side
+    if _faces_next(last, parsed):
+        facing = parsed.about.facing or "towards"
+        return Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,))
+    return _to_the_other_side(last, parsed) if _once_more(last, parsed) else _again_otherwise(last, parsed)
+
+
 def _faces_next(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next turn to something: 'turns to the window, then to the radar'."""
     aimed = parsed.about.facing or any(word.text in RADAR for word in parsed.words)
@@ -293,6 +314,22 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
     other_side = parsed.link == "and" and last.direction == OPPOSITE.get(parsed.about.direction)
     return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
+
+
+def _to_the_other_side(last: Step, parsed: ParsedClause) -> Step:
+    if last.facing in OPPOSITE:  # "faces left, then right"
+        return replace(last, facing=parsed.about.direction, direction="", clauses=(parsed.number,))
+    return replace(last, direction=_own_side(parsed), clauses=(parsed.number,))
+
+
+def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
+    """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
+    about = parsed.about
+    if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
+        return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
+    if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
+        return replace(last, speed=about.speed, clauses=(parsed.number,))
+    return None
 
 
 def _own_side(parsed: ParsedClause) -> str:
@@ -309,7 +346,10 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     counted = parsed.link == "and" and bool(about.count)  # "twice with the right fist and once with the left"
     in_turn = parsed.link in ("then", "comma") or aimed or counted
     side = about.hand or about.foot or about.direction
-    if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
+    if side == "both" and parsed.link in ("then", "comma") and last.hand in OPPOSITE and not last.moves:
+        return replace(last, hand="both", count=about.count or last.count, clauses=(parsed.number,))
+    is_aim = last.hand and not about.hand and not aimed and any(word.text == "to" for word in parsed.words)
+    if is_aim or not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
     limb = {"hand": side} if last.hand else {"foot": side}
     return replace(last, **limb, count=about.count or last.count, clauses=(parsed.number,))
@@ -317,15 +357,15 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
 
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
-    direction = parsed.about.direction
+    direction, came_back = parsed.about.direction, last.lower == "sidestep" and len(last.clauses) > 1
     ahead = ("forwards", "backwards", "back")
     sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
     sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
     measured = bool(parsed.about.seconds or parsed.about.distance_m)  # "to the left for 3 s and to the right for 5 s"
     return (
-        (parsed.link in ("then", "comma") or (parsed.link == "and" and measured))
+        (parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep")))
         and last.lower in ("walk", "jog", "sidestep")
-        and direction != last.direction
+        and (direction != last.direction or (parsed.link == "then" and came_back))
         and not last.arc_deg
         and sideways
     )

@@ -40,6 +40,18 @@ _WALKS_ON = re.compile(
     r"\b(?:walk|go|run|jog|mov)(?:s|es|e|ning|ging|ing)? (?:straight )?on$|\b(?:continu|carr(?:y|ies) on|resum|keep)"
 )
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
+_TURNING_JUMPS = {(jump, "turn", "ing") for jump in ("jump", "leap", "hop")}
+# What goes on for as long as there is time, so that what "and" adds happens meanwhile.
+_GOING_ON = {"dance", "march", "hop", "twist"}
+_PLAYED = {"guitar", "violin"}
+_LOW = {
+    "bend",
+    "lean",
+    "crouch",
+    "squat",
+    "one_leg",
+    "raise_leg",
+}  # the hands do what "and" adds before the body comes up
 
 
 def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
@@ -67,6 +79,11 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
             is_last = i + 1 == len(parsed_clauses)
             if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed, is_last=is_last):  # "dances, jumping"
                 parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
+            if steps and (steps[-1].lower, first.lower, parsed.form) in _TURNING_JUMPS and parsed.link == "comma":
+                parsed.lost.append("the turn in the air is shown after the jump")
+            low = bool(steps) and steps[-1].lower in ("crouch", "lean")
+            if low and first.moves and parsed.link == "and":  # "ducks and steps aside"
+                parsed.lost.append(f"{first.name} is shown upright, after {steps[-1].name}")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
             in_turn = form == "s" and steps[-1].moves  # "walks forward lifts the arms"
@@ -176,9 +193,11 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
     one, other = before.steps[-1], parsed.steps[0]
     if parsed.link == "comma" and parsed.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
         return True
-    if parsed.link == "while":
+    if parsed.link == "while" or _is_its_gait(before, parsed):
         return True
     compatible = _can_overlay(one, other)
+    if parsed.link == "and" and compatible and _is_meanwhile(one, other):
+        return True
     if parsed.link == "and":
         if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
             return True  # one hand stays where it is
@@ -187,6 +206,26 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         paces = any(step.count and step.moves for step in (one, other))
         return compatible and before.form == parsed.form == "ing" and not paces
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
+
+
+def _is_its_gait(before: ParsedClause, parsed: ParsedClause) -> bool:
+    """Whether a limp or a stagger is how the walk before goes: 'walks, limping', 'has a limp and walks'."""
+    one, other = before.steps[-1], parsed.steps[0]
+    if parsed.link not in ("comma", "and") or one.upper or other.upper:
+        return False
+    uneven = ("limp", "stagger")
+    described = one.lower == "walk" and other.lower in uneven and parsed.form == "ing" and not other.direction
+    return described or (one.lower in uneven and other.lower == "walk" and one.clause.endswith("a limp"))
+
+
+def _is_meanwhile(one: Step, other: Step) -> bool:
+    """Whether what "and" adds happens during the first: 'dances and claps', 'leans over and wipes'."""
+    if other.lower in _GOING_ON and not (other.upper or other.moves):
+        return one.upper in _PLAYED and one.lower in ("stand", "sit")
+    hands = other.upper not in ("", "stretch") and other.lower == "stand" and not (other.on_feet or other.seconds)
+    if one.upper or one.moves or one.count > 1 or one.seconds or not hands:
+        return False
+    return one.lower in _GOING_ON | _LOW
 
 
 def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause, *, is_last: bool) -> bool:
@@ -222,7 +261,7 @@ def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
         return None
     hand = one.hand or OPPOSITE.get(other.hand, "right")
     pair = replace(one, hand=hand), replace(other, hand=OPPOSITE[hand])
-    return pair[::-1] if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
+    return (pair[1], pair[0]) if other.upper in AT_THE_HEAD and one.upper not in AT_THE_HEAD else pair
 
 
 def overlay(one: Step, other: Step) -> Step:
@@ -254,6 +293,7 @@ def overlay(one: Step, other: Step) -> Step:
         upper=upper.upper,
         hand=upper.hand,
         count=upper.count or (0 if lower.moves else lower.count),
+        style="held" if lower.lower in ("bend", "lean") else lower.style,
         direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,

@@ -35,6 +35,9 @@ OTHER_VERBS = words_in(
     camp care carve catch change charge chase chat check chew chop climb close coach collect cough count cover
     crash crawl creep cry curl cut dig dive draw dream dress drill drive drop drum dry escape exercise explode
     fail fan fasten feed fight fill film find fix flap float fly follow fry gather gaze glue grin grip groan guess
+    joke fake spike smack mark sin lump trap map clip pat swat rot band sand bind wade fade thread pave rave starve
+    graze lace lance sow saw claw paw lunch pinch match cull heal seal retch cope slope drape skim heap reap beep drawl
+    list waste ease gasp skate
     handle hang wave wag speak stare store stir star strain train trim tap tape taste trade
     """
 )

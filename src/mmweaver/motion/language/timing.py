@@ -164,6 +164,8 @@ def _limits(step: Step) -> tuple[float, float]:
     doing = BY_KEY[step.upper or step.lower]
     if step.upper and BY_KEY[step.lower].once and step.posture != "feet":  # "sits down reading"
         doing = BY_KEY[step.lower]
+    if step.count and not doing.counted_s:  # "squats three times with the hands on the hips"
+        doing = BY_KEY[step.lower]
     if step.count and doing.counted_s:
         least, natural, edges = doing.counted_s
         slower = 1.25 if step.speed < 0 else 1.0

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import HOPPING, Step
@@ -14,6 +15,7 @@ LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "r
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
+SEVERAL_TIMES = 3  # "repeatedly", "several times"
 SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
@@ -55,6 +57,9 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         step = _in_place(step, words)
     else:
         step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+    if "repeatedly" in texts and not (step.count or step.seconds or step.lower in GAITS):
+        counted = BY_KEY[step.upper or step.lower].counted_s is not None
+        step = replace(step, count=SEVERAL_TIMES if counted else 0)
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
 
 
@@ -252,7 +257,7 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
     word = words[at]
     still = word.lemma == "kneel" and word.form == "ing"
     lower = "kneel_up" if word.lemma == "kneel_up" else "kneel" if still else "kneel_down"
-    style = "knee" if {other.text for other in words} & ON_ONE_LEG else step.style
+    style = "knee" if {other.text for other in words} & (ON_ONE_LEG | {"one_knee"}) else step.style
     return replace(step, lower=lower, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
 
 

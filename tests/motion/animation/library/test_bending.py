@@ -33,3 +33,8 @@ def test_who_twists_turns_the_shoulders_both_ways_over_feet_that_stay():
     angle = np.unwrap(np.arctan2(across[:, 1], across[:, 0]))
     assert np.ptp(angle) > 1.2
     assert np.ptp(joints_m[:, joint("left_ankle"), :2], axis=0).max() < 0.05
+
+
+def test_who_stays_bent_is_down_until_the_end_of_the_step():
+    ahead_m, _ = _head_relative_to_pelvis("bends down and stays bent over for four seconds")
+    assert (ahead_m > 0.25).mean() > 0.5

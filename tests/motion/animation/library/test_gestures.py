@@ -90,3 +90,13 @@ def test_a_waving_hand_also_comes_and_goes():
     assert min(shares) > 0.1
     assert max(shares) < 0.67
     assert np.median(shares) > 0.2
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_who_has_turned_points_to_the_side_that_is_named(seed: int):
+    """Left in the photo is x < 0; what counts is the heading of the pointing step, not that of the walk before."""
+    plan = plan_motion("a person walks away for five seconds, turns around and points to the left")
+    pose = compose(plan, room(), seed=seed, range_window_m=WINDOW_M).pose.joints_m[-int(1.6 * 120) :]
+    across = [pose[:, wrist, 0] - pose[:, joint("neck"), 0] for wrist in (LEFT_WRIST, RIGHT_WRIST)]
+    assert np.min(across) < -0.4
+    assert np.max(across) < 0.4

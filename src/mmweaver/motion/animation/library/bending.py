@@ -45,12 +45,20 @@ def _hinge(controls: Controls, height_m: float, down: PerTime, angle_rad: float)
     controls.knee_room[:] = np.maximum(controls.knee_room, 0.5 * down)
 
 
+def _spells(context: StepContext, usual_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
+    """(start, duration) of each time that the body is down, in seconds; once, all the time, where it is held."""
+    if context.step.style == "held":
+        return [(context.start_s, context.duration_s)]
+    return list(repeats(context, usual_s, least_s, most_s))
+
+
 def bending(context: StepContext) -> Controls:
     """Far down with nearly straight legs, the hands towards the feet, and up again."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     deep = float(context.rng.uniform(1.35, 1.75))
-    for begin, lasts in repeats(context, 2.3, 1.5, 3.4):
-        down = plateau(time_s, begin, begin + lasts, 0.42 * lasts, 0.42 * lasts)
+    for begin, lasts in _spells(context, 2.3, 1.5, 3.4):
+        move = 0.42 * min(lasts, 3.4)
+        down = plateau(time_s, begin, begin + lasts, move, move)
         _hinge(controls, h, down, deep)
         shift_pelvis(controls, 0.0, 0.0, -0.025 * h * down)
         controls.arm_rad[:, :, 0] += (0.95 * deep * down)[:, None]
@@ -61,8 +69,9 @@ def leaning(context: StepContext) -> Controls:
     """The trunk leans to one side or back and comes up; to both sides in turn where none is named."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     deep = float(context.rng.uniform(0.4, 0.6))
-    for k, (begin, lasts) in enumerate(repeats(context, 2.0, 1.2, 3.0)):
-        down = plateau(time_s, begin, begin + lasts, 0.4 * lasts, 0.4 * lasts)
+    for k, (begin, lasts) in enumerate(_spells(context, 2.0, 1.2, 3.0)):
+        move = 0.4 * min(lasts, 3.0)
+        down = plateau(time_s, begin, begin + lasts, move, move)
         if context.step.direction == "backwards":
             shift_pelvis(controls, 0.05 * h * down, 0.0, -0.01 * h * down)
             controls.pelvis_rad[:, 1] -= 0.15 * deep * down

@@ -18,10 +18,18 @@ from mmweaver.motion.animation.step_context import StepContext
 
 
 def _held(context: StepContext, up_s: float = 0.6) -> np.ndarray:
-    """(n,) rises to 1 at the step's start and falls at its end, unless no step is before or after."""
+    """(n,) rises to 1 at the step's start and falls at its end, unless the arms are held so before or after it."""
     move = min(up_s, 0.4 * context.duration_s)
-    begin = rise((context.time_s - context.start_s) / move) if not context.first else np.ones_like(context.time_s)
-    return begin if context.last else begin * rise((context.end_s + 0.2 - context.time_s) / move)
+    rising = not (context.first or context.arms_before)
+    begin = rise((context.time_s - context.start_s) / move) if rising else np.ones_like(context.time_s)
+    falling = not (context.last or context.arms_after)
+    return begin * rise((context.end_s + 0.2 - context.time_s) / move) if falling else begin
+
+
+def _heading_rad(context: StepContext, controls: Controls) -> float:
+    """Where the body faces during the step, whatever came before."""
+    meanwhile = (context.time_s >= context.start_s) & (context.time_s <= context.end_s)
+    return float(np.median(controls.heading_rad[meanwhile] if meanwhile.any() else controls.heading_rad))
 
 
 def pointing(context: StepContext, controls: Controls) -> Controls:
@@ -32,7 +40,7 @@ def pointing(context: StepContext, controls: Controls) -> Controls:
     if goal is None:
         aside = 0.0 if context.step.facing else float(rng.uniform(-0.5, 0.1))
     else:  # the angle to the body's left
-        left = (goal - float(np.median(controls.heading_rad)) + np.pi) % (2 * np.pi) - np.pi
+        left = (goal - _heading_rad(context, controls) + np.pi) % (2 * np.pi) - np.pi
         if not context.step.hand:
             side = LEFT if left > 0 else RIGHT
         aside = float(np.clip(left if side == LEFT else -left, -0.6, 1.5))
@@ -78,7 +86,7 @@ def looking_around(context: StepContext, controls: Controls) -> Controls:
         return controls
     if facing in ("left", "right"):
         sign = -1.0 if facing == "left" else 1.0  # the viewer's side of somebody who may face anywhere
-        sign *= 1.0 if np.sin(float(np.median(controls.heading_rad))) < 0 else -1.0
+        sign *= 1.0 if np.sin(_heading_rad(context, controls)) < 0 else -1.0
         yaw = sign * wide * plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
     else:
         at = [begin + share * lasts for share in (0.0, 0.25, 0.4, 0.7, 0.82, 1.0)]

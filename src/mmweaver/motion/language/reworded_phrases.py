@@ -1,0 +1,99 @@
+"""Rewordings of a sentence before anything else of it is read: a few words that mean one thing only together."""
+
+import re
+from collections.abc import Callable
+
+_OWN = r"(?:(?:the|his|her|their|its) )"
+_TO = rf"(?:to (?:{_OWN})?|towards {_OWN}?)?"
+_GAIT = r"(?:walk|run|jog|mov|go|step|head|march|stroll)(?:s|es|ing|ning|ging|ping|ed)?"
+_SLIGHTLY = r"(?:slightly|a (?:little )?bit|a little|somewhat)"
+_ENDS = r"(?= *(?:$|[.,;]| and\b| then\b| before\b))"
+_DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lowers? (?:him|her|them)self|falls?)"
+_ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
+
+
+def _limps(found: re.Match[str]) -> str:
+    limp = "limping" if found["ending"] == "ing" else "limps"
+    return f"{limp}{found['way']}" + (f" with the {found['side']} leg" if found["side"] else "")
+
+
+def _left_then_right(found: re.Match[str]) -> str:
+    limb = {"feet": "foot"}.get(found["limb"], found["limb"].removesuffix("s"))
+    often = found["often"] or ""
+    verb = f"{found['verb']} {found['with'] or ''}"
+    return f"{verb}the left {limb}{often}, then {verb}the right {limb}{often}"
+
+
+def _one_then_other(found: re.Match[str]) -> str:
+    verb, limb = found["verb"], found["limb"] or ("hand" if found["verb"].startswith("punch") else "leg")
+    how = "the" if verb.startswith(("rais", "lift")) else "on the" if verb.startswith("hop") else "with the"
+    return f"{verb} {how} {found['one']} {limb}, then {verb} {how} {found['other']} {limb}"
+
+
+def _one_and_the_other(found: re.Match[str]) -> str:
+    doing, limb, more = f"{found['verb']} {found['how']}", found["limb"], found["more"]
+    return f"{doing}the left {limb}{more}, then {doing}the right {limb}{more}"
+
+
+def _whole_turns(found: re.Match[str]) -> str:
+    return f"turns {360 * _TURNS.index(found['times'].lower())} degrees"
+
+
+_TURNS = ["", "", "two", "three", "four", "five"]
+
+# Replaced in this order.
+_REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"\b(?:over and over(?: again)?|again and again|time and (?:time )?again)\b", "repeatedly"),
+    (r"\ba couple (?=times\b|(?:more |small |quick |slow )?steps\b)", "two "),
+    (r"\bwhile (?:still )?standing (?:still|upright|in place)(?=$|[,.])", "while standing"),
+    (r"\b(crawl(?:s|ing)?(?: [a-z]+){0,2}?) on (?:(?:his|her|their|the|both) )*(?:hands and (?:knees|feet)|knees and hands|all fours)\b", r"\1"),
+    (r"\bstill,? like an? (?:statue|stone|rock|log|tree)\b", "still"),
+    (r"(?<!\bof )(?<!\bafter )(?<!\bduring )(?<!\bin )(?<!\bwith )(?<!\bfor )(?<!\bbetween )(?<!\bto )\bthe (?=(?:goes|walks|runs|sits|stands|comes|picks|bends|raises|lowers)\b)", "then "),
+    # ways
+    (r"(?<!the )(?<!turns )(?<!turn )(?<!turning )(?<!his )(?<!her )(?<!their )\bright (?=(?:across|through|past|up to)\b)", ""),
+    (rf"\b({_GAIT}) straight back(?:wards?)?{_ENDS}", r"\1 back"),
+    (rf"\b(turns?|turning) {_TO}(left|right) to turn around\b", r"\1 around to the \2"),
+    (rf"\bforwards?,? (?:and |but )?{_SLIGHTLY} (?:to|towards) {_OWN}?(left|right)\b", r"in a slight curve to the \1"),
+    (rf"\b((?:walk|run|jog)(?:s|ing|ning|ging)?(?: [a-z]+ly)?) {_SLIGHTLY} (?:(?:to|towards) {_OWN}?)?(left|right)\b(?! (?:hand|foot|leg))", r"\1 in a slight curve to the \2"),
+    (r"\b(?:walk|mov|go|step)(?:s|es|(?P<ending>ing))?(?P<way>(?: [a-z]+){0,3}?) with an? (?:(?:slight|heavy|bad|pronounced|visible|little|strong) )*limp\b(?: (?:on|in|with|of) (?:the|his|her|their) (?P<side>left|right) (?:leg|foot|side))?", _limps),
+    (r"\b(?:walk|stroll|mov|go)(?P<ending>s|es|ing)?\b(?P<way>[^.;]*?),? (?:(?:and|while|who|that) )?(?:(?:as (?:if|though)|like)(?: (?:he|she|they|it))? ?)?(?:(?:seem|look|appear|act|is|are|was|were)(?:s|ing)?(?: to be| like)? )?(?:an? )?(?:very )?drunk(?:en)?(?: person| man| woman| guy)?(?= *(?:$|[.,;]| and\b| then\b))", lambda found: f"stagger{'ing' if found['ending'] == 'ing' else 's'}{found['way']}"),
+    (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|{_OWN}?(?:both )?(?:arms|hands)) (?:to )?(?:fall|drop|go|hang|sink)\b(?! straight)(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
+    (rf"\bun(?:fold|cross)(?:s|es|ing)? (?:them|{_OWN}?arms)\b", "lowers them"),
+    # postures
+    (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
+    (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),
+    (rf"\b{_DOWN}{_ADVERBS}(?: down)?{_ADVERBS} (?:on|onto|to) (?:one|a|a single) knee\b", "kneels down one_knee"),
+    (rf"\b{_DOWN}{_ADVERBS}(?: down)?{_ADVERBS} (?:on|onto|to) (?:the|his|her|their) (left|right) knee\b", r"kneels on the \1 knee"),
+    (r"\b(?:stays?|remains?|holds?|keeps?|staying|remaining|holding)(?: (?:down )?in)? (?:an? |the )?(?:deep |low |half )?(?:squat|crouch)(?:ing|ed)?(?: (?:position|pose|posture|stance))?\b", "crouches"),
+    (r"\b(?:gets?|getting|drops?|dropping)(?: down)? into an? (?:deep |low )?(?:squat|crouch)(?:ing)?(?: (?:position|pose|posture|stance))?\b", "squats"),
+    (r"\b(?:gets?|stands?|rises?|comes?|getting|standing|rising|coming)(?: back)? up from an? (?:squat|crouch)(?:ing|ed)?(?: (?:position|pose|posture|stance))?\b", "crouches, then stands up"),
+    (r"\b((?:squat|crouch|bend|lean)(?:s|es|ing|ting)?\b[^.;]{0,40}?(?:,| and| then)+) (?:stay|remain|hold|keep|wait|paus|freez)(?:s|es|ing|e)?(?: (?:still|it|there|low|down|bent|crouched|put|so|bent over|like that|like this|(?:in )?(?:(?:the|that|this) )?(?:position|posture|pose|squat|stretch|crouch|bend)))+(?=$|[,.;]| and\b| then\b| before\b| for\b)", r"\1 stays"),
+    (r"\b(?!stand|end|finish|start|begin|keep|try|is\b|are\b|was\b|th[ei]s\b|always\b|legs\b|arms\b|knees\b|hands\b|his\b)([a-z]+(?:s|ing)\b(?: (?!and\b|then\b|before\b|after\b|while\b|from\b|by\b|as\b|is\b|are\b|keeps\b|starts\b|begins\b)[a-z]+){0,5}?) (?:while )?standing up(?= *(?:$|[.,;]| and\b| then\b))", r"\1 while standing"),
+    (r"\b((?:rais|lift)(?:es|s|ing) [^,.;]{0,20}?(?:leg|knee|foot|arm)\b[^.;]{0,20}?(?:,| and| then)+) (?:stay|remain|hold|keep)(?:s|es|ing)? (?:still|it there|there|so|like that|like this|(?:in )?(?:the|that|this) (?:position|posture|pose))(?=$|[,.;]| and\b| then\b| before\b| for\b)", r"\1 stays"),
+    # whole turns
+    (r"\b(?:mak|do|perform|tak|complet|execut)(?:es|s|ing)? (?P<times>two|three|four|five) (?:full|complete|whole|360[- ]degrees?) (?:turns|spins|rotations)\b", _whole_turns),
+    (r"\b(turn|spin|rotat)(s|es|ing|ning)?(?: around)? (?P<times>two|three|four|five) (?:full|complete|whole) (?:turns|circles|times|rotations)\b", _whole_turns),
+    (r"\b(?:an? |one )?(?:full |whole |complete )?(?:circle|turn|rotation)s? and a half\b|\bone and a half (?:turns|circles|rotations)\b", "540 degrees"),
+    (r"\b(?P<verb>[a-z]+(?:s|ing)) (?P<how>(?:up )?(?:with |on )?)(?:one|a) (?P<limb>arm|hand|leg|foot|knee|fist)(?P<more>(?: (?!and|then)[a-z]+){0,3}?)(?:,| and| then)+ (?:with |on )?the other(?: (?P=limb)| one)?(?=$|[,.;]| and\b| then\b)", _one_and_the_other),
+    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:held )?out\b(?: (?:for balance|for stability|(?:to|at|from) (?:{_OWN}|both )?sides?|wide|sideways))*(?! (?:in|ahead|forwards?|straight|of|like|as)\b)", r"with \1 held out to the sides"),
+    (r"\b(wav(?:es|ing)(?: [a-z]+){0,3}? (?:hands?|arms?)) in the air\b", r"\1"),
+    # each leg in turn
+    (r"\b(?P<verb>(?:kick|stomp|stamp|hop|punch)(?:s|es|ing|ping))(?: (?:alternately|alternatingly|in turn))? (?:with |on )?(?:(?:the|his|her|their) )?(?P<one>left|right)(?: (?:leg|foot|hand|arm|fist))? and (?:(?:the|his|her|their) )?(?P<other>left|right)(?: (?P<limb>leg|foot|hand|arm|fist))?(?: (?:alternately|alternatingly|in turn))?(?=$|[,.;]| and\b| then\b)", _one_then_other),
+    (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?:(?:the|his|her|their) )?(?P<one>left|right) (?:leg|knee|foot) and (?:(?:the|his|her|their) )?(?P<other>left|right) (?P<limb>leg|knee|foot)(?: (?:alternately|alternatingly|in turn))?\b", _one_then_other),
+    (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?P<with>)(?:each|both|alternating|(?:his|her|their|the) alternate) (?:of (?:his|her|their) )?(?:(?:his|her|their) )?(?P<limb>legs?|feet|foot|knees?)\b(?: (?:up|alternately|alternatingly|in turn|one after the other|one at a time))*(?P<often> twice| once| (?:two|three|four|five|\d+) times)?", _left_then_right),
+    (r"\b(?P<verb>(?:kick|stomp|stamp|hop)(?:s|ing|ping)) (?P<with>with |on )(?:each|both|alternating|alternate) (?P<limb>legs|feet) (?:alternately|alternatingly|in turn|one after the other|one at a time)(?P<often>)", _left_then_right),
+    (r"\b(?P<verb>(?:kick|stomp|stamp|hop)(?:s|ing|ping)) (?P<with>with |on )(?:each|alternating|alternate) (?P<limb>legs?|foot|feet)(?P<often> twice| once| (?:two|three|four|five|\d+) times)?\b", _left_then_right),
+    (rf"\btwist(s|ing) (?:to )?{_OWN}?(?:left and (?:then )?(?:to )?{_OWN}?right|right and (?:then )?(?:to )?{_OWN}?left)\b", r"twist\1 the upper body"),
+)  # fmt: skip
+_COMPILED = [(re.compile(pattern, re.IGNORECASE), replacement) for pattern, replacement in _REWORDINGS]
+
+
+def reworded(text: str) -> str:
+    """The sentence with words put otherwise that mean something else alone; itself where there are none.
+
+    >>> reworded("a person walks forward with a limp on the right leg")
+    'a person limps forward with the right leg'
+    """
+    for pattern, replacement in _COMPILED:
+        text = pattern.sub(replacement, text)
+    return text

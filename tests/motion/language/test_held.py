@@ -1,0 +1,82 @@
+"""Postures last until a clause says otherwise: arms that are folded or held out, a body that stays down."""
+
+import pytest
+
+from mmweaver.motion.language.sentence import parse
+
+
+def doing(text: str) -> list[tuple[str, str]]:
+    return [(step.lower, step.upper) for step in parse(f"a person {text}", in_part=True).steps]
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("folds the arms and waits", [("stand", "cross_arms")]),
+        ("sits down, folds his arms and waits", [("sit_down", ""), ("sit", "cross_arms")]),
+        ("stretches the arms out and stands on one leg", [("stand", "arms_out"), ("one_leg", "arms_out")]),
+        ("puts the hands on the hips and squats twice", [("stand", "hips"), ("squat", "hips")]),
+        ("raises both arms and waits", [("stand", "raise_hold")]),
+        ("raises the right arm, keeps it up and walks forward", [("stand", "raise_hold"), ("walk", "raise_hold")]),
+    ],
+)
+def test_arms_stay_where_they_are(text: str, steps: list[tuple[str, str]]) -> None:
+    assert doing(text) == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "last"),
+    [
+        ("stretches the arms out, lowers them and waits", ("stand", "")),
+        ("folds the arms and kneels down and crawls", ("crawl", "")),
+        ("folds the arms and waves", ("stand", "wave")),
+        ("sits with his arms stretched out, he puts his hands in his lap", ("sit", "")),
+    ],
+)
+def test_arms_do_not_stay_where_they_are_needed_or_brought_back(text: str, last: tuple[str, str]) -> None:
+    assert doing(text)[-1] == last
+
+
+@pytest.mark.parametrize(
+    ("text", "lower", "style"),
+    [
+        ("squats, holds the position, then stands up", "crouch", ""),
+        ("crouches down and stays low", "crouch", ""),
+        ("bends down and remains bent over", "bend", "held"),
+        ("leans to the left and stays there", "lean", "held"),
+        ("leans back and stays there for a moment", "lean", "held"),
+    ],
+)
+def test_who_stays_down_is_not_up_again(text: str, lower: str, style: str) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert [(step.lower, step.style) for step in plan.steps] == [(lower, style)]
+    assert all(clause.status == "done" for clause in plan.clauses)
+
+
+def test_a_posture_that_is_held_for_a_time_lasts_that_long() -> None:
+    (step,) = parse("a person crosses the arms and waits for five seconds").steps
+    assert step.seconds > 5.0
+
+
+def test_a_posture_that_cannot_be_held_is_said() -> None:
+    clauses = parse("a person lunges forward and holds the position", in_part=True).clauses
+    assert "the posture is not kept" in clauses[-1].how
+
+
+def test_arms_that_come_down_for_the_head_are_said() -> None:
+    clauses = parse("a person puts the hands on the hips and looks around").clauses
+    assert clauses[-1].how == "hands on the hips ends before it"
+
+
+def test_a_raised_arm_stays_up_for_what_and_adds_not_for_what_follows() -> None:
+    assert doing("raises the left arm and walks forward")[-1] == ("walk", "raise_hold")
+    assert doing("raises the left arm, then walks forward")[-1] == ("walk", "")
+
+
+def test_the_hand_that_was_raised_does_what_comes_next() -> None:
+    for text in ("raises the left hand and scratches the head", "stretches the left arm out and points"):
+        assert parse(f"a person {text}", in_part=True).steps[-1].hand == "left"
+
+
+def test_who_stands_on_one_leg_moves_the_arms_there() -> None:
+    assert doing("stands on the left leg and stretches the arms out") == [("one_leg", "arms_out")]

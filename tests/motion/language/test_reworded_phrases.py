@@ -1,0 +1,171 @@
+"""Rewordings of what means one thing only together, and what becomes of them."""
+
+import pytest
+
+from mmweaver.motion.language.reworded_phrases import reworded
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.verbs import words_in
+
+
+@pytest.mark.parametrize(
+    ("text", "other"),
+    [
+        ("walks with a slight limp on the right leg", "limps with the right leg"),
+        ("is walking forward with a limp", "is limping forward"),
+        ("turns left to turn around", "turns around to the left"),
+        ("walks right across a street", "walks across a street"),
+        ("turns right across from the door", "turns right across from the door"),
+        ("makes two full turns to the right", "turns 720 degrees to the right"),
+        ("types standing up", "types while standing"),
+        ("is standing up", "is standing up"),
+        ("plays the violin the goes back", "plays the violin then goes back"),
+        ("kicks with the left and right leg", "kicks with the left leg, then kicks with the right leg"),
+        ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
+    ],
+)
+def test_rewordings(text: str, other: str) -> None:
+    assert " ".join(reworded(f"a person {text}").split()) == f"a person {other}"
+
+
+@pytest.mark.parametrize(
+    ("text", "foot"),
+    [
+        ("kneels down on one knee", ""), ("drops to one knee and stays", ""), ("goes down on the left knee", "left"),
+        ("is kneeling on one knee", ""), ("lowers himself onto his right knee", "right"),
+    ],
+)  # fmt: skip
+def test_one_knee_is_one_knee_in_any_words(text: str, foot: str) -> None:
+    step = parse(f"a person {text}", in_part=True).steps[0]
+    assert step.lower in ("kneel", "kneel_down")
+    assert (step.style, step.foot) == ("knee", foot)
+
+
+@pytest.mark.parametrize(
+    ("text", "lowers"),
+    [
+        ("walks with a limp", "limp"),
+        ("walks, limping with the left leg", "limp"),
+        ("has a limp and walks to the door", "limp"),
+        ("leans forward and touches the toes", "bend"),
+        ("bends at the waist and touches his toes", "bend"),
+        ("bends forward as if to bow", "bend"),
+        ("is walking and seems to be drunk", "stagger"),
+        ("jumps and turns 180 degrees in the air", "jump turn"),
+        ("jumps, spinning 180 degrees", "jump turn"),
+        ("stays in a squat for five seconds", "crouch"),
+        ("gets up from a crouching position", "crouch stand"),
+        ("does a motion of throwing a skipping rock", "stand"),
+        ("walks forward; right, left, right, left, moving three paces", "walk"),
+        ("types standing up", "stand"),
+        ("plays the piano standing up", "stand"),
+    ],
+)
+def test_each_movement_comes_once(text: str, lowers: str) -> None:
+    steps = parse(f"a person {text}", in_part=True).steps
+    assert [step.lower for step in steps if step.clause or step.lower != "stand"] == lowers.split()
+
+
+@pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        ("jumps and spins in mid air", "after the jump"),
+        ("jumps, spinning 180 degrees", "after the jump"),
+        ("jogs and then speeds up", "a change of speed"),
+        ("walks faster and faster", "a change of speed"),
+        ("lunges with both legs", "'both'"),
+        ("ducks and side steps to the left", "upright"),
+    ],
+)
+def test_what_is_shown_otherwise_is_said(text: str, how: str) -> None:
+    assert how in "; ".join(clause.how for clause in parse(f"a person {text}", in_part=True).clauses)
+
+
+def test_counts_and_ways() -> None:
+    jumps, turn, bend = (
+        parse(f"a person {text}").steps[0]
+        for text in (
+            "jumps forward repeatedly",
+            "turns a full circle and a half",
+            "walks forward, slightly to the left",
+        )
+    )
+    assert (jumps.count, abs(turn.turn_deg), bend.arc_deg > 0) == (3, 540.0, True)
+    assert parse("a person walks straight back").steps[0].direction in words_in("back backwards")
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("squats and returns to the starting position", [("squat", ""), ("stand", "")]),
+        ("turns left, then returns to the original position", [("turn", "left"), ("turn", "right")]),
+        ("walks forward and returns to the starting position", [("walk", "forwards"), ("walk", "back")]),
+    ],
+)
+def test_who_has_left_no_place_does_not_walk_back(text: str, steps: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.direction) for step in parse(f"a person {text}", in_part=True).steps] == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("raises one arm, then the other", "left right"),
+        ("kicks with one leg and then with the other", "left right"),
+        ("waves with the right hand, then the left, then both", "right left both"),
+        ("kicks alternately with the left and the right leg", "left right"),
+    ],
+)
+def test_one_and_then_the_other(text: str, sides: str) -> None:
+    steps = parse(f"a person {text}", in_part=True).steps
+    assert " ".join(step.hand or step.foot for step in steps if step.hand or step.foot) == sides
+
+
+def test_a_run_that_is_shown_as_two_curves_is_run_to_the_end() -> None:
+    for way in ("in a zigzag", "in a figure eight"):
+        assert {step.lower for step in parse(f"a person runs {way}", in_part=True).steps} == {"jog"}
+
+
+def test_what_is_put_on_the_floor_goes_there() -> None:
+    text = "a person takes something off a shelf with the right hand and puts it on the floor"
+    assert [step.lower for step in parse(text).steps][-1] == "put_down"
+
+
+def test_another_speed_or_way_round_is_another_step() -> None:
+    assert [step.speed for step in parse("a person waves slowly, then quickly").steps] == [-1, 1]
+    circles = parse("a person walks in a circle to the left and then in a circle to the right").steps
+    assert [step.arc_deg for step in circles] == [360.0, -360.0]
+    assert [step.facing for step in parse("a person faces left, then right").steps] == ["left", "right"]
+
+
+def test_a_speed_that_no_step_has_is_said() -> None:
+    plan = parse("a person squats slowly and stands up fast")
+    assert plan.clauses[-1].how == "'fast' is not shown"
+
+
+def test_arms_held_out_are_shown_on_one_leg_and_in_a_walk() -> None:
+    for text in ("balances on one foot with the arms out", "walks forward with his arms out for balance"):
+        assert parse(f"a person {text}", in_part=True).steps[-1].upper == "arms_out"
+
+
+def test_what_is_stepped_on_and_off_is_said() -> None:
+    clauses = parse("a person steps up onto a box and jumps off", in_part=True).clauses
+    assert ["stepped on" in clauses[0].how, "jumped off" in clauses[1].how] == [True, True]
+
+
+def test_other_verbs_are_no_misspellings_of_movements() -> None:
+    assert [step.name for step in parse("this person waves off as if joking", in_part=True).steps] == ["waving"]
+
+
+def test_a_turn_of_who_crawls_is_said_to_be_shown_standing() -> None:
+    clauses = parse("someone crawls forward and turns around").clauses
+    assert "standing, after getting up" in clauses[-1].how
+
+
+def test_a_way_back_does_not_use_up_the_side_after_it() -> None:
+    steps = parse("a person steps to the left, back to the center, and then to the right").steps
+    assert [step.direction for step in steps] == ["left", "right", "right"]
+
+
+def test_right_after_is_a_side_of_a_turn() -> None:
+    plan = parse("a person walks three steps forward and turns right after each step")
+    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", "forwards"), ("turn", "right")]
+    assert "each" in plan.clauses[-1].how
