@@ -46,11 +46,6 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         return replace(walk, upper="carry", hand=step.hand)
     if step.lower in ("walk", "jog") and texts & {"drunken", "drunk"}:
         step = replace(step, lower="stagger")
-    if step.lower == "roll_over":
-        lower = "roll_in_bed" if step.seat else "roll_over"
-        return replace(step, lower=lower, style="", direction=step.direction if step.direction in SIDES else "")
-    if step.lower == "forward_roll":
-        return replace(step, direction="forwards", hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
@@ -100,6 +95,17 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
 def _goes_somewhere(step: Step, words: list[Word]) -> bool:
     """Whether somebody who carries something walks: a direction or a place to go to is named."""
     return bool(target_of(words)) or step.direction not in ("", "spot", "backwards")
+
+
+def _roll_over(step: Step, words: list[Word], at: int) -> Step:
+    del words, at
+    lower = "roll_in_bed" if step.seat else "roll_over"
+    return replace(step, lower=lower, style="", direction=step.direction if step.direction in SIDES else "")
+
+
+def _forward_roll(step: Step, words: list[Word], at: int) -> Step:
+    del at
+    return replace(step, direction="forwards", hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 
 def _in_place(step: Step, words: list[Word]) -> Step:
@@ -310,4 +316,6 @@ _BY_LOWER = {
     **dict.fromkeys(("kick", "roundhouse", "side_kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
     "lean": _leaning_step,
+    "roll_over": _roll_over,
+    "forward_roll": _forward_roll,
 }
