@@ -13,8 +13,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.recognition.generated_sequences import SequenceRecipe
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import STILL_MPS
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 STEP_MPS = 0.12  # of the velocities of things that move
@@ -93,7 +92,7 @@ def numbered_without_empty(recording: PointRecording, rng: np.random.Generator) 
 
 def without_static(recording: PointRecording, _: np.random.Generator) -> PointRecording:
     """Static clutter was removed, though the configuration says that it was not."""
-    return _kept(recording, np.abs(recording.cloud.radial_velocity_mps) > STILL_MPS)
+    return _kept(recording, is_moving(recording.cloud))
 
 
 def noisy_places(recording: PointRecording, rng: np.random.Generator) -> PointRecording:
@@ -134,9 +133,7 @@ CURTAIN = moving_object(most_points=3, fastest_mps=0.25, share=0.5)  # slowly to
 
 def with_ghost(recording: PointRecording, rng: np.random.Generator) -> PointRecording:
     """An echo of the body over a wall: some of its points again, farther away and on another side."""
-    body = recording.cloud.select(
-        (np.abs(recording.cloud.radial_velocity_mps) > STILL_MPS) & (rng.random(len(recording.cloud.frame)) < 0.5)
-    )
+    body = recording.cloud.select(is_moving(recording.cloud) & (rng.random(len(recording.cloud.frame)) < 0.5))
     farther, turn = rng.uniform(1.3, 1.8), rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 0.7)
     cos, sin = np.cos(turn), np.sin(turn)
     x, y = farther * (body.x_m * cos - body.y_m * sin), farther * (body.x_m * sin + body.y_m * cos)

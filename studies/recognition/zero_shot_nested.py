@@ -20,7 +20,7 @@ from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.window_features import STILL_MPS, feature_matrix, window_features
+from mmweaver.recognition.window_features import feature_matrix, window_features
 from mmweaver.recognition.zero_shot import COPIES, featurize
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest, in_first_half, read_cache
@@ -43,7 +43,7 @@ class Candidate:
 
 def feature_sets(window: PointRecording) -> dict[str, tuple[str, ...]]:
     """Names of the features in each set."""
-    moving, static = tuple(window_features(window)), tuple(body_features(window, STILL_MPS))
+    moving, static = tuple(window_features(window)), tuple(body_features(window))
     known = feature_matrix([window])[1]
     return {
         "moving points": tuple(name for name in known if name in moving),

@@ -6,14 +6,11 @@ python -m studies run zero_shot_pictures --recordings shared/data/pointclouds/ra
 import argparse
 from pathlib import Path
 
-import numpy as np
-
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.recognition.generated_windows import generate_window
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.window_features import STILL_MPS
 from studies.manifest import StudyRun
 from studies.study import Reads
 
@@ -34,9 +31,9 @@ def draw(
     for column, label in enumerate(real):
         for row, (title, one) in enumerate((("real", real[label]), ("generated", made[label]))):
             cloud, axis = one.cloud, axes[row, column]
-            range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+            range_m = cloud.range_m
             time_s = cloud.frame / one.frame_rate_hz
-            still = np.abs(cloud.radial_velocity_mps) < STILL_MPS
+            still = ~is_moving(cloud)
             axis.scatter(time_s[still], range_m[still], s=1, color="0.8", linewidths=0)
             shown = axis.scatter(
                 time_s[~still], range_m[~still], s=7, c=cloud.radial_velocity_mps[~still], cmap="coolwarm",

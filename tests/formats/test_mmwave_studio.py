@@ -11,7 +11,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
-from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_mmwave_studio_iq_order
+from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
 
 
 def chirp(start: int, end: int, mask: str) -> dict:
@@ -58,7 +58,7 @@ def test_the_radar_of_a_file(tmp_path: Path):
 
 @pytest.mark.parametrize(("swap", "iq_order"), [(0, "iq"), (1, "qi")])
 def test_the_iq_order(tmp_path: Path, swap: int, iq_order: str):
-    assert read_mmwave_studio_iq_order(written(tmp_path, SETUP, swap)) == iq_order
+    assert read_mmwave_studio(written(tmp_path, SETUP, swap)).lvds_iq_order == iq_order
 
 
 def changed(change: Callable[[Any], Any]) -> Any:

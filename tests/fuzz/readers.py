@@ -20,7 +20,6 @@ from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.formats.dca1000 import read_bin, write_bin
 from mmweaver.formats.dca_packets import read_pcap
-from mmweaver.formats.mmwave_studio import read_mmwave_studio_iq_order
 from mmweaver.formats.npz_files import (
     read_points_npz,
     read_poses_npz,
@@ -76,7 +75,6 @@ def _radars() -> list[Reader]:
     cfg = captures.CFG + FIRMWARE
 
     def studio(path: Path) -> Any:
-        read_mmwave_studio_iq_order(path)
         return load_radar(str(path))
 
     def ti(path: Path) -> Any:

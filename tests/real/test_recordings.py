@@ -13,7 +13,7 @@ from mmweaver.dsp.cube import radar_cube, remove_static, remove_static_adc
 from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import azimuth_axis_rad, moving_doppler, range_azimuth_power, range_doppler_power
 from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.mmwave_studio import read_mmwave_studio, read_mmwave_studio_iq_order
+from mmweaver.formats.mmwave_studio import read_mmwave_studio
 from mmweaver.formats.raw_npy import read_adc_npy
 
 
@@ -126,7 +126,7 @@ def test_its_room_stands_still(static_room: tuple[Path, RadarConfig]):
 def test_its_set_up_names_the_iq_order_that_does_not_mirror_range(static_room: tuple[Path, RadarConfig]):
     """Leakage and near clutter are the strongest of any indoor scene: I first has them at the near end."""
     folder, config = static_room
-    iq_order = read_mmwave_studio_iq_order(folder / "mmwaveDevice.mmwave.json")
+    iq_order = config.lvds_iq_order
     assert iq_order == "iq"
     near = {}
     for order in ("iq", "qi"):

@@ -8,6 +8,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
+from mmweaver.formats.npz_files import write_points_npz
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
 from mmweaver.recognition.task_file import RecordingSettings
@@ -36,6 +37,14 @@ def test_columns_are_what_their_names_say(tmp_path: Path):
     assert one.cloud.z_m[:2].tolist() == [3, 6]
     assert one.cloud.radial_velocity_mps[:2].tolist() == [-0.5, 1.0]
     assert one.cloud.snr_db[:2].tolist() == [20, 30]
+
+
+def test_points_that_mmweaver_wrote_need_no_columns(tmp_path: Path):
+    cloud = recording(0, 0, 2).cloud
+    write_points_npz(tmp_path / "points.npz", replace(cloud, x_m=np.array([1.0, 2.0, 3.0])))
+    found = read_task_recording(tmp_path / "points.npz", SETTINGS)
+    assert found.num_frames == 3
+    assert found.cloud.x_m.tolist() == [1, 2, 3]
 
 
 def test_an_empty_room_may_have_no_points(tmp_path: Path):

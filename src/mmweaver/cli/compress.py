@@ -222,6 +222,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(rows, indent=2))
         return 0
+    print("error over signal in dB, in the cells with signal and in all; less is better")
     print(f"{'codec':14} {'bytes':>8} {'signal dB':>10} {'all dB':>8} {'encode CPU s':>13} {'decode CPU s':>13}")
     for row in rows:
         if row["bytes"] is None:

@@ -31,7 +31,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument(
         "--recording", type=Path, action="append", default=[], metavar="PATH",
-        help="a result folder, a stream, a capture, a .dat, or a folder with a .bin and its .cfg; may be repeated",
+        help="a result folder, a stream, a capture, a .dat, or a folder with a .bin and its .cfg;"
+        " once more for each further one",
     )  # fmt: skip
     parser.add_argument(
         "--recogniser", type=Path, action="append", default=[], metavar="DIR",

@@ -16,7 +16,6 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 
 IDEAL_BOARD = Board()
-BOARD_NAMES = ("typical", "ideal")  # typical:N is the N-th typical board
 LARGEST_NUMBER = 2**31 - 1
 WIDEST_BAND_HZ = 10e9  # of one board
 # spread between boards: mean and standard deviation, or lowest and highest

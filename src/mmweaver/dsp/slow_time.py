@@ -5,20 +5,16 @@ turns the phase of its cell by 4 pi / wavelength a metre; displacement is positi
 Reference: docs/radar_primer.md, equation 7; Taubin, "Estimation of planar curves...", IEEE PAMI 13, 1991 (circle fit).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Complex, Float
 from scipy import fft
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
-from mmweaver.dsp.cube import doppler_weight, tdm_compensation
 from mmweaver.dsp.windows import hann
 
 FEWEST_FRAMES = 8
-WINDOW_FRAMES = 64  # of a slow-time Doppler spectrum, where nobody asks for another length
-MOST_WINDOWS = 60
 NEAREST_BINS = 2.5
 WEAKEST = 1e-3  # moving power of a cell relative to the strongest
 LARGEST_RESIDUAL = 0.35  # of a circle fit, relative to the radius
@@ -40,36 +36,6 @@ class SlowTimeCell:
 def zero_doppler(cube: RadarCube) -> Complex[np.ndarray, "frame range antenna"]:
     """One value a frame: that of zero Doppler, the windowed mean of its loops."""
     return cube.values[:, :, cube.config.num_loops // 2]
-
-
-def slow_time_cube(cube: RadarCube, *, window_frames: int | None = None) -> RadarCube:
-    """Runs of frames as the loops of longer, overlapping frames: (window, range, doppler, antenna).
-
-    Its configuration has the frames' spacing as loop period, so velocity axes and resolutions follow. Raises
-    InputError for fewer than eight frames.
-    """
-    frames = len(cube.values)
-    width = min(window_frames or WINDOW_FRAMES, frames)
-    if width < FEWEST_FRAMES:
-        raise InputError(f"slow time over frames needs {FEWEST_FRAMES} frames or more, not {width}")
-    own = cube.config
-    config = replace(
-        own, num_loops=width, loop_gap_s=own.frame_period_s - own.num_slots * own.chirp_period_s,
-        frame_period_s=width * own.frame_period_s, name=f"{own.name}, slow time over {width} frames",
-    )  # fmt: skip
-    hop = max(1, width // 8, -(-(frames - width) // (MOST_WINDOWS - 1)))
-    starts = np.arange(0, frames - width + 1, hop)
-    weight = doppler_weight(width)[:, None]
-    compensation = tdm_compensation(config)
-    still = zero_doppler(cube)
-    values = np.empty((len(starts), still.shape[1], width, still.shape[2]), np.complex64)
-    for index, start in enumerate(starts):
-        run = still[start : start + width].transpose(1, 0, 2)
-        values[index] = np.asarray(fft.fft(run * weight, axis=1)) * compensation
-    grid = replace(
-        cube.grid, frame_time_s=cube.grid.frame_time_s[starts], radial_velocity_mps=config.radial_velocity_mps
-    )
-    return RadarCube(values=values, grid=grid, config=config, scale=cube.scale)
 
 
 def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler"], Float[np.ndarray, " doppler"]]:

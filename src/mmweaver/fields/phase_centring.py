@@ -38,9 +38,3 @@ def centred(cube: RadarCube) -> RadarCube:
     """The cube with its phase referred to the middle of the chirp and of the frame; lossless."""
     phasor = centring_phasor(cube.config, cube.grid)
     return replace(cube, values=cube.values * phasor[None, :, :, None])
-
-
-def uncentred(cube: RadarCube) -> RadarCube:
-    """The inverse of `centred`."""
-    phasor = centring_phasor(cube.config, cube.grid).conj()
-    return replace(cube, values=cube.values * phasor[None, :, :, None])

@@ -38,11 +38,6 @@ def read_mmwave_studio(
     return _query(path, radar)
 
 
-def read_mmwave_studio_iq_order(path: Path | str) -> str:
-    """The I/Q order of a recording with this configuration, "iq" or "qi", from iqSwapSel."""
-    return _query(Path(path), _iq_order)
-
-
 def _iq_order(device: Any) -> str:
     return (
         "qi"

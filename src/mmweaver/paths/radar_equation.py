@@ -26,20 +26,6 @@ def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
     )
 
 
-def echoes_of(points: Points, response: PointResponse) -> MeanEchoes:
-    """Mean echoes of which points in bins of the response are the image: the inverse of `points_of`."""
-    config = response.config
-    loss = pattern_towards_db(points.direction, config)
-    gain = scatterer_gain(config) * 10 ** (-loss / 10)
-    range_m = (points.range_bin - response.coupling * points.doppler_bin) * response.range_a_bin_m
-    return MeanEchoes(
-        range_m=range_m,
-        velocity_mps=points.doppler_bin * response.velocity_a_bin_mps,
-        direction=points.direction,
-        cross_section_m2=(points.amplitude.abs() * range_m.clamp(min=0.1) ** 2 / gain) ** 2,
-    )
-
-
 def pattern_towards_db(direction: Tensor, config: RadarConfig) -> Tensor:
     """Loss of one antenna in dB towards direction cosines (..., 2) along x and z, ahead of the radar."""
     x, z = direction.unbind(-1)

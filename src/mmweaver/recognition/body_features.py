@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 CELL_M = 0.05
 FARTHEST_M = 6.0
@@ -39,11 +39,11 @@ class BodyPoints:
         return self.window.cloud
 
 
-def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
+def body_points(window: PointRecording) -> BodyPoints:
     """Removes the room, then everything beyond a body's extent from the median range of change."""
     cloud, frames = window.cloud, window.num_frames
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
-    moves = np.abs(cloud.radial_velocity_mps) > still_mps
+    range_m = cloud.range_m
+    moves = is_moving(cloud)
     cell = np.minimum((range_m / CELL_M).astype(int), int(FARTHEST_M / CELL_M) - 1)
     full = np.zeros((frames, int(FARTHEST_M / CELL_M)), bool)
     full[cloud.frame[~moves], cell[~moves]] = True
@@ -62,9 +62,9 @@ def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
     )  # fmt: skip
 
 
-def body_features(window: PointRecording, still_mps: float) -> Row:
+def body_features(window: PointRecording) -> Row:
     """Named features of one window; nan means too few points."""
-    points = body_points(window, still_mps)
+    points = body_points(window)
     row = _flicker(points)
     row.update(_whereabouts(points, points.is_moving | points.is_static, "body"))
     row.update(_whereabouts(points, points.is_static, "rest"))

@@ -10,8 +10,7 @@ import numpy as np
 from jaxtyping import Int
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import STILL_MPS
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 CELL_M = 0.25
 LEAST_FRAMES, LEAST_SHARE = 3, 0.02  # in which something moves in a busy cell: who walks through leaves it at once
@@ -26,7 +25,7 @@ def busy_cells(empty_place: Sequence[PointRecording]) -> Cells:
     found = [NO_CELLS]
     for recording in empty_place:
         cloud = recording.cloud
-        visits = np.unique(np.column_stack([cloud.frame, _cells(cloud)])[_moves(cloud)], axis=0)  # once a frame
+        visits = np.unique(np.column_stack([cloud.frame, _cells(cloud)])[is_moving(cloud)], axis=0)  # once a frame
         cells, frames = np.unique(visits[:, 1:], axis=0, return_counts=True)
         busy = cells[frames >= max(LEAST_FRAMES, LEAST_SHARE * recording.num_frames)]
         found.append((busy[:, None] + AROUND).reshape(-1, 2))
@@ -41,13 +40,9 @@ def without_busy(window: PointRecording, cells: Cells) -> PointRecording:
     is_busy = np.zeros(width, bool)
     is_busy[tuple((cells - cells.min(axis=0)).T)] = True
     inside = ((own >= 0) & (own < width)).all(axis=1)
-    hidden = inside & is_busy[tuple(np.where(inside[:, None], own, 0).T)] & _moves(window.cloud)
+    hidden = inside & is_busy[tuple(np.where(inside[:, None], own, 0).T)] & is_moving(window.cloud)
     return replace(window, cloud=window.cloud.select(~hidden))
 
 
 def _cells(cloud: PointCloud) -> Int[np.ndarray, "point 2"]:
     return np.floor(np.stack([cloud.x_m, cloud.y_m], axis=1) / CELL_M).astype(int)
-
-
-def _moves(cloud: PointCloud) -> np.ndarray:
-    return np.abs(cloud.radial_velocity_mps) > STILL_MPS

@@ -14,10 +14,9 @@ from jaxtyping import Int
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.recognition.generated_sequences import stored_sequences
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.window_features import STILL_MPS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +47,7 @@ def confusion_picture(
 
 def usual_windows(windows: Sequence[PointRecording], shares: Sequence[float]) -> list[PointRecording]:
     """The windows at these shares of their numbers of moving points; fewer of fewer windows."""
-    order = np.argsort([int((np.abs(one.cloud.radial_velocity_mps) > STILL_MPS).sum()) for one in windows])
+    order = np.argsort([int(is_moving(one.cloud).sum()) for one in windows])
     places = dict.fromkeys(int(share * len(windows)) for share in shares) if windows else ()
     return [windows[order[place]] for place in places]
 
@@ -116,7 +115,7 @@ def draw_confusions(
 
 def _scatter(upper: "Axes", lower: "Axes", window: PointRecording) -> None:
     cloud = window.cloud
-    range_m, moving = cloud.range_m, np.abs(cloud.radial_velocity_mps) > STILL_MPS
+    range_m, moving = cloud.range_m, is_moving(cloud)
     middle = moving if moving.any() else ~moving
     time_s = cloud.frame / window.frame_rate_hz
     for axis, values in ((upper, range_m), (lower, cloud.z_m)):

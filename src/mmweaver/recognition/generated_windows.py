@@ -137,7 +137,7 @@ def _is_seen(window: PointRecording, pose: PoseSequence) -> bool:
     pelvis_m = pose.joints_m[:, joint("pelvis")]
     cloud = window.cloud
     body_m = np.interp(time_s, pose.time_s, np.linalg.norm(pelvis_m, axis=1))[cloud.frame]
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     there = cloud.frame[np.abs(range_m - body_m) < BODY_REACH_M]
     return len(np.unique(there)) >= SEEN_SHARE * window.num_frames
 

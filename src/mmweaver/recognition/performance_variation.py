@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import STILL_MPS
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 BRISK_STEPS = 1.0  # velocities above so many steps of the radar are those of limbs
 FEWEST = 10  # brisk points of a motion that may be seen in part
@@ -101,7 +100,7 @@ def _resized(
     cloud: PointCloud, size: float, pace: float, velocity_step_mps: float, max_velocity_mps: float
 ) -> PointCloud:
     """Moving points `size` times as far from their median, all velocities as much and `pace` times as fast."""
-    moving = np.abs(cloud.radial_velocity_mps) > STILL_MPS
+    moving = is_moving(cloud)
     if not moving.any():
         return cloud
     places = np.stack([cloud.x_m, cloud.y_m, cloud.z_m], axis=1)
@@ -115,7 +114,7 @@ def _resized(
 
 def _elsewhere(cloud: PointCloud, farther_m: float, turn_rad: float) -> PointCloud:
     """All points farther away and turned about the radar."""
-    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    range_m = cloud.range_m
     scale = np.maximum(range_m + farther_m, NEAREST_M) / np.maximum(range_m, 1e-6)
     cos, sin = np.cos(turn_rad), np.sin(turn_rad)
     x, y = scale * cloud.x_m, scale * cloud.y_m

@@ -3,9 +3,16 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from mmweaver.core.records import PointCloud
+
+STILL_MPS = 0.1  # up to this radial speed a point counts as at rest
+
+
+def is_moving(cloud: PointCloud) -> Bool[np.ndarray, " point"]:
+    """Which points move, by their radial velocity."""
+    return np.abs(cloud.radial_velocity_mps) > STILL_MPS
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,7 +31,7 @@ from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.timeline_features import timeline_features
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, read_trees, write_trees
-from mmweaver.recognition.window_features import STILL_MPS, UNPREDICTABLE, window_features
+from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
@@ -137,7 +137,7 @@ def window_row(window: PointRecording) -> dict[str, float]:
     """All features of a window by name."""
     return {
         **window_features(window),
-        **body_features(window, STILL_MPS),
+        **body_features(window),
         **timeline_features(window),
         **side_features(window),
         **course_features(window),

@@ -9,10 +9,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording import STILL_MPS, PointRecording, is_moving
 from mmweaver.recognition.task_file import RecognitionTask
 from mmweaver.recognition.timeline_features import of_the_body
-from mmweaver.recognition.window_features import STILL_MPS
 
 LAG_S = 0.5  # over which ways are compared with velocities
 LEAST_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which nobody goes anywhere; beyond, it is another echo
@@ -186,7 +185,7 @@ def _of_others(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[
     """Who moves cannot be in two places."""
     apart = moving = 0
     for recording in recordings:
-        cloud = recording.cloud.select(np.abs(recording.cloud.radial_velocity_mps) > STILL_MPS)
+        cloud = recording.cloud.select(is_moving(recording.cloud))
         frames, first = np.unique(cloud.frame, return_index=True)
         if len(frames):
             spans = [

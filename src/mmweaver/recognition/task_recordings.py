@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
-from mmweaver.formats.point_clouds.read_points import read_points
+from mmweaver.formats.point_clouds.read_points import points_kind, read_points
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
@@ -62,7 +62,7 @@ def label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
 
 
 def _cloud(file: Path, columns: RecordedColumns | None) -> tuple[PointCloud, int]:
-    if file.suffix.lower() == ".npz" and columns is not None:
+    if file.suffix.lower() == ".npz" and columns is not None and points_kind(file) == "npz":
         return _from_columns(file, columns)
     if file.suffix.lower() == ".dat":
         log = read_ti_uart(file)

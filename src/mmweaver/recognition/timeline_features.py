@@ -10,8 +10,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import Row
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import STILL_MPS
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 SEGMENTS = 6
 FEWEST = 6  # moving points for any order
@@ -51,7 +50,7 @@ def timeline_features(window: PointRecording) -> Row:
 
 def of_the_body(cloud: PointCloud) -> PointCloud:
     """Moving points near their median."""
-    moving = cloud.select(np.abs(cloud.radial_velocity_mps) > STILL_MPS)
+    moving = cloud.select(is_moving(cloud))
     if not len(moving.frame):
         return moving
     far_m = [np.abs(axis - np.median(axis)) for axis in (moving.x_m, moving.y_m, moving.z_m)]

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import SPEED_EDGES_MPS, STILL_MPS
+from mmweaver.recognition.point_recording import STILL_MPS, PointRecording
+from mmweaver.recognition.window_features import SPEED_EDGES_MPS
 
 
 @dataclass(frozen=True, kw_only=True)

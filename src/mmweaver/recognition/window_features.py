@@ -11,9 +11,8 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import BANDS_HZ, Row, band_shares, body_features
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording import PointRecording, is_moving
 
-STILL_MPS = 0.1
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 SEGMENTS = 4
 FEWEST = 3  # points for a spread
@@ -23,7 +22,7 @@ UNPREDICTABLE = {"up", "uneven"}  # words in names of features that are excluded
 def window_features(window: PointRecording) -> Row:
     """Named features of one window."""
     cloud = window.cloud
-    moving = np.abs(cloud.radial_velocity_mps) > STILL_MPS
+    moving = is_moving(cloud)
     points = _Moving(cloud, moving, window)
     row: Row = {}
     row.update(_speeds(points))
@@ -43,14 +42,14 @@ def feature_matrix(
     These are heights (from the phase between two antenna rows, biased by a tilted or uncalibrated board), and the
     unevenness of points over time, which depends on the elevation beam.
     """
-    rows = [{**window_features(window), **body_features(window, STILL_MPS)} for window in windows]
+    rows = [{**window_features(window), **body_features(window)} for window in windows]
     chosen = names or tuple(name for name in rows[0] if not UNPREDICTABLE & set(name.split("_")))
     return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 
 def moving_points(window: PointRecording) -> float:
     """The mean number of moving points a frame."""
-    return float((np.abs(window.cloud.radial_velocity_mps) > STILL_MPS).sum() / window.num_frames)
+    return float(is_moving(window.cloud).sum() / window.num_frames)
 
 
 class _Moving:
@@ -60,9 +59,8 @@ class _Moving:
         self.num_frames, self.rate_hz = window.num_frames, window.frame_rate_hz
         self.frame = cloud.frame[which].astype(int)
         self.speed = cloud.radial_velocity_mps[which]
-        x, y, z = cloud.x_m[which], cloud.y_m[which], cloud.z_m[which]
-        self.range_m = np.sqrt(x**2 + y**2 + z**2)
-        self.across_m, self.up_m = x, z
+        self.range_m = cloud.range_m[which]
+        self.across_m, self.up_m = cloud.x_m[which], cloud.z_m[which]
         self.time_s = self.frame / self.rate_hz
 
     def __len__(self) -> int:

@@ -32,8 +32,3 @@ def logged_cloud(
         snr_db=nothing if snr_db is None else np.asarray(snr_db, float),
         intensity=nothing if intensity is None else np.asarray(intensity, float),
     )  # fmt: skip
-
-
-def empty_cloud() -> LoggedCloud:
-    """No points."""
-    return logged_cloud(np.zeros(0, int), np.zeros((0, 3)), np.zeros(0))

@@ -12,7 +12,7 @@ from mmweaver.scene.procedural import objects, seat_furniture, storage_furniture
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, PlacedPiece, bounding_boxes
 
-WALL, BACK, SIDE, MIDDLE = "wall", "back", "side", "middle"
+WALL, BACK, MIDDLE = "wall", "back", "middle"
 _MAX_DRAWS = 20
 GAP_M = 0.02  # between furniture and the wall behind it
 
