@@ -65,7 +65,7 @@ class BodyRoomPaths:
 
     def __init__(self, seen: "SeenBody", sampling: PairSampling | None = None):
         self.of, self.room, self.sampling = seen, seen.traced, sampling or PairSampling()
-        self.patches = self.room.patches
+        self.patches = self.room.patches_all_round
         _, group = np.unique(part_of_capsule()[self.of.body.part], return_inverse=True)
         one_hot = np.eye(group.max() + 1)[:, group]
         # a part is where its visible skin is, or all of its skin where none is visible; (frame, part, point)
