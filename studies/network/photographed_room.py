@@ -3,9 +3,10 @@
     python -m studies run photographed_room
 
 Empty rooms of the nine kinds that training may see, in layouts of no data set. Ground truth is the simulator in the
-true room; range-azimuth pictures of one frame without noise are compared. `realization`, the oracle, is the true room
-with other micro-phases of its rough surfaces. The rows between replace one kind of the photographed room's echoes by
-those of the true room, specular ones with random phases. Intervals: bootstrap over rooms.
+true room, with all paths and clutter; range-azimuth pictures of one frame without noise are compared. `realization`,
+the oracle, is the true room with other micro-phases of its rough surfaces and other clutter. The rows between replace
+one kind of the photographed room's echoes by those of the true room, specular ones with random phases. Intervals:
+bootstrap over rooms.
 """
 
 import argparse
@@ -16,15 +17,18 @@ import numpy as np
 import torch
 
 from mmweaver.core.presets import PRESETS
-from mmweaver.core.records import AdcCube, RgbdPhoto
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, RgbdPhoto, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import HeldOut
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
 from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.paths import Interaction
-from mmweaver.paths.static_paths import AS_PUBLISHED, RayTracedRoom
+from mmweaver.paths.paths import STATIC_KINDS, Interaction
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import ALL_PATHS, RayTracedRoom
+from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
@@ -37,6 +41,7 @@ UNKNOWN = {
     "dataset.sha256": "rendered anew in every run",
     "seconds": "see the manifest: all rows together",
 }
+KINDS_OF_PATHS = (*STATIC_KINDS, Interaction.ROOM_ROOM, Interaction.CLUTTER)
 LAYOUTS = (30, 31, 32, 33)
 METRICS = {
     "ra_ssim": ("1", "SSIM of 50 dB range-azimuth pictures over cells that either shows"),
@@ -50,21 +55,17 @@ def evaluated(kind: str, layout: int, seed: int = 0) -> Scores:
     config = PRESETS["awr1843"]
     made = make_room(kind, layout, seed)
     photo = made.photo("day", noise=True)
-    truth, realization = (
-        RayTracedRoom(made.scene("day"), config, propagation=AS_PUBLISHED),
-        RayTracedRoom(made.scene("day"), config, 1, propagation=AS_PUBLISHED),
-    )
-    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1, propagation=AS_PUBLISHED)), _parts(realization)
+    truth, realization = (_room(made.scene("day"), config, seed) for seed in (0, 1))
+    own, true = _parts(_room(reconstruct(photo), config, 1)), _parts(realization)
     specular = _parts(realization, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
     cubes = {
         "zeros": 0 * _adc(truth),
-        "photo without mask": _adc(
-            RayTracedRoom(reconstruct(_without_mask(photo)), config, 1, propagation=AS_PUBLISHED)
-        ),
+        "photo without mask": _adc(_room(reconstruct(_without_mask(photo)), config, 1)),
         "photo": sum(own.values()),
         "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: specular}).values()),
         "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
         "photo, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
+        "photo, true second order": sum((own | {Interaction.ROOM_ROOM: true[Interaction.ROOM_ROOM]}).values()),
         REALIZATION: _adc(realization),
     }
     azimuth = azimuth_axis_rad()
@@ -82,6 +83,11 @@ def evaluated(kind: str, layout: int, seed: int = 0) -> Scores:
     }  # fmt: skip
 
 
+def _room(scene: Scene, config: RadarConfig, seed: int) -> RayTracedRoom:
+    """All static paths of a scene, with clutter of its own."""
+    return Simulator(scene, config, micro_seed=seed_of_room(scene) + seed, propagation=ALL_PATHS).room
+
+
 def _without_mask(photo: RgbdPhoto) -> RgbdPhoto:
     return RgbdPhoto(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)
 
@@ -94,7 +100,7 @@ def _adc(room: RayTracedRoom) -> np.ndarray:
 def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> dict[Interaction, np.ndarray]:
     """Samples of the static paths of a room by kind, with other phases where `turned` samples them."""
     found = {}
-    for kind in room.counts:
+    for kind in KINDS_OF_PATHS:
         part = room.paths.of_kind(kind)
         if turned is not None:
             cycles = turned.random(len(part))

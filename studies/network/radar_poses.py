@@ -27,6 +27,7 @@ from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
+from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -59,7 +60,8 @@ def motion_of(case: Case, pose: RadarPose, *, skin: int) -> PoseSequence:
 def simulated(scene: Scene, case: Case, pose: RadarPose, *, other: int = OTHER) -> RadarCube:
     """The simulator at a pose; with `other`, with other phases, skin and noise than the ground truth."""
     config, frames = case.room.config, len(case.joints[0])
-    simulator = Simulator(scene_seen_from(scene, pose), config, micro_seed=1 if other else 0, propagation=ALL_PATHS)
+    micro_seed = seed_of_room(scene) + (1 if other else 0)
+    simulator = Simulator(scene_seen_from(scene, pose), config, micro_seed=micro_seed, propagation=ALL_PATHS)
     chunks = simulator.chunks(motion_of(case, pose, skin=other), num_frames=frames, seed=case.spec.seed + other)
     values = np.concatenate([radar_cube(chunk).values for chunk in chunks])
     return RadarCube(values=values, grid=CubeGrid.of(config, frames), config=config, scale=1.0)

@@ -36,7 +36,7 @@ from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from studies.manifest import StudyRun
 from studies.motion.motion_realism import LEAP_M, RATE_HZ, SPEEDS, cadence_hz, is_steady, speed_of
 from studies.physics.empty_room_cube import empty_room
@@ -224,7 +224,7 @@ def spectrogram(motion: RecordedMotion, simulator: Simulator, seed: int, *, is_a
 
 def simulator() -> Simulator:
     """RADAR 1 m above a concrete floor, in a room without walls."""
-    return Simulator(empty_room(floor_z_m=-RADAR_HEIGHT_M), RADAR, propagation=AS_PUBLISHED)
+    return Simulator(empty_room(floor_z_m=-RADAR_HEIGHT_M), RADAR, propagation=ALL_PATHS)
 
 
 def figures(motion: RecordedMotion, activity: str, shown_by: Simulator, seed: int) -> tuple[Figures, Spectrogram]:

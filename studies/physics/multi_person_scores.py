@@ -2,9 +2,10 @@
 
 python -m studies run multi_person_scores --picture docs/images/several_people.png
 
-Two people in the sample room, at given places; the ground truth is the simulator with mutual occlusion, the prediction
-the sum of both simulated alone, with the same receiver noise. The baseline leaves the second person out; oracles are
-the ground truth with other receiver noise, and another realization of it (the same poses, other skins).
+Two people in the sample room, at given places, with all paths and the room's clutter; the ground truth is the
+simulator with mutual occlusion, the prediction the sum of both simulated alone, with the same receiver noise. The
+baseline leaves the second person out; oracles are the ground truth with other receiver noise, and another realization
+of it (the same poses, other skins).
 """
 
 import argparse
@@ -26,7 +27,7 @@ from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import ALL_PATHS
 from studies.fields.field_signals import OTHER_SKIN, sample_scene
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
@@ -170,7 +171,7 @@ def _mean(values: list[float]) -> tuple[float, list[float]]:
 
 def measure(run: StudyRun, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) -> Path:
     """All arrangements; one row each."""
-    simulator = Simulator(sample_scene(), AWR1843, propagation=AS_PUBLISHED)
+    simulator = Simulator(sample_scene(), AWR1843, propagation=ALL_PATHS)
     rows, shown = [], []
     for name, places in ARRANGEMENTS.items():
         every: dict[int, dict[str, dict[str, float]]] = {}

@@ -10,9 +10,11 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.paths import antenna
+from mmweaver.paths.antenna import pattern
 from mmweaver.paths.body_model import body_of
 from mmweaver.paths.body_paths import BodyPaths
-from mmweaver.paths.body_room_paths import BOARD_AREA_M2, BOARD_REFLECTIVITY
+from mmweaver.paths.body_room_paths import BOARD_AREA_M2, BOARD_REFLECTIVITY, unit
 from mmweaver.paths.paths import Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
@@ -68,12 +70,27 @@ def halo_db(realizations: int = 8) -> np.ndarray:
     return 10 * np.log10(np.mean(shares, axis=0))
 
 
-def test_the_level_behind_a_body_is_that_of_sionna():
-    """Within 6 dB in each 0.4 m, as bodies and antennas differ, and 3 dB of the whole."""
+def test_the_level_behind_a_body_is_that_of_sionna(monkeypatch: pytest.MonkeyPatch):
+    """With its antennas (TR 38.901), within 6 dB in each 0.4 m, as bodies differ, and 1 dB of the whole."""
+    for name, value in (("AZIMUTH_ROLL_OFF", 2.0), ("ELEVATION_ROLL_OFF", 2.0), ("FLOOR_DB", -30.0)):
+        monkeypatch.setattr(antenna, name, value)
     ours, theirs = halo_db(), np.array(SIONNA_DB)
     assert np.abs(ours - theirs).max() < 6.0
     total = [10 * np.log10((10 ** (part / 10)).sum()) for part in (ours, theirs)]
-    assert abs(total[0] - total[1]) < 3.0
+    assert abs(total[0] - total[1]) < 1.0
+
+
+def test_a_wall_beside_the_radar_returns_the_body_at_its_own_velocity():
+    """Over one antenna pattern, where an echo there and back over two would be nothing."""
+    beside = plane("wall", (1.5, 0, 0.2), (-1, 0, 0), (0, 1, 0), (0.5, 1.3), "concrete")
+    simulator = Simulator(scene_of((beside,), floor_z_m=-1.1), AWR1843, IDEAL)
+    assert len(simulator.room.patches) == 0
+    found = body_paths(simulator, standing_person((0.0, 3.0, -1.1), (0.0, -1.0, 0.0)))
+    over_room = of_kind(found.paths(0)[0], Interaction.BODY_ROOM)
+    assert len(over_room) > 5
+    assert (over_room.rate_mps / 2 < -0.85).all()
+    longer_m = over_room.length_m / 2 - 3.0
+    assert 0.5 < longer_m.mean() < 1.5
 
 
 @pytest.mark.slow  # test_the_level_behind_a_body_is_that_of_sionna holds the same against stored figures
@@ -108,6 +125,43 @@ def test_lengths_follow_the_body_over_the_room():
         assert np.allclose(paths.rate_mps.numpy(), rate, atol=1e-3)
         assert paths.is_reciprocal.all()
         assert np.allclose(paths.arrival.direction.numpy(), place / np.linalg.norm(place, axis=1)[:, None], atol=1e-9)
+
+
+def test_all_skin_makes_the_level_whoever_stands_there():
+    """Mean power within 1 dB of the sum over each point of skin with each patch, for each of two people.
+
+    64 points stood for all once, which was 2 to 3 dB off for these and right in the mean of many.
+    """
+    for subject in (1, 4):
+        kept, every = [], []
+        for seed in range(2):
+            simulator = Simulator(concrete_box(), AWR1843, IDEAL, micro_seed=seed)
+            person = replace(PERSON, subject=subject)
+            joints_m = simulator._joints_at_nodes(person, np.arange(1))
+            found = BodyPaths(simulator.room, body_of(person), simulator.clock, joints_m)
+            assert found.second is not None
+            kept.append((np.abs(found.second.pairs[0].amplitude) ** 2).sum())
+            every.append(power_of_all_skin(found))
+        assert abs(10 * np.log10(np.mean(kept) / np.mean(every))) < 1.0
+
+
+def power_of_all_skin(of: BodyPaths) -> float:
+    """Radar, each visible point, each patch, radar: one order, in mW."""
+    assert of.second is not None
+    seen, patches, body = np.flatnonzero(of.visible[0]), of.second.patches, of.body
+    total = 0.0
+    for point in seen:
+        skin_m, normal = of.posed.place_m[0, point], of.posed.normal[0, point]
+        leg = patches.place_m - skin_m
+        leg_m = np.maximum(np.linalg.norm(leg, axis=1), 0.15)
+        out, back = leg / leg_m[:, None], -skin_m / np.linalg.norm(skin_m)
+        half = (out + back) / np.linalg.norm(out + back, axis=1)[:, None]
+        sigma = body.echo.over(np.full(len(leg), back @ normal), out @ normal, half @ normal)
+        sigma = sigma * body.area_m2 * body.brightness[point]
+        gains = pattern(-back[None], of.config) * pattern(unit(patches.place_m), of.config)
+        ways_m = np.linalg.norm(skin_m) * leg_m * np.linalg.norm(patches.place_m, axis=1)
+        total += ((of.gain * gains / ways_m) ** 2 * sigma * patches.into(-out)).sum() / (4 * np.pi)
+    return float(total)
 
 
 def test_the_radars_own_board_throws_an_echo_back_at_twice_the_range():

@@ -21,7 +21,6 @@ from mmweaver.paths.room_patches import roulette
 if TYPE_CHECKING:
     from mmweaver.paths.seen_body import SeenBody
 
-SKIN_POINTS = 64  # that stand for the body where the room has hundreds of patches
 NEAREST_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
 ROOM_MARGIN_M = 0.06
 FAINTEST_OF_DIRECT = 1e-6  # power of a frame's pairs, or of body-radar-body, that is left out
@@ -66,7 +65,7 @@ class BodyRoomPaths:
 
     def __init__(self, seen: "SeenBody", sampling: PairSampling | None = None):
         self.of, self.room, self.sampling = seen, seen.traced, sampling or PairSampling()
-        self.patches = self.room.patches
+        self.patches = self.room.patches_all_round
         _, group = np.unique(part_of_capsule()[self.of.body.part], return_inverse=True)
         one_hot = np.eye(group.max() + 1)[:, group]
         # a part is where its visible skin is, or all of its skin where none is visible; (frame, part, point)
@@ -152,7 +151,7 @@ class BodyRoomPaths:
         near, some, standing_for = near[clear], some[clear], standing_for[clear]
         leg = some.place_m - parts_m[:, None]  # (part, patch, 3)
         leg_m = np.maximum(np.linalg.norm(leg, axis=2), NEAREST_M)
-        sigma = self.bistatic(frame, some.place_m, SKIN_POINTS)  # (part, patch)
+        sigma = self.bistatic(frame, some.place_m)  # (part, patch)
         power = of.gain**2 * (of.pattern(unit(parts_m))[:, None] * self._patch_gain[near]) ** 2 * sigma
         power = power * some.into(-leg / leg_m[..., None]) / (4 * np.pi)
         power *= standing_for / (np.linalg.norm(parts_m, axis=1)[:, None] * leg_m * self._patch_m[near]) ** 2
@@ -165,25 +164,27 @@ class BodyRoomPaths:
         size = np.sqrt(power.ravel()[pair] * standing_for)
         return _Pairs(part=part, patch=near[patch], amplitude=size * self.phase[part] * self.patches.phase[near[patch]])
 
-    def bistatic(self, frame: int, place_m: np.ndarray, most_points: int | None = None) -> np.ndarray:
+    def bistatic(self, frame: int, place_m: np.ndarray) -> np.ndarray:
         """Cross sections (part, place) of the body's parts from the radar's direction into those of places (place, 3).
 
-        `most_points` of skin stand for all. A few dozen do for hundreds of places; for a few, all are needed, or of
-        many a person no point faces the direction half way between radar and place.
+        Of all skin: with lobes of 6 degrees a few dozen points leave most directions without one that shines there.
         """
         of = self.of
-        count = len(of.body.micro_phase)
-        chosen = np.unique(np.linspace(0, count - 1, min(most_points or count, count)).astype(int))
-        seen = chosen[of.visible[frame, chosen]]
-        area_m2 = of.body.area_m2 * of.body.brightness[seen] * count / len(chosen)
-        towards, normal = of.towards[frame, seen], of.posed.normal[frame, seen]
-        out = unit(place_m - of.posed.place_m[frame, seen][:, None])  # (point, patch, 3)
-        cos_out = np.einsum("pqi,pi->pq", out, normal)
-        cos_in = of.cos[frame, seen]
+        seen = np.flatnonzero(of.visible[frame])
+        area_m2 = of.body.area_m2 * of.body.brightness[seen]
+        skin_m, cos_in = of.posed.place_m[frame, seen], of.cos[frame, seen][:, None]
+        offset_m2 = (skin_m**2).sum(axis=1)[:, None] + (place_m**2).sum(axis=1) - 2 * skin_m @ place_m.T
+        leg_m = np.sqrt(np.maximum(offset_m2, 1e-12))  # (point, place)
+
+        def cos_to(direction: np.ndarray) -> np.ndarray:
+            """Cosine (point, place) between a direction (point, 3) and the leg to each place."""
+            return (direction @ place_m.T - (direction * skin_m).sum(axis=1)[:, None]) / leg_m
+
+        cos_out = cos_to(of.posed.normal[frame, seen])
         # |towards + out|^2 = 2 + 2 towards . out
-        half = np.sqrt(np.maximum(2 + 2 * np.einsum("pqi,pi->pq", out, towards), 1e-9))
-        cos_half = np.clip((cos_in[:, None] + cos_out) / half, -1, 1)
-        each = of.body.echo.over(cos_in[:, None], cos_out, cos_half)
+        half = np.sqrt(np.maximum(2 + 2 * cos_to(of.towards[frame, seen]), 1e-9))
+        cos_half = np.clip((cos_in + cos_out) / half, -1, 1)
+        each = of.body.echo.over(cos_in, cos_out, cos_half)
         return (self._of_part[:, seen] * area_m2) @ each
 
     def _body_radar_body(self, frame: int, direct_power: float) -> np.ndarray:

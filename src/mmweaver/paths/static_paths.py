@@ -143,7 +143,7 @@ class RayTracedRoom(PreparedRoom):
     ):  # fmt: skip
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
-        self.config = config
+        self.config, self._scene = config, scene
         self.reflectors = specular_reflectors(
             scene.planes, rough=self.propagation.fine_roughness, hidden=self.propagation.hidden_faces
         )
@@ -159,8 +159,29 @@ class RayTracedRoom(PreparedRoom):
         return other
 
     @cached_property
+    def patches_all_round(self) -> RoomPatches:
+        """`patches`, and those beside, above, below and behind the radar, where no ray of the static paths goes.
+
+        What is there hardly returns itself, over two antenna patterns. It returns a body's wave over one, at the
+        body's own velocity, and is near.
+        """
+        rng = stream(self.micro_seed, "room", "patches all round")
+        shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
+        azimuth = (np.arange(AZIMUTH_CELLS)[None] + rng.random(shape)) * 2 * np.pi / AZIMUTH_CELLS - np.pi
+        height = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * 2 / ELEVATION_CELLS - 1
+        is_new = (np.abs(azimuth) > AZIMUTH_LIMIT_RAD) | (np.abs(height) > np.sin(ELEVATION_LIMIT_RAD))
+        azimuth, height = azimuth[is_new], height[is_new]
+        level = np.sqrt(1 - height**2)
+        direction = np.stack([np.sin(azimuth) * level, np.cos(azimuth) * level, height], axis=1)
+        struck, _ = self._struck(self._scene, direction, np.full(len(direction), 4 * np.pi / is_new.size))
+        cross_section = struck.cross_section_m2 * self._diffuse_share(self._scene, struck)
+        phase = np.exp(2j * np.pi * rng.random(len(cross_section)))
+        found = RoomPatches.of_surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        return self.patches.and_those(found.merged(rng))
+
+    @cached_property
     def patches(self) -> RoomPatches:
-        """What second bounces are computed over."""
+        """What second bounces of the static paths are computed over."""
         all_of_them = self._patches.and_those(self._edge_patches)
         return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
@@ -183,14 +204,18 @@ class RayTracedRoom(PreparedRoom):
         direction = np.stack(
             [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
         ).reshape(-1, 3)  # fmt: skip
-        distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
-        hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        struck = _Struck.of(scene, direction[hit], distance[hit], face[hit], solid_angle[hit])
+        struck, hit = self._struck(scene, direction, solid_angle)
         cross_section = struck.cross_section_m2 * self._diffuse_share(scene, struck)
         phase = np.exp(2j * np.pi * cycles[hit])
         self._patches = RoomPatches.of_surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
         paths = [self._scattered(struck.place_m, cross_section, cycles[hit], Interaction.DIFFUSE)]
         return [*paths, self._behind_walls(scene, struck)] if self.propagation.through_walls else paths
+
+    def _struck(self, scene: Scene, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
+        """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
+        distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
+        hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
+        return _Struck.of(scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
 
     def _behind_walls(self, scene: Scene, struck: "_Struck") -> StaticPaths:
         """Patches that rays meet behind the first thin wall, fainter by the way through it and back."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.comparison.compare_signals import FEATURES
-from studies.physics.board_left_out import RANGES, accuracy, chances, ranking, room_rows, verdicts, walkers
+from studies.physics.board_left_out import RANGES, accuracy, alone, chances, ranking, room_rows, verdicts, walkers
 from tests.rooms import back_wall, floor, scene_of
 
 BOARDS = ("one", "two", "three")
@@ -23,6 +23,17 @@ def test_what_differs_is_found_and_what_is_alike_is_not():
     assert alike["value"] < 0.8
     low, high = alike["interval_95"]
     assert low <= alike["value"] <= high
+
+
+def test_each_feature_ranks_alone_where_both_show_it():
+    recorded, made = (units(0.0, seed)["one"] for seed in (0, 1))
+    names = [feature.name for feature in FEATURES]
+    recorded[:, names.index("points_width")] += 9.0
+    made[:, names.index("drift")] = np.nan
+    found = alone(recorded, made)
+    assert found["by_points_width"]["value"] == 1.0
+    assert 0.2 < found["by_points_depth"]["value"] < 0.8
+    assert "by_drift" not in found
 
 
 def test_rooms_within_the_recorded_range_are_counted():
