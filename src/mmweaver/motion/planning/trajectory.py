@@ -22,7 +22,8 @@ TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
-PACING_LEG_M = {"walk": 0.8, "jog": 2.0}  # shortest leg of walking or running to and fro
+PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
+CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.6  # on hands and knees: how fast, and the free floor around it
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 FASTER = 1.3  # than usual, to complete a circle
 
@@ -75,6 +76,7 @@ class Trajectory:
     last_direction_rad: float | None = None
     invents_seat: bool = False  # though the room has a seat that can be reached
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
+    turn_rate_radps: float = TURN_RATE_RADPS
     heading_is_given: bool = False  # the caller said where the body faces first; a walk without an aim begins that way
 
     def __post_init__(self) -> None:
@@ -108,7 +110,7 @@ class Trajectory:
             if angle:
                 self.turns.append(Turn(start_s=start_s, end_s=start_s + 0.3, angle_rad=angle))
             return 0.0
-        lasts = TURN_OVERHEAD_S + abs(angle) / TURN_RATE_RADPS
+        lasts = TURN_OVERHEAD_S + abs(angle) / self.turn_rate_radps
         self.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle))
         self.heading_rad += angle
         self.cost += 0.25 * abs(angle)
@@ -170,8 +172,8 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
     trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
     trajectory.notes.append(
-        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person stands still until"
-        f" {step.end_s:.1f} s"
+        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person"
+        f" {'stays on hands and knees' if step.lower == 'crawl' else 'stands still'} until {step.end_s:.1f} s"
     )
 
 
@@ -200,6 +202,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
     """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
     speed = preferred_speed_mps(step, trajectory.rng)
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
+    trajectory.turn_rate_radps = CRAWLING_TURN_RADPS if step.lower == "crawl" else TURN_RATE_RADPS
     for _ in range(40):
         left = step.end_s - time
         faces_already = time == step.start_s and (not first or trajectory.heading_is_given)
@@ -228,11 +231,18 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         if lasts < 0.8 or length < SHORTEST_LEG_M:
             raise NoTrajectory(f"only {free:.1f} m")
         trajectory.go(step, direction, length, (begin, begin + lasts), ramps)
+        if step.lower == "crawl" and not _can_turn_on_knees(trajectory):
+            raise NoTrajectory("no room to turn on hands and knees")
         trajectory.cost += 0.15
         time, begun = begin + lasts - 0.15, False
         if step.end_s - time < 0.3:
             return
     raise NoTrajectory("too many turns")
+
+
+def _can_turn_on_knees(trajectory: Trajectory) -> bool:
+    """Whether a body on hands and knees has room to turn here."""
+    return float(trajectory.floor.clearance_at(trajectory.position_m)) > TURNS_ON_KNEES_M
 
 
 def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
