@@ -120,7 +120,9 @@ def compose(
 
         return least_collision(candidates, animate, CollisionMap.of(scene))
 
-    plan, best, room_notes = with_more_room(plan, floor, compose_on, may_touch=may_touch)
+    plan, best, room_notes = with_more_room(
+        plan, floor, compose_on, may_touch=may_touch, depth_m=lambda result: result.penetration_m
+    )
     described = (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
     placed = best.placement

@@ -23,7 +23,7 @@ TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
 PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
-CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.6  # on hands and knees: how fast, and the free floor around it
+CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: how fast, and the free floor around it
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 FASTER = 1.3  # than usual, to complete a circle
 
@@ -221,6 +221,8 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
+        if step.lower == "crawl":
+            free = _to_where_knees_turn_m(trajectory, direction, free)
         if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
@@ -231,8 +233,6 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         if lasts < 0.8 or length < SHORTEST_LEG_M:
             raise NoTrajectory(f"only {free:.1f} m")
         trajectory.go(step, direction, length, (begin, begin + lasts), ramps)
-        if step.lower == "crawl" and not _can_turn_on_knees(trajectory):
-            raise NoTrajectory("no room to turn on hands and knees")
         trajectory.cost += 0.15
         time, begun = begin + lasts - 0.15, False
         if step.end_s - time < 0.3:
@@ -240,9 +240,12 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
     raise NoTrajectory("too many turns")
 
 
-def _can_turn_on_knees(trajectory: Trajectory) -> bool:
-    """Whether a body on hands and knees has room to turn here."""
-    return float(trajectory.floor.clearance_at(trajectory.position_m)) > TURNS_ON_KNEES_M
+def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
+    """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
+    gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
+    places = trajectory.position_m + gone_m[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    roomy = gone_m[trajectory.floor.clearance_at(places) > TURNS_ON_KNEES_M] if len(gone_m) else gone_m
+    return float(roomy[-1]) if len(roomy) else 0.0
 
 
 def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
