@@ -120,7 +120,7 @@ def compose(
 
         return least_collision(candidates, animate, CollisionMap.of(scene))
 
-    plan, best, room_notes = with_more_room(plan, floor, compose_on, may_touch=may_touch)
+    plan, best, room_notes = with_more_room(plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m)
     described = (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
     placed = best.placement
@@ -128,6 +128,10 @@ def compose(
         pose=best.pose, plan=plan, assumptions=notes, person=person, end=placed.end_state(plan, body),
         controls=controls[id(placed)], chair=placed.chair,
     )  # fmt: skip
+
+
+def _depth_m(result: RankedPlacement) -> float:
+    return result.penetration_m
 
 
 def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:

@@ -5,12 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from mmweaver.core.errors import NoRoomError
+from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import APPROXIMATED
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.planning.more_room import NARROW_FLOOR, going_on_elsewhere, on_the_spot
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.more_room import NARROW_FLOOR, going_on_elsewhere, on_the_spot, with_more_room
 from tests.motion.rooms import WINDOW_M, room
 
 FULL = ((-3.0, 3.0, 0.0, 6.0),)
@@ -113,3 +114,33 @@ def test_in_a_gap_narrower_than_a_body_somebody_stands_and_it_is_said():
     made = _composed("a person waves", room(boxes=GAP))
     assert abs(made.pose.joints_m[0, 0, 0]) < 0.12
     assert NARROW_FLOOR in made.assumptions
+
+
+def test_where_floor_is_tight_the_way_that_gets_least_into_furniture_is_taken():
+    floor = FloorMap.of(room(boxes=CELL), WINDOW_M, 1.7)
+    plan = plan_motion("he stumbles, then falls forward")
+    tried: list[tuple[str, float]] = []
+
+    def composed(depths: dict[str, float]):
+        def compose_on(way, way_floor):
+            if not way_floor.is_tight:
+                raise InputError("no room")
+            way_of = "there" if way.steps[0].moves else f"spot, {way.steps[1].style}"
+            tried.append((way_of, depths.get(way_of, 0.5)))
+            return tried[-1]
+
+        return with_more_room(plan, floor, compose_on, depth_m=lambda result: result[1])[1][0]
+
+    assert composed({"there": 0.57, "spot, front": 0.01}) == "spot, front"
+    assert composed({"there": 0.02}) == "there"
+    assert composed({"there": 0.4, "spot, front": 0.3, "spot, left": 0.1}) == "spot, left"
+
+
+def test_who_crawls_longer_than_the_floor_goes_to_and_fro():
+    square = room(boxes=((-3.0, -1.6, 0.0, 6.0), (1.6, 3.0, 0.0, 6.0), (-3.0, 3.0, 4.0, 6.0)))
+    made = compose(plan_motion("a person crawls for ten seconds"), square, seed=0, range_window_m=WINDOW_M)
+    assert not made.assumptions
+    pelvis_m = made.pose.joints_m[:, 0, :2].astype(float)
+    way_m = np.linalg.norm(np.diff(pelvis_m[::12], axis=0), axis=1).sum()
+    assert way_m > 1.3 * np.ptp(pelvis_m, axis=0).max()
+    assert way_m > 1.5

@@ -1,11 +1,17 @@
 """Seats, and surfaces that are none."""
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from mmweaver.scene.affordances.seats import cut_beds
+from mmweaver.scene.layout.height_map import CELL_M
+from mmweaver.scene.procedural.lighting import LIGHTINGS
+from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.scene.seen_room import see
 
 SOFA = [((-0.8, 0.8), (2.3, 2.9), (0.0, 0.44)), ((-0.8, 0.8), (2.9, 3.1), (0.0, 0.85))]
 
@@ -64,3 +70,20 @@ def test_a_bench_on_trestles_is_a_seat_and_a_cabinet_of_its_size_is_none(box_roo
     assert all(abs(seat.position_m[0]) < 0.6 and 2.15 < seat.position_m[1] < 2.6 for seat in seats)
     cabinet = ((-0.6, 0.6), (2.2, 2.56), (0.0, 0.46))
     assert reconstruct(box_room(boxes=[cabinet]).photo(width=640, height=480)).seats == ()
+
+
+def test_a_bed_that_the_picture_cuts_is_sat_on_and_a_low_table_is_not():
+    """Of the bed in this procedural bedroom 0.8 m2 are seen, less than of a whole one; from depth and with classes."""
+    bedroom = make_room("bedroom", layout=1, seed=61008)
+    photo = bedroom.photo(next(iter(LIGHTINGS)), noise=True)
+    (place,) = bedroom.seats
+    for given in (photo, dataclasses.replace(photo, classes=None)):
+        seats = see(given).seats
+        assert any(np.hypot(*(seat.position_m - place.position_m)[:2]) < 0.35 for seat in seats)
+
+
+def test_surfaces_as_large_as_low_tables_are_no_beds():
+    for size, expected in (((0.6, 1.2), False), ((0.85, 1.6), False), ((1.0, 1.7), True)):
+        near = np.zeros((60, 60), bool)
+        near[5 : 5 + round(size[0] / CELL_M), 5 : 5 + round(size[1] / CELL_M)] = True
+        assert cut_beds(near).any() == expected

@@ -28,6 +28,7 @@ _ON_THE_SPOT = {
 _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
 _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
+DEEP_M = 0.03  # into furniture, where floor is tight: another way is tried first
 _ANY_WINDOW_M = (0.2, 30.0)
 _MOST_RADARS = 3
 _MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
@@ -43,20 +44,33 @@ Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
 def with_more_room(
-    plan: MotionPlan, floor: FloorMap, compose_on: Callable[[MotionPlan, FloorMap], Result], *, may_touch: bool = True
+    plan: MotionPlan,
+    floor: FloorMap,
+    compose_on: Callable[[MotionPlan, FloorMap], Result],
+    *,
+    may_touch: bool = True,
+    depth_m: Callable[[Result], float] = lambda _: 0.0,
 ) -> tuple[MotionPlan, Result, tuple[str, ...]]:
     """The first of several ways to compose a plan that finds room: the plan then, its result, and notes.
 
     In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot; where
     `may_touch`, all that travels on the spot, falls another way, and at last kneeling or lying where furniture is
-    touched least. Raises the error of the first way, with ways on where no floor is free at all.
+    touched least. Of these last ways the first whose result is at most DEEP_M into furniture (`depth_m`), else the one
+    that is least. Raises the error of the first way, with ways on where no floor is free at all.
     """
     first_error: InputError | None = None
+    deep: list[tuple[MotionPlan, Result, tuple[str, ...]]] = []
     for way, way_floor, notes in _ways(plan, floor, may_touch=may_touch):
         try:
-            return way, compose_on(way, way_floor), notes
+            found = way, compose_on(way, way_floor), notes
         except InputError as error:
             first_error = first_error or error
+            continue
+        if not way_floor.is_tight or depth_m(found[1]) <= DEEP_M:
+            return found
+        deep.append(found)
+    if deep:
+        return min(deep, key=lambda one: depth_m(one[1]))
     assert first_error is not None
     if isinstance(first_error, NoRoomError):
         raise NoRoomError(str(first_error), ways_on=ways_on(floor)) from None
@@ -89,7 +103,7 @@ def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way
                 yield one, some_floor, (*notes, *floor_notes)
     wide = [one for one in floors if one[0].walkable.any()]
     narrow = [(floor, (NARROW_FLOOR,)), (assumed, (ASSUMED_FLOOR, NARROW_FLOOR))]
-    for one, notes in plans * may_touch:
+    for one, notes in [*plans, *falls] * may_touch:
         for some_floor, floor_notes in wide or narrow:
             yield one, _like(some_floor, is_tight=True), (*notes, *floor_notes)
 

@@ -22,7 +22,8 @@ TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
-PACING_LEG_M = {"walk": 0.8, "jog": 2.0}  # shortest leg of walking or running to and fro
+PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
+CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: how fast, and the free floor around it
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 FASTER = 1.3  # than usual, to complete a circle
 
@@ -75,6 +76,7 @@ class Trajectory:
     last_direction_rad: float | None = None
     invents_seat: bool = False  # though the room has a seat that can be reached
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
+    turn_rate_radps: float = TURN_RATE_RADPS
     heading_is_given: bool = False  # the caller said where the body faces first; a walk without an aim begins that way
 
     def __post_init__(self) -> None:
@@ -108,7 +110,7 @@ class Trajectory:
             if angle:
                 self.turns.append(Turn(start_s=start_s, end_s=start_s + 0.3, angle_rad=angle))
             return 0.0
-        lasts = TURN_OVERHEAD_S + abs(angle) / TURN_RATE_RADPS
+        lasts = TURN_OVERHEAD_S + abs(angle) / self.turn_rate_radps
         self.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle))
         self.heading_rad += angle
         self.cost += 0.25 * abs(angle)
@@ -170,8 +172,8 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
     trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
     trajectory.notes.append(
-        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person stands still until"
-        f" {step.end_s:.1f} s"
+        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person"
+        f" {'stays on hands and knees' if step.lower == 'crawl' else 'stands still'} until {step.end_s:.1f} s"
     )
 
 
@@ -200,6 +202,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
     """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
     speed = preferred_speed_mps(step, trajectory.rng)
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
+    trajectory.turn_rate_radps = CRAWLING_TURN_RADPS if step.lower == "crawl" else TURN_RATE_RADPS
     for _ in range(40):
         left = step.end_s - time
         faces_already = time == step.start_s and (not first or trajectory.heading_is_given)
@@ -218,6 +221,8 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
+        if step.lower == "crawl":
+            free = _to_where_knees_turn_m(trajectory, direction, free)
         if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
@@ -233,6 +238,14 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         if step.end_s - time < 0.3:
             return
     raise NoTrajectory("too many turns")
+
+
+def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
+    """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
+    gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
+    places = trajectory.position_m + gone_m[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    roomy = gone_m[trajectory.floor.clearance_at(places) > TURNS_ON_KNEES_M] if len(gone_m) else gone_m
+    return float(roomy[-1]) if len(roomy) else 0.0
 
 
 def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:

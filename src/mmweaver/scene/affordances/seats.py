@@ -25,6 +25,7 @@ _THIGH_M = 0.16  # clearance above the seat that thighs need below a table
 _SAG_M = 0.06  # a seat's middle lies this much below its rim
 _TABLE_HEIGHTS_M = (0.60, 1.0)
 _BED_HEIGHTS_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
+_CUT_BED_M2, _CUT_BED_SIZE_M, _CUT_BED_FILLED = 0.5, (0.9, 1.3), 0.35  # of what the picture shows of a bed
 _MIN_SIZE_M = 0.25  # visible size of a seat
 _STOOL_SIZE_M = (0.30, 0.60)
 _MAX_STOOL_HEIGHT_M = 0.52
@@ -127,7 +128,9 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     is_flat = np.abs(on_seat) < _FLATNESS_M
     # A lower surface counts against a seat only where the seat would have been visible: not below a chair seen edge-on.
     is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & seat_squares.is_clear)
-    labelled = bed_squares(height_map) if evidence is None else evidence > 0
+    labelled = bed_squares(height_map)
+    if evidence is not None:  # on a bed the duvet may be called something that is no furniture
+        labelled = (evidence > 0) | (labelled & (evidence >= 0))
     is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
     on_stool, on_bench = (
         _on_stool(height_map, is_seat_height, candidates),
@@ -195,6 +198,24 @@ def bed_squares(height_map: HeightMap) -> GridMask:
         labels, _ = label_components(wide)
         large = np.bincount(labels.ravel()) * CELL_M**2 >= _MIN_BED_M2
         found |= wide & large[labels]
+        found |= cut_beds(near)
+    return found
+
+
+def cut_beds(near: GridMask) -> GridMask:
+    """Squares of surfaces that are larger than low tables as far as the picture shows them."""
+    from scipy import ndimage
+
+    whole = np.asarray(ndimage.binary_opening(near, structure=np.ones((5, 5), bool)), bool)
+    labels, count = label_components(whole)
+    areas_m2 = np.bincount(labels.ravel(), minlength=count + 1) * CELL_M**2
+    found = np.zeros(near.shape, bool)
+    for label in np.nonzero(areas_m2[1:] >= _CUT_BED_M2)[0] + 1:
+        places_m = np.argwhere(labels == label) * CELL_M
+        width_m, length_m = np.ptp(places_m @ np.linalg.eigh(np.cov(places_m.T))[1], axis=0) + CELL_M
+        is_wide = min(width_m, length_m) >= _CUT_BED_SIZE_M[0] and max(width_m, length_m) >= _CUT_BED_SIZE_M[1]
+        if is_wide and areas_m2[label] >= _CUT_BED_FILLED * width_m * length_m:
+            found |= labels == label
     return found
 
 

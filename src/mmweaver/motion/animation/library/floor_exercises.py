@@ -5,7 +5,6 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.kinematics import ankle_from_foot
-from mmweaver.motion.animation.library.gait import cruise_mps
 from mmweaver.motion.animation.library.movement_primitives import (
     cycles,
     hand_to,
@@ -22,6 +21,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 _UP_RAD, _DOWN_RAD = 0.32, 0.06  # of the straight body over the floor, arms stretched and bent
 _ON_TOES_RAD = 1.35  # pitch of the feet
+_TURNING_M = 0.3  # of a limb from the middle about which the body turns
 _STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
 
 
@@ -81,8 +81,8 @@ def sit_ups(context: StepContext) -> Controls:
 def crawling(context: StepContext) -> Controls:
     """On hands and knees; a knee and the opposite hand go ahead together."""
     controls, body, h = upright(context), context.body, context.body.height_m
-    speed = max(cruise_mps(context), 0.15)
-    phase = 2 * np.pi * speed / vary(context, _STRIDE_M, 0.08) * (context.time_s - context.start_s)
+    gone_m, going = _crawled(context)
+    phase = 2 * np.pi / vary(context, _STRIDE_M, 0.08) * gone_m
     stand = body.pelvis_height_m(STAND_STRETCH)
     shift_pelvis(controls, 0.0, 0.0, 0.95 * KNEELING_M * h - stand + 0.008 * h * np.cos(2 * phase))
     controls.pelvis_rad[:, 1] += 1.25
@@ -91,12 +91,23 @@ def crawling(context: StepContext) -> Controls:
     controls.knee_room[:] = 1.0
     for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
         ahead = 0.5 * _STRIDE_M * np.sin(phase) * sign
-        air = rise(sign * np.cos(phase) + 0.3)
+        air = rise(sign * np.cos(phase) + 0.3) * going
         shift_foot(controls, side, ahead - _SHIN * h, -0.01 * h, 0.02 * h * air)
         controls.foot_rad[:, side, 1] += 1.42
         swing = -sign * np.sin(phase)  # the opposite hand
         arm = np.tile([1.3, 0.08, 0.0, 0.15], (len(phase), 1))
         arm[:, 0] += 0.28 * swing
-        arm[:, 3] += 0.35 * rise(-sign * np.cos(phase) + 0.3)
+        arm[:, 3] += 0.35 * rise(-sign * np.cos(phase) + 0.3) * going
         mix_arm(controls, side, arm, np.ones_like(phase))
     return controls
+
+
+def _crawled(context: StepContext) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+    """How far the limbs have carried the body, in metres, and 1 while it goes or turns; at an even pace on the spot."""
+    time_s, path = context.time_s, context.path
+    if not context.moves:
+        return 0.15 * (time_s - context.start_s), np.ones_like(time_s)
+    turning_mps = _TURNING_M * np.abs(path.facing_rad(time_s + 1e-3) - path.facing_rad(time_s - 1e-3)) / 2e-3
+    speed_mps = path.speed_mps(time_s) + turning_mps
+    steps_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(time_s)
+    return np.concatenate([[0.0], np.cumsum(steps_m)]), rise(speed_mps / 0.12)
