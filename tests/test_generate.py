@@ -216,7 +216,7 @@ def test_several_people_each_with_a_body_and_a_place(weaver: Weaver, room: Room,
     assert meta["text"] == texts
     assert "person" not in meta
     assert [person["height_m"] for person in meta["people"]] == [pose.height_m for pose in result.poses]
-    assert any("from one person over another" in sentence for sentence in meta["assumed"])
+    assert any("multipath between people" in sentence for sentence in meta["assumed"])
     saved = read_poses_npz(tmp_path / "out" / "pose.npz")
     assert np.array([pose.joints_m for pose in saved]) == pytest.approx(
         np.array([pose.joints_m for pose in result.poses]), abs=1e-5

@@ -5,6 +5,7 @@ import argparse
 import pytest
 
 from mmweaver.cli.arguments import Parser, glued, landmark, number, place, radar_pose, transmitters, whole
+from mmweaver.cli.main import build_parser
 from mmweaver.core.errors import InputError
 
 
@@ -42,3 +43,8 @@ def test_a_place_may_begin_with_a_minus():
 def test_the_parser_raises_rather_than_exits():
     with pytest.raises(InputError, match="--help"):
         Parser(prog="x").parse_args(["--nope"])
+
+
+def test_an_unknown_option_is_said_by_its_command_with_the_nearest():
+    with pytest.raises(InputError, match=r"--sedd 3; did you mean --seed\? \(see mmweaver generate --help\)"):
+        build_parser().parse_args(["generate", "--demo", "--sedd", "3"])

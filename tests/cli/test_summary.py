@@ -47,6 +47,6 @@ def test_usual_assumptions_are_for_verbose():
     short, long = ("\n".join(summary_lines("walk", meta, verbose=verbose)) for verbose in (False, True))
     assert "assumed: a stool" in short
     assert "level" not in short
-    assert "assumed: 1 more of the usual (--verbose prints them)" in short
+    assert "assumed: 1 more standard assumption (--verbose prints it)" in short
     assert "assumed: the radar is level" in long
     assert "--verbose" not in long

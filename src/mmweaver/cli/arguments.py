@@ -1,6 +1,7 @@
 """The command line's parser: words become values, rare options stay out of the short help, errors are one line."""
 
 import argparse
+import difflib
 import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -30,6 +31,18 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse, but what no command knows is said by that command, with the nearest option."""
+        found, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            command = getattr(found, "parser", self)
+            options = [name for action in command._actions for name in action.option_strings]
+            near = difflib.get_close_matches(unknown[0], options, 1)
+            command.error(
+                f"unrecognized arguments: {' '.join(unknown)}" + "".join(f"; did you mean {one}?" for one in near)
+            )
+        return found
 
     def format_help(self) -> str:
         """The help without rare options, and how to see these."""

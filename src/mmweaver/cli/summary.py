@@ -39,7 +39,8 @@ def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = Fals
     shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]
     lines += [f"assumed: {sentence}" for sentence in shown]
     if hidden := len(meta["assumed"]) - len(shown):
-        lines.append(f"assumed: {hidden} {'more ' if shown else ''}of the usual (--verbose prints them)")
+        what = f"{'more ' if shown else ''}standard assumption{'' if hidden == 1 else 's'}"
+        lines.append(f"assumed: {hidden} {what} (--verbose prints {'it' if hidden == 1 else 'them'})")
     return lines
 
 

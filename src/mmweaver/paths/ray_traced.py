@@ -44,7 +44,7 @@ _SENTENCES = (
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
-    "people occlude each other; paths from one person over another to the radar are there in the second order alone"
+    "people occlude each other; multipath between people is there with paths of second order alone"
     " (see docs/several_people.md)"
 )
 

@@ -84,7 +84,9 @@ def examples(folder: Path, split: str) -> list[RoomExamples]:
     rooms = [RoomExamples(room, split) for room in read_rooms(folder, device=device)]
     rooms = [room for room in rooms if room.indices]
     if not rooms:
-        raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
+        raise InputError(
+            f"{folder} has no sequences of split {split!r}; make a larger set, such as mmweaver dataset --layouts 10"
+        )
     return rooms
 
 
