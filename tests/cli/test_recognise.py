@@ -128,7 +128,7 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
         (["score", "model", "--points", "a"], "needs --recordings"),
         (["run", "model", "--points", "a", "--out", "b"], "--out is no option of recognise run"),
         (["score", "model", "--recordings", "a", "--labelled", "b"], "--labelled is no option of recognise score"),
-        (["run", "nowhere", "--points", "a"], "holds no recogniser"),
+        (["run", "nowhere", "--points", "a"], "nowhere does not exist; give a folder of mmweaver recognise train"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
     ],
 )

@@ -38,6 +38,15 @@ def test_radars_of_different_bins_show_the_same_energy_at_the_same_place():
         assert np.abs(peaks[0] - peaks[1]).max() <= 1
 
 
+def test_no_velocity_is_shown_that_one_of_both_lacks():
+    a, _ = both()
+    axes = common_axes(a, a)
+    assert axes.radial_velocity_mps == pytest.approx(a.cube.grid.radial_velocity_mps)
+    shown = maps_of(a, axes).range_doppler_db
+    assert shown is not None
+    assert shown.min() > -150  # noise, not an empty column
+
+
 def test_without_a_scale_decibels_are_over_noise():
     a, b = both()
     adc = a.signal.adc

@@ -75,8 +75,9 @@ def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
     velocity = None
     if min(one.num_loops for one in configs) >= FEWEST_LOOPS:
         step = max(one.velocity_resolution_mps for one in configs)
-        count = int(min(one.max_velocity_mps for one in configs) / step)
-        velocity = np.arange(-count, count + 1) * step
+        ends = [one.cube.grid.radial_velocity_mps[[0, -1]] / step for one in (a, b)]  # a Doppler axis has no +maximum
+        first, last = max(one[0] for one in ends), min(one[1] for one in ends)
+        velocity = np.arange(np.ceil(first - 1e-6), np.floor(last + 1e-6) + 1) * step
     rows = [azimuth_row(one.cube.grid.antenna_position_m, one.cube.grid.wavelength_m) for one in (a, b)]
     azimuth = azimuth_axis_rad(AZIMUTHS) if min(len(row) for row in rows) >= 3 else None
     if all(np.isfinite(one.cube.scale) for one in (a, b)):
