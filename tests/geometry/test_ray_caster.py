@@ -60,3 +60,10 @@ def test_no_rays_and_no_faces(wall: RayCaster):
     assert np.isinf(empty.distance_m(*ray)).all()
     assert empty.is_clear(*ray).all()
     assert empty.first_hit(*ray)[1].tolist() == [-1, -1]
+
+
+def test_thousands_of_casters_may_be_alive():
+    """One of Embree's devices each ended in a crash at the 1,017th: bodies of long sequences are kept for a while."""
+    corners, face = np.array([[-1.0, 2, -1], [1, 2, -1], [0, 2, 1]]), np.array([[0, 1, 2]])
+    casters = [RayCaster(corners, face) for _ in range(1200)]
+    assert casters[-1].distance_m(np.zeros((1, 3)), np.array([[0.0, 1, 0]]))[0] == 2.0

@@ -1,5 +1,9 @@
 """Ray casting with Embree on a triangle mesh, called directly: wrapper libraries take 2 to 8 times as long."""
 
+import os
+from functools import lru_cache
+from typing import Any
+
 import numpy as np
 from jaxtyping import Bool, Int
 
@@ -31,7 +35,7 @@ class RayCaster:
         corner = np.asarray(vertices_m, np.float64)[np.asarray(faces)]
         self._corner_m = corner[:, 0]
         self._normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        self._scene = EmbreeScene()
+        self._scene = EmbreeScene(_device(os.getpid()))
         self._mesh = TriangleMesh(
             self._scene,
             np.ascontiguousarray(vertices_m, np.float32),
@@ -74,6 +78,14 @@ class RayCaster:
 
     def _is_empty(self, origins: Points) -> bool:
         return self.num_faces == 0 or len(origins) == 0
+
+
+@lru_cache(maxsize=1)
+def _device(process: int) -> Any:
+    """Embree's device, one a process: each takes one of a process's 1,024 keys of threads, and without it crashes."""
+    from embreex.rtcore import EmbreeDevice
+
+    return EmbreeDevice()
 
 
 def _packed(vectors: Points) -> Points:
