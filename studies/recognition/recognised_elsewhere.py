@@ -21,8 +21,8 @@ from typing import Any
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.recognition.recording_checks import RadarFacts
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_recogniser import fitted, generated_windows
@@ -70,7 +70,7 @@ def _trained(
 ) -> Recogniser:
     model = fitted(generated_windows(training, task, settings, background), [], task, settings)
     facts = replace(RadarFacts.of(task), knows_place=bool(background))
-    return replace(model, meta=model.meta | {"radar_facts": facts.values()})
+    return replace(model, points=replace(model.points, facts=facts))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:

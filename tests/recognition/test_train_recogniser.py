@@ -15,10 +15,12 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser, save_recogniser
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
+from mmweaver.recognition.window_filter import WindowFilter
 from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
 
 TASK = """radar = "iwr1443_mars"
@@ -95,7 +97,7 @@ def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(tas
     turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
     for found, expected in ((people, False), (turned, True)):
         assert any("behind the radar" in line for line in score_recordings(model, found)["contradictions"]) == expected
-    assert score_recordings(replace(model, meta={}), turned)["contradictions"] == []
+    assert score_recordings(replace(model, points=WindowFilter()), turned)["contradictions"] == []
     write_recordings(tmp_path / "turned", turned)
     again = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "turned")
     assert any("behind the radar" in line for line in again.meta["contradictions"])
@@ -115,7 +117,8 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
-    assert len(model.busy) == len(again.busy) == 9
+    assert len(model.points.busy) == len(again.points.busy) == 9
+    assert again.points.facts == RadarFacts.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [_in_front(one, fan) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]
