@@ -70,7 +70,17 @@ def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
     assert set(scores["distance"]["per_feature"]) <= set(again.names)
     points = scores["distance"]["moving_points_a_frame"]
     assert points["recorded"] == pytest.approx(points["generated"], rel=0.2)
+    assert scores["hardly_distinct"] == []
     json.dumps(scores)
+
+
+@pytest.mark.usefixtures("drawn")
+def test_labels_that_generated_people_do_not_tell_apart_are_named(task_file: Path):
+    model = small_recogniser(task_file)
+    known = model.meta["generated_on_generated"]
+    blurred = replace(model, meta=model.meta | {"generated_on_generated": known | {"confusion": [[6, 4], [2, 8]]}})
+    (line,) = score_recordings(blurred, drawn_sequences(model.settings, 3, first=50))["hardly_distinct"]
+    assert line.startswith("rest is taken for to_and_fro in 40%")
 
 
 @pytest.mark.usefixtures("drawn")
