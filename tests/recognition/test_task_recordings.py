@@ -38,6 +38,16 @@ def test_columns_are_what_their_names_say(tmp_path: Path):
     assert one.cloud.snr_db[:2].tolist() == [20, 30]
 
 
+def test_points_that_name_their_own_columns_are_read_as_they_say(tmp_path: Path):
+    """As `mmweaver generate` and `mmweaver points` write them; `columns` are those of `pts`."""
+    own = dict.fromkeys(("x_m", "z_m", "snr_db"), np.ones(2)) | {"y_m": [2.0, 3.0], "radial_velocity_mps": [0.5, -0.5]}
+    np.savez(tmp_path / "walk.npz", frame=[0, 4], **own)
+    (one,) = read_task_recordings(tmp_path, SETTINGS)
+    assert (one.label, one.num_frames) == ("walk", 5)
+    assert one.cloud.y_m.tolist() == [2.0, 3.0]
+    assert one.cloud.radial_velocity_mps.tolist() == [0.5, -0.5]
+
+
 def test_an_empty_room_may_have_no_points(tmp_path: Path):
     np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)), num_frames=30)
     one = read_task_recording(tmp_path / "a.npz", SETTINGS)
