@@ -1,4 +1,4 @@
-"""Which points of a window count: moving ones outside busy places, one of neighbours that firmware would group."""
+"""Which points of a window count: one of neighbours that firmware would group, no echoes behind somebody, no fans."""
 
 from dataclasses import dataclass, field
 
@@ -14,10 +14,9 @@ class WindowFilter:
     """What is left out of all windows, generated and recorded, before anything is measured of them."""
 
     busy: Cells = field(default_factory=NO_CELLS.copy)  # of the empty place: moving points there are left out
-    facts: RadarFacts | None = None  # of the task; None: nothing is grouped
+    facts: RadarFacts | None = None  # of the task; None: a model of before, which saw neighbours and echoes
 
     def __call__(self, window: PointRecording) -> PointRecording:
         """The window without what does not count."""
         window = without_busy(window, self.busy)
-        window = window if self.facts is None else grouped(window, self.facts)
-        return without_farther(window)
+        return window if self.facts is None else without_farther(grouped(window, self.facts))
