@@ -3,12 +3,12 @@
     python -m studies run recognised_elsewhere iwr6843 --sequences FOLDER --people 16 --strangers 12
 
 Stands in for recordings of a board of which none are at hand. Strangers are generated, too, by a recipe that differs in
-all that a user does not know: a higher or lower board that looks down, a wall and more furniture, more clutter, people
-farther away who sway more and keep another pace, a lower threshold and no second peak. What motions, skin and
-noise are like is the same in both, so real recordings are harder than this. The same strangers are scored under each
-condition of `other_boards`, which no recogniser knows of: other settings of the firmware, things that move and are
-nobody, lost frames, columns that are named wrongly. `said` is what `recognise score` has to say of the recordings
-without their labels.
+all that a user does not know: a higher or lower board that looks down (one in four hangs 1.6 to 3 m high), a wall and
+more furniture, more clutter, people farther away who sway more and keep another pace, a lower threshold and no second
+peak. What motions, skin and noise are like is the same in both, so real recordings are harder than this. The same
+strangers are scored under each condition of `other_boards`, which no recogniser knows of: other settings of the
+firmware, things that move and are nobody, lost frames, columns that are named wrongly. `said` is what `recognise score`
+has to say of the recordings without their labels.
 """
 
 import argparse
