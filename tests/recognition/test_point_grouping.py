@@ -28,7 +28,7 @@ def window(cells: list[tuple[int, int, int, float]]) -> PointRecording:
 def cells_of(recording: PointRecording) -> list[tuple[int, int, int]]:
     cloud = recording.cloud
     row, column = np.round(cloud.y_m / STEP_M), np.round(cloud.radial_velocity_mps / STEP_MPS)
-    return [tuple(map(int, one)) for one in zip(cloud.frame, row, column, strict=True)]
+    return [(int(a), int(b), int(c)) for a, b, c in zip(cloud.frame, row, column, strict=True)]
 
 
 def block(frame: int, row: int, column: int, snr_db: float) -> list[tuple[int, int, int, float]]:
