@@ -96,7 +96,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     windows = [windows_of(one, task.recordings) for one in recordings]
     number = {label: place for place, label in enumerate(task.recordings.labels)}
     rows = curve(
-        made, recognition_features([window for own in windows for window in own], made.names),
+        made, recognition_features([made.points(window) for own in windows for window in own], made.names),
         np.array([number[window.label] for own in windows for window in own]),
         np.repeat(np.arange(len(windows)), [len(own) for own in windows]),
         np.array([number[one.label] for one in recordings]), may_train,

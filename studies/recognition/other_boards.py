@@ -131,6 +131,27 @@ FAN = moving_object(most_points=4, fastest_mps=0.9, share=0.7)  # its blades hav
 CURTAIN = moving_object(most_points=3, fastest_mps=0.25, share=0.5)  # slowly to and fro
 
 
+def furnished(objects: int) -> Changed:
+    """More static points, one of each object: of most in nearly every frame, of some in few; all around, to 9 m."""
+
+    def change(recording: PointRecording, rng: np.random.Generator) -> PointRecording:
+        share = rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1], objects, p=[0.3, 0.2, 0.2, 0.1, 0.1, 0.1])
+        frame, which = np.nonzero(rng.random((recording.num_frames, objects)) < share)
+        range_m, azimuth, up_m = (
+            rng.uniform(0.3, 9.0, objects),
+            rng.uniform(-1.1, 1.1, objects),
+            rng.normal(0, 0.5, objects),
+        )
+        azimuth = azimuth[which] + 0.03 * rng.normal(size=len(which))
+        still = PointCloud(
+            frame=frame, x_m=range_m[which] * np.sin(azimuth), y_m=range_m[which] * np.cos(azimuth), z_m=up_m[which],
+            radial_velocity_mps=np.zeros(len(frame)), snr_db=np.full(len(frame), 17.0),
+        )  # fmt: skip
+        return _joined(recording, still)
+
+    return change
+
+
 def with_ghost(recording: PointRecording, rng: np.random.Generator) -> PointRecording:
     """An echo of the body over a wall: some of its points again, farther away and on another side."""
     body = recording.cloud.select(is_moving(recording.cloud) & (rng.random(len(recording.cloud.frame)) < 0.5))
@@ -222,13 +243,19 @@ CONDITIONS = (
     Condition(name="CFAR takes the greater side", recipe=_averaged("cago")),
     Condition(name="neighbours not grouped", recipe=lambda recipe: _with_firmware(
         recipe, group_range=False, group_doppler=False)),
+    Condition(name="neighbours not grouped, no SNR", recipe=lambda recipe: _with_firmware(
+        recipe, group_range=False, group_doppler=False), points=without_snr),
     Condition(name="30 % of the frames lost", points=fewer_frames(0.3)),
     Condition(name="a tenth of the frames lost, not counted", points=numbered_without_empty),
     Condition(name="static clutter removed", points=without_static),
     Condition(name="directions noisy", points=noisy_places),
     Condition(name="board 2 to 3 m high", recipe=_varied(radar_height_m=(2.0, 3.0))),
+    Condition(name="board 2 to 3 m high that looks down 20 to 40 degrees", recipe=_varied(
+        radar_height_m=(2.0, 3.0), tilt_deg=(20.0, 40.0))),
     Condition(name="clutter 10 dB stronger", recipe=_varied(clutter_db=(10.0, 20.0))),
     Condition(name="three times as much furniture", recipe=_varied(most_panels=27)),
+    Condition(name="clutter of a hall", recipe=_varied(clutter_db=(20.0, 30.0), most_panels=27)),
+    Condition(name="25 static points more", points=furnished(25)),
     Condition(name="people 3 to 5 m away", recipe=_varied(
         distance_m=(3.0, 5.0), near_m=(1.5, 3.0), far_m=(4.0, 5.5), wall_m=(5.5, 8.0))),
     Condition(name="fan", points=FAN),

@@ -3,12 +3,12 @@
     python -m studies run recognised_elsewhere iwr6843 --sequences FOLDER --people 16 --strangers 12
 
 Stands in for recordings of a board of which none are at hand. Strangers are generated, too, by a recipe that differs in
-all that a user does not know: a higher or lower board that looks down, a wall and more furniture, more clutter, people
-farther away who sway more and keep another pace, a lower threshold and no second peak. What motions, skin and
-noise are like is the same in both, so real recordings are harder than this. The same strangers are scored under each
-condition of `other_boards`, which no recogniser knows of: other settings of the firmware, things that move and are
-nobody, lost frames, columns that are named wrongly. `said` is what `recognise score` has to say of the recordings
-without their labels.
+all that a user does not know: a higher or lower board that looks down (one in four hangs 1.6 to 3 m high), a wall and
+more furniture, more clutter, people farther away who sway more and keep another pace, a lower threshold and no second
+peak. What motions, skin and noise are like is the same in both, so real recordings are harder than this. The same
+strangers are scored under each condition of `other_boards`, which no recogniser knows of: other settings of the
+firmware, things that move and are nobody, lost frames, columns that are named wrongly. `said` is what `recognise score`
+has to say of the recordings without their labels.
 """
 
 import argparse
@@ -21,8 +21,8 @@ from typing import Any
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.recognition.recording_checks import RadarFacts
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_recogniser import fitted, generated_windows
@@ -70,7 +70,7 @@ def _trained(
 ) -> Recogniser:
     model = fitted(generated_windows(training, task, settings, background), [], task, settings)
     facts = replace(RadarFacts.of(task), knows_place=bool(background))
-    return replace(model, meta=model.meta | {"radar_facts": facts.values()})
+    return replace(model, points=replace(model.points, facts=facts))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:

@@ -8,7 +8,8 @@ import pytest
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.recording_checks import RadarFacts, contradictions
+from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.recording_checks import contradictions
 
 FACTS = RadarFacts(
     range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=1.0, removes_static=False, groups_range=False,

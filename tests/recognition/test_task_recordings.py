@@ -96,3 +96,13 @@ def test_a_file_must_name_its_activity(tmp_path: Path):
     assert read_task_recordings(tmp_path, SETTINGS, labelled=False)[0].label == ""
     with pytest.raises(InputError, match="does not exist"):
         read_task_recordings(tmp_path / "none", SETTINGS)
+
+
+def test_points_that_name_their_own_columns_are_read_as_they_say(tmp_path: Path):
+    """As `mmweaver generate` and `mmweaver points` write them; `columns` are those of `pts`."""
+    own = dict.fromkeys(("x_m", "z_m", "snr_db"), np.ones(2)) | {"y_m": [2.0, 3.0], "radial_velocity_mps": [0.5, -0.5]}
+    np.savez(tmp_path / "walk.npz", frame=[0, 4], **own)
+    (one,) = read_task_recordings(tmp_path, SETTINGS)
+    assert (one.label, one.num_frames) == ("walk", 5)
+    assert one.cloud.y_m.tolist() == [2.0, 3.0]
+    assert one.cloud.radial_velocity_mps.tolist() == [0.5, -0.5]

@@ -15,10 +15,12 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser, save_recogniser
 from mmweaver.recognition.score_recogniser import score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
+from mmweaver.recognition.window_filter import WindowFilter
 from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
 
 TASK = """radar = "iwr1443_mars"
@@ -68,7 +70,17 @@ def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
     assert set(scores["distance"]["per_feature"]) <= set(again.names)
     points = scores["distance"]["moving_points_a_frame"]
     assert points["recorded"] == pytest.approx(points["generated"], rel=0.2)
+    assert scores["hardly_distinct"] == []
     json.dumps(scores)
+
+
+@pytest.mark.usefixtures("drawn")
+def test_labels_that_generated_people_do_not_tell_apart_are_named(task_file: Path):
+    model = small_recogniser(task_file)
+    known = model.meta["generated_on_generated"]
+    blurred = replace(model, meta=model.meta | {"generated_on_generated": known | {"confusion": [[6, 4], [2, 8]]}})
+    (line,) = score_recordings(blurred, drawn_sequences(model.settings, 3, first=50))["hardly_distinct"]
+    assert line.startswith("rest is taken for to_and_fro in 40%")
 
 
 @pytest.mark.usefixtures("drawn")
@@ -95,7 +107,7 @@ def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(tas
     turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
     for found, expected in ((people, False), (turned, True)):
         assert any("behind the radar" in line for line in score_recordings(model, found)["contradictions"]) == expected
-    assert score_recordings(replace(model, meta={}), turned)["contradictions"] == []
+    assert score_recordings(replace(model, points=WindowFilter()), turned)["contradictions"] == []
     write_recordings(tmp_path / "turned", turned)
     again = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "turned")
     assert any("behind the radar" in line for line in again.meta["contradictions"])
@@ -115,7 +127,8 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
-    assert len(model.busy) == len(again.busy) == 9
+    assert len(model.points.busy) == len(again.points.busy) == 9
+    assert again.points.facts == RadarFacts.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [_in_front(one, fan) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]

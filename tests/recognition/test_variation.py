@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.variation import Variation, sample_variation
+from mmweaver.recognition.variation import CHEST_M, Variation, hung_high, sample_variation
 
 
 def test_samples_fill_their_ranges():
@@ -23,3 +23,17 @@ def test_the_start_is_at_its_distance():
     one = sample_variation(Variation(), stream(0, "draw"))
     assert np.isclose(np.hypot(*one.start_m), one.distance_m)
     assert np.isclose(np.degrees(np.arctan2(*one.start_m)), one.azimuth_deg)
+
+
+def test_a_share_of_the_radars_hangs_high_and_looks_down():
+    variation = Variation(high_share=0.4, high_m=(1.8, 3.0), tilt_deg=(0.0, 0.0))
+    before = [sample_variation(variation, stream(seed, "draw")) for seed in range(200)]
+    after = [hung_high(one, variation, stream(seed, "mount")) for seed, one in enumerate(before)]
+    high = [one for one in after if one.tilt_deg > 0.0]
+    assert abs(len(high) / len(after) - 0.4) < 0.1
+    for one in high:
+        below_deg = np.degrees(np.arctan2(one.radar_height_m - CHEST_M, one.distance_m))
+        assert 1.8 <= one.radar_height_m <= 3.0
+        assert 0.1 * below_deg < one.tilt_deg < 1.2 * below_deg
+    assert all(one in before for one in after if one not in high)
+    assert all(hung_high(one, Variation(), stream(0, "mount")) is one for one in before[:3])

@@ -1,5 +1,7 @@
 """Augmented copies lose and gain points, reproducibly."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mmweaver.core.records import PointCloud
@@ -60,3 +62,15 @@ def test_added_objects_are_static_and_copies_follow_the_stream():
     far = np.hypot(one.x_m, one.y_m) > 2.6
     assert far.any()
     assert (one.radial_velocity_mps[far] == 0).all()
+
+
+def test_a_furnished_room_adds_static_cells_all_around():
+    crowded = replace(NOTHING, crowded_share=1.0, most_crowded=30, reversed_share=0.0, reflected_share=0.0)
+    added = []
+    for seed in range(20):
+        cloud = augmented(window(), np.random.default_rng(seed), crowded).cloud
+        assert (np.abs(cloud.radial_velocity_mps) > 0).sum() == 2 * FRAMES  # nothing that moves is added
+        assert (np.diff(cloud.frame) >= 0).all()
+        added.append(len(cloud.frame) / FRAMES - 4)
+    assert min(added) < 3
+    assert max(added) > 15

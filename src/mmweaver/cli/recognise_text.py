@@ -61,7 +61,7 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     count = far["moving_points_a_frame"]
     if count["generated"] is not None:
         text.append(f"  moving points a frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
-    text += contradiction_lines(scores["contradictions"])
+    text += [f"  {line}" for line in scores["hardly_distinct"]] + contradiction_lines(scores["contradictions"])
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

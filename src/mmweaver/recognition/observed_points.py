@@ -1,12 +1,11 @@
-"""What a board reports of a person in a sampled room: ray-traced samples, diffuse clutter, the firmware, its tilt."""
+"""What a board, perhaps tilted, reports of a person in a sampled room: ray-traced samples, clutter, the firmware."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.firmware import firmware_points
@@ -17,6 +16,7 @@ from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.recognition.diffuse_clutter import diffuse_clutter
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.variation import VariationSample
+from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 
 BEHIND_M = 0.3  # least distance of a wall from the body
 
@@ -33,7 +33,10 @@ class PointRadar:
 def observed_cloud(
     board: PointRadar, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
 ) -> PointCloud:
-    """Points of `frames` frames of one person, or of nobody (an empty tuple), under the sampled conditions."""
+    """Points of `frames` frames of one person, or of nobody (an empty tuple), under the sampled conditions.
+
+    Points are in the axes of the board, which looks down by `tilt_deg`.
+    """
     radar = replace(
         board.radar,
         noise_figure_db=board.radar.noise_figure_db + now.noise_db,
@@ -43,25 +46,17 @@ def observed_cloud(
     wall_m = now.wall_m
     if wall_m is not None and isinstance(pose, PoseSequence):
         wall_m = max(wall_m, float(pose.joints_m[..., 1].max()) + BEHIND_M)
-    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
+    looks = RadarPose(pitch_deg=-now.tilt_deg)
+    scene = scene_seen_from(open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels), looks)
+    people = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
     clutter = diffuse_clutter(radar, now.clutter_db, stream(seed, "diffuse clutter"))
     firmware = _less_sensitive(board.firmware, now.threshold_db, board.radar.num_antennas)
     adc = (
         Simulator(scene, radar, propagation=AS_PUBLISHED).run(
-            pose, num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now)
+            people_seen_from(people, looks), num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now)
         )
     ).adc
-    cloud = firmware_points(replace(adc, samples=adc.samples + clutter), firmware)
-    return _tilted(cloud, np.radians(now.tilt_deg))
-
-
-def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
-    """Points as reported by a radar pitched down by this angle: they appear higher."""
-    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
-    return PointCloud(
-        frame=cloud.frame, x_m=cloud.x_m, y_m=cos * cloud.y_m - sin * cloud.z_m,
-        z_m=sin * cloud.y_m + cos * cloud.z_m, radial_velocity_mps=cloud.radial_velocity_mps, snr_db=cloud.snr_db,
-    )  # fmt: skip
+    return firmware_points(replace(adc, samples=adc.samples + clutter), firmware)
 
 
 def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int) -> FirmwareSettings:

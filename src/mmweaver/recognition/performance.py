@@ -27,12 +27,13 @@ from mmweaver.recognition.generated_windows import (
 )
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.task_file import Mount
-from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
+from mmweaver.recognition.variation import Span, Variation, VariationSample, hung_high, sample_variation
 
 LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
 NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
 ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
 AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
+HIGH_SHARE = 0.25  # of radars of whose mount nothing is known
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
 REST_S = (0.2, 0.8)  # before and after a single performance
@@ -98,6 +99,8 @@ def task_variation(mount: Mount) -> Variation:
     )  # fmt: skip
     if mount.height_m is not None:
         known = replace(known, radar_height_m=_around(mount.height_m, HEIGHT_SPREAD_M))
+    if mount.height_m is None and mount.tilt_deg is None:
+        known = replace(known, high_share=HIGH_SHARE)
     if mount.tilt_deg is not None:
         # clouds are reported in the board's axes: a board that looks down sees people higher
         known = replace(known, tilt_deg=_around(mount.tilt_deg, TILT_SPREAD_DEG))
@@ -114,7 +117,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
     tempo, amplitude, heading = rng.normal(size=3).clip(-2, 2)
     return Performer(
         subject=int(rng.integers(MOST_SUBJECTS)),
-        surroundings=sample_variation(variation, rng),
+        surroundings=hung_high(sample_variation(variation, rng), variation, stream(seed, "mount", index)),
         tempo=float(np.exp(prior.tempo_of_person * tempo)),
         amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),

@@ -20,18 +20,20 @@ from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.busy_places import NO_CELLS, Cells, without_busy
+from mmweaver.recognition.busy_places import NO_CELLS
 from mmweaver.recognition.course_features import course_features
 from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recorded_columns import RecordedColumns
-from mmweaver.recognition.recording_checks import RadarFacts, contradictions
+from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.side_features import side_features
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.timeline_features import timeline_features
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, read_trees, write_trees
 from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
+from mmweaver.recognition.window_filter import WindowFilter
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
@@ -65,7 +67,7 @@ class Recogniser:
     outside_above: float  # a window is outside where this share of its features is exceeded
     matching: FeatureMatching | None  # learned from unlabelled recordings
     meta: dict[str, Any]
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # of the empty place: moving points there are left out
+    points: WindowFilter = field(default_factory=WindowFilter)  # which of a window's count
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -74,12 +76,11 @@ class Recogniser:
 
     def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
         """What recordings show that cannot be if the task is right; models of before know too little to say."""
-        facts = RadarFacts.read(self.meta.get("radar_facts"))
-        return [] if facts is None else contradictions(recordings, facts)
+        return [] if self.points.facts is None else contradictions(recordings, self.points.facts)
 
     def features(self, windows: Sequence[PointRecording]) -> Float[np.ndarray, "window feature"]:
         """Features of windows, not matched."""
-        return recognition_features([without_busy(window, self.busy) for window in windows], self.names)
+        return recognition_features([self.points(window) for window in windows], self.names)
 
     def votes(self, features: Float[np.ndarray, "window feature"]) -> Float[np.ndarray, "window label"]:
         """Votes of features as `features` gives them, matched to the generated ones where that was learned."""
@@ -148,7 +149,7 @@ def window_row(window: PointRecording) -> dict[str, float]:
 def save_recogniser(folder: Path, model: Recogniser) -> None:
     """Writes the folder's files; meta.json is the last, so a folder with it is complete."""
     write_trees(folder / TREES_FILE, model.trees)
-    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated, "busy": model.busy}
+    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated, "busy": model.points.busy}
     if model.matching is not None:
         arrays["recorded"] = model.matching.recorded
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
@@ -187,7 +188,8 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     known = {"kind", "version", "recordings", "outside_above"}
     return Recogniser(
         settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
-        generated=generated, outside_above=outside_above, matching=matching, busy=busy,
+        generated=generated, outside_above=outside_above, matching=matching,
+        points=WindowFilter(busy=busy, facts=RadarFacts.read(meta.get("radar_facts"))),
         meta={name: value for name, value in meta.items() if name not in known},
     )  # fmt: skip
 

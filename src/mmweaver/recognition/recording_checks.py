@@ -5,12 +5,11 @@ step. Where recordings contradict the task, a recogniser has learned from anothe
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from mmweaver.recognition.point_recording import STILL_MPS, PointRecording, is_moving
-from mmweaver.recognition.task_file import RecognitionTask
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.timeline_features import of_the_body
 
 LAG_S = 0.5  # over which ways are compared with velocities
@@ -24,45 +23,6 @@ HARDLY, MOSTLY = 0.01, 0.6  # shares of points at rest
 GROUPED, UNGROUPED = 0.05, 0.3  # shares of points that have a neighbour where firmware does, or does not, group these
 APART_M, OFTEN = 1.2, 0.25  # between two that move; share of the frames in which something moves
 NAME_IT, NAME_COLUMNS = "name the .cfg that the board was sent", "check the directions of `columns`"
-
-
-@dataclass(frozen=True, kw_only=True)
-class RadarFacts:
-    """What a task says of the radar, as its points show it."""
-
-    range_step_m: float
-    velocity_step_mps: float
-    max_velocity_mps: float
-    removes_static: bool
-    groups_range: bool  # of neighbours in range or in velocity one is reported
-    groups_velocity: bool
-    knows_place: bool  # whether there is a recording of the empty place
-
-    @staticmethod
-    def of(task: RecognitionTask) -> "RadarFacts":
-        """Those of a task."""
-        radar = task.radar
-        return RadarFacts(
-            range_step_m=radar.range_resolution_m, velocity_step_mps=radar.velocity_resolution_mps,
-            max_velocity_mps=radar.max_velocity_mps, removes_static=task.firmware.static_removal,
-            groups_range=task.firmware.group_range, groups_velocity=task.firmware.group_doppler,
-            knows_place=task.background is not None,
-        )  # fmt: skip
-
-    @staticmethod
-    def read(values: object) -> "RadarFacts | None":
-        """Those of `values`; None where it holds none, as models of before."""
-        try:
-            found = RadarFacts(**values) if isinstance(values, dict) else None
-            if found is None or not 0 < found.velocity_step_mps <= found.max_velocity_mps < np.inf:
-                return None
-            return found if 0 < found.range_step_m < np.inf else None
-        except TypeError:
-            return None
-
-    def values(self) -> dict[str, float | bool]:
-        """For meta.json."""
-        return asdict(self)
 
 
 def contradictions(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[str]:

@@ -14,15 +14,16 @@ from mmweaver.recognition.task_recordings import read_task_recordings, windows_o
 from mmweaver.recognition.window_features import moving_points
 
 LISTED = 10  # features that differ most
+MISTAKEN = 0.3  # of generated windows of a label, from which it is hardly told from another
 
 
 def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any]:
     """Scores on a folder of labelled recordings: `window`, `three_windows`, `recording`, as `evaluate --json` has them.
 
     With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
-    against generated ones, without labels), `warning` where the recordings lie outside, and `contradictions`: what they
-    show that cannot be if the task is right. Raises InputError where
-    the recordings give no window.
+    against generated ones, without labels), `warning` where the recordings lie outside, `contradictions`: what they
+    show that cannot be if the task is right, and `hardly_distinct`: labels that the radar hardly tells apart. Raises
+    InputError where the recordings give no window.
     """
     found = read_task_recordings(recordings, model.settings)
     return score_recordings(model, found)
@@ -52,8 +53,23 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     return {
         **report(evaluation), "chance": round(1 / len(model.labels), 4),
         "generated_on_generated": model.meta.get("generated_on_generated"), "distance": far, "warning": warning(far),
-        "contradictions": model.contradictions(recordings),
+        "contradictions": model.contradictions(recordings), "hardly_distinct": hardly_distinct(model),
     }  # fmt: skip
+
+
+def hardly_distinct(model: Recogniser) -> list[str]:
+    """Labels that this radar hardly tells apart, by generated people: no recording can be expected to do better."""
+    expected = model.meta.get("generated_on_generated") or {}
+    found: list[str] = []
+    for label, row in zip(model.labels, expected.get("confusion", []), strict=False):
+        for other, count in zip(model.labels, row, strict=True):
+            share = count / max(sum(row), 1)
+            if other != label and share >= MISTAKEN:
+                found.append(
+                    f"{label} is taken for {other} in {share:.0%} of generated windows: the radar, so set, hardly tells"
+                    " them apart; other settings, a longer window or one label for both may help"
+                )
+    return found
 
 
 def distance(model: Recogniser, features: np.ndarray) -> dict[str, Any]:

@@ -8,8 +8,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
-from mmweaver.core.safe_files.safe_arrays import read_npz
-from mmweaver.formats.point_clouds.read_points import points_kind, read_points
+from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
+from mmweaver.formats.point_clouds.read_points import read_points
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
@@ -62,8 +62,10 @@ def label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
 
 
 def _cloud(file: Path, columns: RecordedColumns | None) -> tuple[PointCloud, int]:
-    if file.suffix.lower() == ".npz" and columns is not None and points_kind(file) == "npz":
-        return _from_columns(file, columns)
+    if file.suffix.lower() == ".npz" and columns is not None:
+        held = read_npz(file, only=("frame", "pts", "num_frames", "x_m"))
+        if "pts" in held or "x_m" not in held:  # else it names its columns itself, as `mmweaver points` writes them
+            return _from_columns(held, file, columns)
     if file.suffix.lower() == ".dat":
         log = read_ti_uart(file)
         return log.points, max(len(log.frame_number), 1)
@@ -75,9 +77,8 @@ def _num_frames(frame: np.ndarray) -> int:
     return int(frame[-1]) + 1 if len(frame) else 0
 
 
-def _from_columns(file: Path, columns: RecordedColumns) -> tuple[PointCloud, int]:
+def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tuple[PointCloud, int]:
     """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points."""
-    held = read_npz(file, only=("frame", "pts", "num_frames"))
     frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
     pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
     frame = _takes_in_turn(frame)

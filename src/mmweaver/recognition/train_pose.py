@@ -60,12 +60,18 @@ def posed_frames(recording: PointRecording) -> PosedFrames:
     return PosedFrames(frames=point_frames(recording.cloud, recording.num_frames), joints_m=joints_m)
 
 
+def _recipe(task: RecognitionTask, seed: int) -> SequenceRecipe:
+    """Before boards at usual heights: what high ones would do to poses was not measured."""
+    own = SequenceRecipe.of(task, POSE_PRIOR, seed)
+    return replace(own, variation=replace(own.variation, high_share=0.0))
+
+
 def generated_frames(
     task: RecognitionTask, sequences: int, seed: int, folder: Path | None,
     listener: Callable[[int, int], object] | None = None,
 ) -> list[PointRecording]:  # fmt: skip
     """Sequences of a task with joints; one after the other, all activities of a person in turn."""
-    everything = generate_sequences(SequenceRecipe.of(task, POSE_PRIOR, seed), sequences, folder, listener)
+    everything = generate_sequences(_recipe(task, seed), sequences, folder, listener)
     posed = [one for one in everything if one.joints_m is not None]
     if not posed:
         raise InputError("the task has nobody in it: a pose network needs an activity that people do")
@@ -121,7 +127,7 @@ def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer, peop
         "columns": None if columns is None else list(columns.names),
         "activities": {label: list(said) for label, said in task.activities.items()},
     }  # fmt: skip
-    recipe = SequenceRecipe.of(task, POSE_PRIOR, people_seed)
+    recipe = _recipe(task, people_seed)
     card = WeightsCard(
         recipe=trainer.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(recipe.as_json().encode()).hexdigest(),
         radar=task.radar.name, steps=trainer.step, seed=trainer.recipe.seed, validation_loss=trainer.best.value,

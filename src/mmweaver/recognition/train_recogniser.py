@@ -13,12 +13,13 @@ from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
-from mmweaver.recognition.busy_places import busy_cells, without_busy
+from mmweaver.recognition.busy_places import busy_cells
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
 from mmweaver.recognition.performance_variation import varied
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radar_facts import RadarFacts
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
     Recogniser,
@@ -27,7 +28,7 @@ from mmweaver.recognition.recogniser import (
     save_recogniser,
     window_row,
 )
-from mmweaver.recognition.recording_checks import RadarFacts, contradictions
+from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.self_training import following, self_trained
 from mmweaver.recognition.sensitivity import sensitivity_weights
@@ -43,12 +44,14 @@ from mmweaver.recognition.training_windows import (
 from mmweaver.recognition.tree_ensemble import joined_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
 from mmweaver.recognition.window_features import moving_points
+from mmweaver.recognition.window_filter import WindowFilter
 
 QUICK_SEQUENCES = 8  # people an activity
 SINGLE_SEQUENCES = 100  # of single performances, which give one window each
 SEQUENCE_FOLDER = "sequences"
 HELD_OUT = 4  # one person in so many is held out to test on generated people
 SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
+CROWDED_SHARE = 0.3  # of copies before a furnished room
 OVERLAP = 3  # windows of a generated sequence begin every so many parts of a window
 INSIDE_SHARE = 0.99  # of generated windows
 Listener = Callable[[str, int, int], object]
@@ -137,13 +140,13 @@ def generated_windows(
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
-    Moving points where the empty place is busy are left out.
-
-    Raises InputError where an activity gave no window.
+    Points that do not count are left out. Raises InputError where an activity gave no window.
     """
+    shows_room = not (task.firmware.static_removal or background)
     how = WindowAugmentation(
         cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
-        most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
+        most_objects=WindowAugmentation().most_objects if shows_room else 0,
+        crowded_share=CROWDED_SHARE if shows_room else 0.0,
         reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
     step_s, radar = task.recordings.window_s / OVERLAP, task.radar
@@ -167,14 +170,14 @@ def generated_windows(
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
-    busy = busy_cells(background)
-    everything = [without_busy(window, busy) for window in everything]
+    points = WindowFilter(busy=busy_cells(background), facts=RadarFacts.of(task))
+    everything = [points(window) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(
         features=recognition_features(everything, names),
         label=np.array([task.recordings.labels.index(window.label) for window in everything]),
         person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
-        is_copy=np.arange(len(everything)) >= len(windows), names=names, busy=busy,
+        is_copy=np.arange(len(everything)) >= len(windows), names=names, points=points,
     )  # fmt: skip
 
 
@@ -212,7 +215,7 @@ def fitted(
         "generated_windows": int(is_own.sum()), "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
     }  # fmt: skip
-    seen = [without_busy(window, made.busy) for window in unlabelled]
+    seen = [made.points(window) for window in unlabelled]
     features = recognition_features(seen, made.names) if unlabelled else None
     if features is not None and options.sensitivity:
         made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
@@ -222,7 +225,7 @@ def fitted(
         features = matching.apply(features)
     own = None
     if labelled:
-        known = recognition_features([without_busy(window, made.busy) for window in labelled], made.names)
+        known = recognition_features([made.points(window) for window in labelled], made.names)
         known = known if matching is None else matching.apply(known)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         fewest = fewest_recordings(labelled, task.recordings.labels)
@@ -237,7 +240,7 @@ def fitted(
             trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
-        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, busy=made.busy,
+        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, points=made.points,
         meta=meta,
     )  # fmt: skip
 

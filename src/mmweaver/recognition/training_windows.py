@@ -6,10 +6,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.busy_places import NO_CELLS, Cells
 from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.performance_variation import PerformanceVariation
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
+from mmweaver.recognition.window_filter import WindowFilter
 
 SEQUENCES = 40  # people an activity
 
@@ -48,7 +48,7 @@ class TrainingWindows:
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
     importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # where moving points are left out
+    points: WindowFilter = field(default_factory=WindowFilter)  # which of them count
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:

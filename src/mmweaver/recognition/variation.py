@@ -1,12 +1,13 @@
 """Domain randomisation: people, rooms and radars, sampled anew for each generated recording."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mmweaver.recognition.open_room import Panel
 
 Span = tuple[float, float]
+CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar relative to the angle down to it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +20,7 @@ class Variation:
     of its logarithm). `turn_deg`: standard deviation of the heading of stationary people. `tilt_deg`
     rotates the reported points about the radar, up where positive. Values in `_db` change the noise figure, the CFAR
     threshold, the receiver gain, the albedo of skin, and the reflectivity of arms and legs relative to the trunk.
+    In `high_share` of the recordings the radar hangs `high_m` high and looks down as well.
     """
 
     tempo: Span = (0.75, 1.6)
@@ -35,6 +37,8 @@ class Variation:
     height_m: Span = (1.5, 1.95)
     radar_height_m: Span = (1.0, 1.5)
     tilt_deg: Span = (-10.0, 10.0)
+    high_share: float = 0.0
+    high_m: Span = (1.6, 3.0)
     elevation_beamwidth_deg: Span = (20.0, 40.0)
     noise_db: Span = (10.0, 22.0)
     clutter_db: Span = (-15.0, 5.0)
@@ -116,6 +120,16 @@ def sample_variation(variation: Variation, rng: np.random.Generator) -> Variatio
         way_s=of(variation.way_s),
         hurry=of(variation.hurry),
     )
+
+
+def hung_high(now: VariationSample, variation: Variation, rng: np.random.Generator) -> VariationSample:
+    """The conditions, in a share of them with a radar that hangs high and looks down, more or less at the person."""
+    is_high = rng.random() < variation.high_share
+    height, towards = rng.uniform(*variation.high_m), rng.uniform(*TOWARDS)
+    if not is_high:
+        return now
+    down_deg = float(np.degrees(np.arctan2(height - CHEST_M, now.distance_m)))
+    return replace(now, radar_height_m=float(height), tilt_deg=float(towards) * down_deg + 0.5 * now.tilt_deg)
 
 
 def _panel(rng: np.random.Generator) -> Panel:

@@ -12,6 +12,8 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recording import STILL_MPS, PointRecording
 from mmweaver.recognition.window_features import SPEED_EDGES_MPS
 
+FARTHEST_M, ASIDE_RAD = 9.0, 1.1  # of static cells in a furnished room
+
 
 @dataclass(frozen=True, kw_only=True)
 class WindowAugmentation:
@@ -19,10 +21,11 @@ class WindowAugmentation:
 
     Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
     some points of the slowest velocity are reported as static. Up to `most_objects` static objects add up to three
-    neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
-    moving false alarms. Points less than up to `snr_cut_db` above the weakest are dropped, as a less sensitive radar
-    drops them. `reversed_share` of the copies are reversed in time (with the sign of velocity),
-    `reflected_share` are reflected left-right: by default half, 0 where order or sides matter.
+    neighbouring range cells each, detected always or intermittently, and in `crowded_share` of the copies up to
+    `most_crowded` single cells all around; `false_points` is the largest mean number of moving false alarms. Points
+    less than up to `snr_cut_db` above the weakest are dropped, as a less sensitive radar drops them. `reversed_share`
+    of the copies are reversed in time (with the sign of velocity), `reflected_share` are reflected left-right: by
+    default half, 0 where order or sides matter.
     """
 
     least_moving: float = 0.35
@@ -30,6 +33,8 @@ class WindowAugmentation:
     frames_lost: float = 0.15
     slow_to_static: float = 0.3
     most_objects: int = 4
+    crowded_share: float = 0.0
+    most_crowded: int = 30
     false_points: float = 1.0
     tilt_rad: float = 0.05
     cell_m: float = 0.0436  # range and velocity steps of the radar
@@ -55,7 +60,7 @@ def augmented(
         columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
     body = _reversed(body, frames, how, rng)
-    parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
+    parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng), *_crowd(frames, how, rng)]
     frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     order = np.argsort(frame, kind="stable")
     frame, (x, y, z, velocity) = frame[order], columns[order].T
@@ -104,6 +109,19 @@ def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generat
             place = [range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.3), 0.0]
             found.append((frame, np.tile(place, (len(frame), 1))))
     return found
+
+
+def _crowd(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
+    """A furnished room: static cells all around, most of them detected nearly always."""
+    if rng.random() >= how.crowded_share:
+        return []
+    number = int(rng.integers(1, how.most_crowded + 1))
+    share = rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1], number)
+    range_m, aside = rng.uniform(0.3, FARTHEST_M, number), rng.uniform(-ASIDE_RAD, ASIDE_RAD, number)
+    up_m = rng.normal(0, 0.5, number)
+    frame, which = np.nonzero(rng.random((frames, number)) < share)
+    place = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), up_m, np.zeros(number)], axis=1)
+    return [(frame, place[which])]
 
 
 def _false_points(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> Points:
