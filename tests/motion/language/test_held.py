@@ -30,6 +30,8 @@ def test_arms_stay_where_they_are(text: str, steps: list[tuple[str, str]]) -> No
         ("stretches the arms out, lowers them and waits", ("stand", "")),
         ("folds the arms and kneels down and crawls", ("crawl", "")),
         ("folds the arms and waves", ("stand", "wave")),
+        ("crosses their arms, then uncrosses them", ("stand", "")),
+        ("sits with crossed arms and then uncrosses them", ("sit", "")),
         ("sits with his arms stretched out, he puts his hands in his lap", ("sit", "")),
     ],
 )
@@ -80,3 +82,7 @@ def test_the_hand_that_was_raised_does_what_comes_next() -> None:
 
 def test_who_stands_on_one_leg_moves_the_arms_there() -> None:
     assert doing("stands on the left leg and stretches the arms out") == [("one_leg", "arms_out")]
+
+
+def test_the_hand_that_was_raised_throws() -> None:
+    assert parse("a person raises the left hand and throws a ball").steps[-1].hand == "left"

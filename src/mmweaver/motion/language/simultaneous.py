@@ -281,7 +281,14 @@ def overlay(one: Step, other: Step) -> Step:
         first, second = hands
         legs = one if one.lower != "stand" else other
         together = overlay(
-            replace(legs, upper="", hand="", count=legs.count if legs.moves else 0), replace(first, lower="stand")
+            replace(
+                legs,
+                upper="",
+                hand="",
+                count=legs.count if legs.moves else 0,
+                direction="" if legs.lower == "stand" else legs.direction,
+            ),
+            replace(first, lower="stand"),
         )
         clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
         other_hand = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
