@@ -26,6 +26,8 @@ from mmweaver.motion.language.verbs import words_in
         ("walks in an arch towards his left", "walks in an arc towards his left"),
         ("falls and steps back where he was", "falls and steps back to where he was"),
         ("walked forward and after return backwards", "walked forward and then return backwards"),
+        ("sits and after, stands up", "sits and then stands up"),
+        ("is weaving left and right", "is walks in a zigzag"),
         ("walks and after turn, he sits", "walks and after turn, he sits"),
         ("is spinning arms in a circle", "is spinning the arms in a circle"),
         ("stretches their arms and waves them", "stretches their arms and waves both arms"),

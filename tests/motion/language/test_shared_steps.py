@@ -24,13 +24,17 @@ JUMP = Step(lower="jump")
         ([clause(0, "rests", Step()), clause(1, "rests again", Step())], []),
         ([clause(0, "leans to the left"), clause(1, "to the right")], ["the other side is not shown"]),
         ([clause(0, "leans to the left"), clause(1, "to the left")], []),
+        ([clause(0, "pushed from_left"), clause(1, "from_right")], ["the other side is not shown"]),
+        ([clause(0, "pushed from_left"), clause(1, "stumbles to the right")], []),
+        ([clause(0, "puts them up"), clause(1, "down"), clause(2, "up again")], ["the second time is not shown"]),
         ([clause(0, "kicks one leg", JUMP), clause(1, "then another")], ["the other one is not shown"]),
     ],
 )
 def test_what_shares_a_step_is_not_done_twice(clauses: list[ParsedClause], how: list[str]) -> None:
-    shared = [Step(lower="jump", clauses=(0, 1))]
-    assert list(shown_only_once(clauses, shared)) == [(1, one) for one in how]
-    own = [Step(lower="jump", clauses=(0,)), Step(lower="jump", clauses=(0, 1))]
+    numbers = tuple(range(len(clauses)))
+    shared = [Step(lower="jump", clauses=numbers)]
+    assert list(shown_only_once(clauses, shared)) == [(numbers[-1], one) for one in how]
+    own = [Step(lower="jump", clauses=numbers[: k + 1]) for k in numbers]
     assert not list(shown_only_once(clauses, own))
 
 
@@ -58,6 +62,11 @@ def test_the_second_one_has_its_own_step(text: str, steps: list[tuple[str, str]]
 @pytest.mark.parametrize("text", ["points to the left, then to the right", "points to the left and to the right"])
 def test_each_side_is_pointed_to(text: str) -> None:
     assert [step.facing for step in parse(f"a person {text}").steps] == ["left", "right"]
+
+
+def test_another_step_is_one_more() -> None:
+    for text in ("takes a step forward, then another", "takes a step forward and then another step forward"):
+        assert [step.count for step in parse(f"a person {text}").steps] == [1, 1]
 
 
 def test_two_back_are_two() -> None:

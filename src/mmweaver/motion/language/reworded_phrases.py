@@ -75,8 +75,13 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b(to {_OWN}(?:left|right)(?:,| and| then)+ )(?={_OWN}(?:left|right)(?= *(?:$|[.,;]| and\b| then\b| before\b)))", r"\1to "),
     (r"\bback (?=(?:to )?where (?:he|she|it|they) (?:was|were|started|began|came from|stood))", "back to "),
     (r"\bto to\b", "to"),
+    (r"\b((?:an?|one) (?:[a-z]+ )?step((?: (?:back|forward)(?:wards?|s)?| to the (?:left|right|side)|))(?:,| and| then)+ )another(?= *(?:$|[.,;]| and\b| then\b))", r"\1one step\2"),
+    (r"\banother (?=(?:[a-z]+ )?step\b)", "one "),
+    (r"\bafter *, *", "then "),
+    (r"\b(and|,) then after (?=(?!this\b|that\b|which\b|his\b|its\b)[a-z]+s\b(?! *,))", r"\1 then "),
     (rf"\b(and|,) after (?={_ONWARD}\b(?! *,)(?![^.;]*,? (?:he|she|they|it|the person) ))", r"\1 then "),
     (r",? after(?= *(?:[.;]|$))", ""),
+    (r"\bweav(?:es|ing)\b(?! (?:an?|the|his|her|some)\b)(?: (?:in and out|left and right|right and left|back and forth|(?:from )?side to side))?", "walks in a zigzag"),
     # limbs
     (r"\b((?:spin|rotat|swirl|circl|twirl|roll|swing)(?:s|es|ning|ing)) (?=(?:arms|hands|shoulders|wrists)\b)", r"\1 the "),
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),

@@ -4,8 +4,11 @@ from collections.abc import Iterator, Sequence
 
 from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.coverage import sides_gone_to, sides_of
+from mmweaver.motion.language.lexicon import FILLERS
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
+
+_WAYS = {"up", "down", "out", "in"}
 
 
 def says_again(parsed: ParsedClause) -> bool:
@@ -37,16 +40,23 @@ def shown_only_once(every_clause: Sequence[ParsedClause], steps: Sequence[Step])
 
 
 def _is_done_twice(before: Sequence[ParsedClause], parsed: ParsedClause) -> bool:
-    """Whether a clause has the movement of one before, or no verb but a side."""
+    """Whether a clause has the movement of one before, or no verb but a word of it: 'hands up ... up again'."""
     done = {(step.lower, step.upper) for one in before for step in one.steps} - {("stand", "")}
-    return any((step.lower, step.upper) in done for step in parsed.steps) or bool(
-        not parsed.steps and sides_gone_to([word.text for word in parsed.words])
-    )
+    said = {word.text for one in before for word in one.words}
+    more = {word.text for word in parsed.words} - (FILLERS - _WAYS) - {"again"}
+    return any((step.lower, step.upper) in done for step in parsed.steps) or (not parsed.steps and bool(more & said))
+
+
+def _sides_in(parsed: ParsedClause) -> set[tuple[str, str]]:
+    """("to" or "from", side) of the sides that something goes to or comes from."""
+    texts = [word.text for word in parsed.words]
+    come_from = {("from", text.removeprefix("from_")) for text in texts if text in ("from_left", "from_right")}
+    return {("to", side) for side in sides_gone_to(texts)} | come_from
 
 
 def _names_other_side(before: Sequence[ParsedClause], parsed: ParsedClause, own: Sequence[Step]) -> bool:
     """Whether a clause names the side opposite to that of a clause before, and their step has one side only."""
-    sides = {*sides_gone_to([word.text for word in parsed.words])}
-    earlier = {side for one in before for side in sides_gone_to([word.text for word in one.words])}
+    sides = _sides_in(parsed)
+    earlier = {side for one in before for side in _sides_in(one)}
     has_both = any(len(sides_of(part)) == 2 for part in own)
-    return len(sides) == 1 and {OPPOSITE[side] for side in sides} == earlier and bool(own) and not has_both
+    return len(sides) == 1 and {(way, OPPOSITE[side]) for way, side in sides} == earlier and bool(own) and not has_both
