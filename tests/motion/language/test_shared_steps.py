@@ -69,6 +69,22 @@ def test_another_step_is_one_more() -> None:
         assert [step.count for step in parse(f"a person {text}").steps] == [1, 1]
 
 
+@pytest.mark.parametrize(
+    ("text", "turns_deg"),
+    [
+        ("spins clockwise then counterclockwise", [-360.0, 360.0]),
+        ("turns 180 degrees to the left and then to the right", [180.0, -180.0]),
+    ],
+)
+def test_the_second_turn_goes_the_other_way_round(text: str, turns_deg: list[float]) -> None:
+    assert [step.turn_deg for step in parse(f"a person {text}").steps] == turns_deg
+
+
+def test_a_bow_back_is_no_bow_ahead() -> None:
+    steps = parse("a person leans forward then backward").steps
+    assert [(step.lower, step.direction) for step in steps] == [("bend", ""), ("lean", "backwards")]
+
+
 def test_two_back_are_two() -> None:
     assert [step.count for step in parse("a person takes one step forward and two back").steps] == [1, 2]
 

@@ -37,7 +37,7 @@ from mmweaver.motion.language.shared_steps import says_again
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import AIMED
+from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.verbs import RECOVERING
 from mmweaver.motion.language.words import Word, words_of
 
@@ -338,12 +338,20 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
 def _to_the_other_side(last: Step, parsed: ParsedClause) -> Step:
     if last.facing in OPPOSITE:  # "faces left, then right"
         return replace(last, facing=parsed.about.direction, direction="", clauses=(parsed.number,))
-    return replace(last, direction=_own_side(parsed), clauses=(parsed.number,))
+    side = _own_side(parsed)
+    if last.lower == "turn" and last.turn_deg:  # "spins clockwise, then counterclockwise"
+        angle_deg = abs(last.turn_deg) * SIDES[side]
+        return replace(last, turn_deg=angle_deg, direction="", style="", clauses=(parsed.number,))
+    return replace(last, direction=side, clauses=(parsed.number,))
 
 
 def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
     about = parsed.about
+    if last.lower == "bend" and not last.upper and about.direction == "backwards" and parsed.link in ("then", "comma"):
+        return replace(
+            last, lower="lean", direction="backwards", clauses=(parsed.number,)
+        )  # "bends forward, then back"
     if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
         return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
     if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
