@@ -86,3 +86,19 @@ def test_who_stands_on_one_leg_moves_the_arms_there() -> None:
 
 def test_the_hand_that_was_raised_throws() -> None:
     assert parse("a person raises the left hand and throws a ball").steps[-1].hand == "left"
+
+
+@pytest.mark.parametrize(
+    ("text", "ahead"),
+    [
+        ("stretches both arms forward and walks", True),
+        ("walks forward with the arms held out in front of him", True),
+        ("holds both arms out to the sides and walks forward", False),
+        ("is walking forward holding both arms straight out to the sides", False),
+    ],
+)
+def test_a_walk_has_its_own_direction(text: str, ahead: bool) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert plan.steps[-1].moves
+    assert plan.steps[-1].arms_ahead == ahead
+    assert all(clause.status == "done" for clause in plan.clauses)

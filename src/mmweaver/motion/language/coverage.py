@@ -114,7 +114,7 @@ def goes_aside(step: Step) -> bool:
     placed = step.place is not None or step.target or (step.seat and step.moves)
     if step.upper in _EITHER_WAY:  # "clockwise" is a way round, and no side
         return True
-    to_a_side = {step.lower, step.upper} & _TO_A_SIDE and step.direction != "forwards"
+    to_a_side = {step.lower, step.upper} & _TO_A_SIDE and not step.arms_ahead
     return bool(sides & {"left", "right", "side", "seat"} or signed or placed or to_a_side)
 
 

@@ -146,7 +146,9 @@ def _with_the_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
         return [before, step]
     arms = {"upper": before.upper, "hand": before.hand}
     if before.upper == "arms_out" and not step.moves:
-        arms["direction"] = step.direction or before.direction
+        arms["direction"] = step.direction or ("forwards" if before.arms_ahead else "")
+    if before.arms_ahead and step.moves:
+        arms["style"] = step.style or "ahead"
     if step.lower == before.lower and not step.moves and not step.facing and step.lower in ("stand", "sit", "kneel"):
         seconds = step.seconds + _SETTLING_S if step.seconds else before.seconds
         return [replace(before, seconds=seconds, clauses=_together(before, step))]

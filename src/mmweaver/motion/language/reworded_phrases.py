@@ -83,6 +83,9 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r",? after(?= *(?:[.;]|$))", ""),
     (r"\bweav(?:es|ing)\b(?! (?:an?|the|his|her|some)\b)(?: (?:in and out|left and right|right and left|back and forth|(?:from )?side to side))?", "walks in a zigzag"),
     # limbs
+    (r"\b(arms|hands) straight out (?=to )", r"\1 out "),
+    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )*(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
+    (rf"\b(hold(?:s|ing)?|stretch(?:es|ing)?|extend(?:s|ing)?) ((?:{_OWN}|both )*(?:arms|hands)) out (?:straight )?(?:in front(?: of (?:him|her|them|it)(?:self|selves)?)?|ahead|forwards?)\b", r"\1 \2 forward"),
     (r"\b((?:spin|rotat|swirl|circl|twirl|roll|swing)(?:s|es|ning|ing)) (?=(?:arms|hands|shoulders|wrists)\b)", r"\1 the "),
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
     (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),

@@ -300,7 +300,9 @@ def overlay(one: Step, other: Step) -> Step:
         upper=upper.upper,
         hand=upper.hand,
         count=upper.count or (0 if lower.moves else lower.count),
-        style="held" if lower.lower in ("bend", "lean") else lower.style,
+        style="held"
+        if lower.lower in ("bend", "lean")
+        else lower.style or ("ahead" if lower.moves and upper.arms_ahead else ""),
         direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,
