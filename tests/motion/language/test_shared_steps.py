@@ -51,6 +51,7 @@ def test_once_again_is_again() -> None:
         ("stumbles to the left and then stumbles to the right", [("stumble", "left"), ("stumble", "right")]),
         ("is pushed and stumbles forward, gets pushed again and stumbles", [("stumble", "forwards"), ("stumble", "")]),
         ("is pushed from the left and stumbles to the right", [("stumble", "right")]),
+        ("takes a step to the side and back", [("sidestep", "right"), ("sidestep", "left")]),
         ("takes a step to the left and two to the right", [("sidestep", "left"), ("sidestep", "right")]),
     ],
 )
@@ -62,6 +63,11 @@ def test_the_second_one_has_its_own_step(text: str, steps: list[tuple[str, str]]
 @pytest.mark.parametrize("text", ["points to the left, then to the right", "points to the left and to the right"])
 def test_each_side_is_pointed_to(text: str) -> None:
     assert [step.facing for step in parse(f"a person {text}").steps] == ["left", "right"]
+
+
+@pytest.mark.parametrize("text", ["lifts both arms, then lowers the left one", "kicks a ball, then another one"])
+def test_what_one_step_cannot_show_is_said(text: str) -> None:
+    assert [clause.status for clause in parse(f"a person {text}").clauses] == ["done", "approximated"]
 
 
 def test_another_step_is_one_more() -> None:

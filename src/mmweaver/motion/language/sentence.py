@@ -255,9 +255,8 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
+        _fill_in(found[-1], parsed)
         last = found[-1].steps[-1]
-        if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:  # "one step forward, two back"
-            parsed.about = replace(parsed.about, count=_number_of(parsed))
         other, another = _other_limb(last, parsed), _another_step(last, parsed)
         if other is not None:
             found[-1].steps[-1] = overlay(last, other)
@@ -280,10 +279,27 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
         last = found[-1].steps[-1]
         found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
-        if last.lower == "stumble" and _HELD_ON_TO.search(parsed.text):
-            parsed.lost.append("what the person holds on to is not shown")
+        parsed.lost += _lost_without_a_step(last, parsed)
     elif not parsed.is_empty:
         raise InputError(not_known(parsed.text))
+
+
+def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
+    """What a walk and the clause after it leave open: 'one step forward, two back', 'a step to the side and back'."""
+    last = before.steps[-1]
+    if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:
+        parsed.about = replace(parsed.about, count=_number_of(parsed))
+    if last.lower == "sidestep" and not last.direction and parsed.about.direction in ("back", "backwards"):
+        before.steps[-1] = replace(last, direction="right")
+
+
+def _lost_without_a_step(last: Step, parsed: ParsedClause) -> list[str]:
+    """What a clause that needs no step says and the step before does not show."""
+    words = set(parsed.text.split())
+    if last.hand == "both" and LOWERING & words and set(OPPOSITE) & words:
+        return ["both arms come down"]
+    held_on_to = last.lower == "stumble" and _HELD_ON_TO.search(parsed.text)
+    return ["what the person holds on to is not shown"] if held_on_to else []
 
 
 def _number_of(parsed: ParsedClause) -> int:

@@ -35,8 +35,13 @@ def shown_only_once(every_clause: Sequence[ParsedClause], steps: Sequence[Step])
             yield parsed.number, "the second time is not shown"
         elif _names_other_side(before, parsed, own):
             yield parsed.number, "the other side is not shown"
-        elif parsed.words and parsed.words[-1].text in ("another", "other") and not parsed.steps:
+        elif _ends_with_another(parsed) and not parsed.steps:
             yield parsed.number, "the other one is not shown"
+
+
+def _ends_with_another(parsed: ParsedClause) -> bool:
+    texts = [word.text for word in parsed.words]
+    return bool({"another", "other"} & {*texts[-1:], *(texts[-2:-1] if texts[-1:] == ["one"] else ())})
 
 
 def _is_done_twice(before: Sequence[ParsedClause], parsed: ParsedClause) -> bool:
