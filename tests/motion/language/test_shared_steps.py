@@ -51,6 +51,8 @@ def test_once_again_is_again() -> None:
         ("stumbles to the left and then stumbles to the right", [("stumble", "left"), ("stumble", "right")]),
         ("is pushed and stumbles forward, gets pushed again and stumbles", [("stumble", "forwards"), ("stumble", "")]),
         ("is pushed from the left and stumbles to the right", [("stumble", "right")]),
+        ("jumps left and right", [("leap", "left"), ("leap", "right")]),
+        ("crawls forward, then backward", [("crawl", "forwards"), ("crawl", "backwards")]),
         ("takes a step to the side and back", [("sidestep", "right"), ("sidestep", "left")]),
         ("takes a step to the left and two to the right", [("sidestep", "left"), ("sidestep", "right")]),
     ],
@@ -84,6 +86,11 @@ def test_another_step_is_one_more() -> None:
 )
 def test_the_second_turn_goes_the_other_way_round(text: str, turns_deg: list[float]) -> None:
     assert [step.turn_deg for step in parse(f"a person {text}").steps] == turns_deg
+
+
+def test_the_second_circle_goes_the_other_way_round() -> None:
+    steps = parse("a person walks in a circle to the left and then to the right").steps
+    assert [step.arc_deg for step in steps] == [360.0, -360.0]
 
 
 def test_a_bow_back_is_no_bow_ahead() -> None:

@@ -47,6 +47,8 @@ _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 _ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
 _WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
+_TRAVELLING = ("leap", "crawl", "limp", "stagger")  # the walks go on otherwise: `_goes_elsewhere`
+_OTHER_WAY = {**OPPOSITE, "forwards": "backwards", "backwards": "forwards"}
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
@@ -288,7 +290,8 @@ def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
     """What a walk and the clause after it leave open: 'one step forward, two back', 'a step to the side and back'."""
     last = before.steps[-1]
     if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:
-        parsed.about = replace(parsed.about, count=_number_of(parsed))
+        number = next((NUMBERS[word.text] for word in parsed.words if word.text in NUMBERS), 0)
+        parsed.about = replace(parsed.about, count=number)
     if last.lower == "sidestep" and not last.direction and parsed.about.direction in ("back", "backwards"):
         before.steps[-1] = replace(last, direction="right")
 
@@ -300,11 +303,6 @@ def _lost_without_a_step(last: Step, parsed: ParsedClause) -> list[str]:
         return ["both arms come down"]
     held_on_to = last.lower == "stumble" and _HELD_ON_TO.search(parsed.text)
     return ["what the person holds on to is not shown"] if held_on_to else []
-
-
-def _number_of(parsed: ParsedClause) -> int:
-    """The number that a clause without a verb names; 0 for none."""
-    return next((NUMBERS[word.text] for word in parsed.words if word.text in NUMBERS), 0)
 
 
 def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
@@ -370,6 +368,15 @@ def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
         )  # "bends forward, then back"
     if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
         return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
+    if last.direction == "circle" and SIDES.get(about.direction, 0.0) * last.arc_deg < 0:
+        return replace(last, arc_deg=-last.arc_deg, style="", clauses=(parsed.number,))
+    elsewhere = about.direction in _OTHER_WAY and last.direction not in ("", about.direction)
+    if (
+        last.lower in _TRAVELLING
+        and elsewhere
+        and (parsed.link != "and" or _OTHER_WAY[about.direction] == last.direction)
+    ):
+        return replace(last, direction=about.direction, count=about.count or last.count, clauses=(parsed.number,))
     if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
         return replace(last, speed=about.speed, clauses=(parsed.number,))
     return None
