@@ -37,6 +37,8 @@ from mmweaver.motion.language.verbs import words_in
             "touches the head with the left hand, then touches the head with the right hand",
         ),
         ("raises one leg after the other", "raises the left leg, then raises the right leg"),
+        ("does circles with his hands in front of his body", "does circles with his hands in front of his body"),
+        ("walks with arms held out in front of him", "walks with arms held forward"),
         ("turns head left then right", "turns the head left then right"),
         ("does two kicks, one with each leg", "does one kick with the left leg, then one kick with the right leg"),
         ("leans quickly backward", "leans backward quickly"),

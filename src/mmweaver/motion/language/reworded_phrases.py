@@ -86,7 +86,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b((?:turn|tilt|rotat|roll|mov|twist)(?:s|es|ing)) (?=(?:head|upper body|torso|neck)\b)", r"\1 the "),
     (r"\b(?:two|2) (kick|punch)e?s,? one with each (leg|foot|hand|arm|fist)\b", r"one \1 with the left \2, then one \1 with the right \2"),
     (r"\b(arms|hands) straight out (?=to )", r"\1 out "),
-    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )*(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
+    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )+(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
     (rf"\b(hold(?:s|ing)?|stretch(?:es|ing)?|extend(?:s|ing)?) ((?:{_OWN}|both )*(?:arms|hands)) out (?:straight )?(?:in front(?: of (?:him|her|them|it)(?:self|selves)?)?|ahead|forwards?)\b", r"\1 \2 forward"),
     (r"\b((?:spin|rotat|swirl|circl|twirl|roll|swing)(?:s|es|ning|ing)) (?=(?:arms|hands|shoulders|wrists)\b)", r"\1 the "),
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
