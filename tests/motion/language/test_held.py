@@ -30,6 +30,8 @@ def test_arms_stay_where_they_are(text: str, steps: list[tuple[str, str]]) -> No
         ("stretches the arms out, lowers them and waits", ("stand", "")),
         ("folds the arms and kneels down and crawls", ("crawl", "")),
         ("folds the arms and waves", ("stand", "wave")),
+        ("crosses their arms, then uncrosses them", ("stand", "")),
+        ("sits with crossed arms and then uncrosses them", ("sit", "")),
         ("sits with his arms stretched out, he puts his hands in his lap", ("sit", "")),
     ],
 )
@@ -80,3 +82,23 @@ def test_the_hand_that_was_raised_does_what_comes_next() -> None:
 
 def test_who_stands_on_one_leg_moves_the_arms_there() -> None:
     assert doing("stands on the left leg and stretches the arms out") == [("one_leg", "arms_out")]
+
+
+def test_the_hand_that_was_raised_throws() -> None:
+    assert parse("a person raises the left hand and throws a ball").steps[-1].hand == "left"
+
+
+@pytest.mark.parametrize(
+    ("text", "ahead"),
+    [
+        ("stretches both arms forward and walks", True),
+        ("walks forward with the arms held out in front of him", True),
+        ("holds both arms out to the sides and walks forward", False),
+        ("is walking forward holding both arms straight out to the sides", False),
+    ],
+)
+def test_a_walk_has_its_own_direction(text: str, ahead: bool) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert plan.steps[-1].moves
+    assert plan.steps[-1].arms_ahead == ahead
+    assert all(clause.status == "done" for clause in plan.clauses)

@@ -20,6 +20,28 @@ from mmweaver.motion.language.verbs import words_in
         ("is standing up", "is standing up"),
         ("plays the violin the goes back", "plays the violin then goes back"),
         ("kicks with the left and right leg", "kicks with the left leg, then kicks with the right leg"),
+        ("spins and then steps one back", "spins and then takes one step back"),
+        ("takes step then turns", "takes a step then turns"),
+        ("makes a long stride sideways", "makes a long step sideways"),
+        ("walks in an arch towards his left", "walks in an arc towards his left"),
+        ("falls and steps back where he was", "falls and steps back to where he was"),
+        ("walked forward and after return backwards", "walked forward and then return backwards"),
+        ("sits and after, stands up", "sits and then stands up"),
+        ("is weaving left and right", "is walks in a zigzag"),
+        ("walks and after turn, he sits", "walks and after turn, he sits"),
+        ("is spinning arms in a circle", "is spinning the arms in a circle"),
+        ("stretches their arms and waves them", "stretches their arms and waves both arms"),
+        ("throws his left hand in the air", "raises his left hand"),
+        (
+            "touches the head one hand after another",
+            "touches the head with the left hand, then touches the head with the right hand",
+        ),
+        ("raises one leg after the other", "raises the left leg, then raises the right leg"),
+        ("does circles with his hands in front of his body", "does circles with his hands in front of his body"),
+        ("walks with arms held out in front of him", "walks with arms held forward"),
+        ("turns head left then right", "turns the head left then right"),
+        ("does two kicks, one with each leg", "does one kick with the left leg, then one kick with the right leg"),
+        ("leans quickly backward", "leans backward quickly"),
         ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
     ],
 )
@@ -169,3 +191,24 @@ def test_right_after_is_a_side_of_a_turn() -> None:
     plan = parse("a person walks three steps forward and turns right after each step")
     assert [(step.lower, step.direction) for step in plan.steps] == [("walk", "forwards"), ("turn", "right")]
     assert "each" in plan.clauses[-1].how
+
+
+@pytest.mark.parametrize("text", ["is spinning arms in a circular pattern", "twirls his arms"])
+def test_limbs_that_turn_do_not_turn_the_body(text: str) -> None:
+    assert [step.upper for step in parse(f"a person {text}", in_part=True).steps] == ["arm_circles"]
+
+
+@pytest.mark.parametrize("text", ["walks in all directions", "is walking a tight rope", "walks as if on a tight rope"])
+def test_ways_that_are_not_walked_are_named(text: str) -> None:
+    (clause,) = parse(f"a person {text}", in_part=True).clauses
+    assert clause.status == "approximated"
+    assert clause.how
+
+
+def test_the_way_back_to_a_place_ends_with_its_clause() -> None:
+    plan = parse("a person spins and comes back to the original position and then takes a step back")
+    assert [(step.lower, step.count) for step in plan.steps] == [("turn", 0), ("stand", 0), ("walk", 1)]
+
+
+def test_who_has_not_gone_does_not_walk_back() -> None:
+    assert parse("a person falls to the left and then steps back where he was").clauses[1].status == "approximated"

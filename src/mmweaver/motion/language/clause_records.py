@@ -11,6 +11,7 @@ from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.shared_steps import shown_only_once
 from mmweaver.motion.language.words import word_of
 
 _ONE = ("left", "right")
@@ -40,6 +41,8 @@ def note_what_is_not_shown(
         own = [step for step in steps if parsed.number in step.clauses] or steps
         for how in [*parsed.lost, *not_shown(parsed.words, own)]:
             say(parsed.number, how)
+    for number, how in shown_only_once(every_clause, steps):
+        say(number, how)
     for after, how in risings_that_no_clause_names(steps):
         say(after.clauses[0] if after.clauses else max(records), how)
     for how in sizes_not_shown(given_text, steps):

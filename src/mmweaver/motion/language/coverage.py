@@ -24,6 +24,7 @@ _WITH_ARMS = words_in(
 )
 
 
+_ON_FOOT = words_in("step steps stepping walk walks walking run runs running jog jogs jogging")
 # Activities in which one hand or foot is not distinguished from the other.
 _WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms shrug stretch hands_up breathe")
 _EITHER_WAY = words_in("draw_circle")
@@ -47,7 +48,7 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     lost += _lost_aims(texts, steps)
     if _side_of_a_limb(texts) and not any(step.hand or step.foot for step in steps):
         lost.append("which hand or foot it is is not shown")
-    elif any(not any(_goes_to(step, side) for step in steps) for side in _sides_gone_to(texts)):
+    elif any(not any(_goes_to(step, side) for step in steps) for side in sides_gone_to(texts)):
         lost.append("the side is not shown")
     if ARMS & set(texts) and not any(step.upper or step.lower in _WITH_ARMS for step in steps):
         lost.append("what the arms do is not shown")
@@ -58,7 +59,9 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
     if {"backwards", "backward"} & set(texts) and (aimed_back or not any(_goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
-    if "back_to_start" in texts and not any(step.moves or step.lower in ("stand", "turn") for step in steps):
+    goes = any(step.moves for step in steps)
+    comes_back = any(step.lower in ("stand", "turn") for step in steps) and not _ON_FOOT & set(texts)
+    if "back_to_start" in texts and not (goes or comes_back):
         lost.append("the way back is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
@@ -92,7 +95,7 @@ def _side_of_a_limb(texts: list[str]) -> bool:
     return False
 
 
-def _sides_gone_to(texts: list[str]) -> list[str]:
+def sides_gone_to(texts: list[str]) -> list[str]:
     """The sides of directions, not those of limbs."""
     limbs = ARMS | LEGS
     return [text for i, text in enumerate(texts) if text in _SIDES and not limbs & set(texts[i + 1 : i + 3])]
@@ -111,7 +114,7 @@ def goes_aside(step: Step) -> bool:
     placed = step.place is not None or step.target or (step.seat and step.moves)
     if step.upper in _EITHER_WAY:  # "clockwise" is a way round, and no side
         return True
-    to_a_side = {step.lower, step.upper} & _TO_A_SIDE and step.direction != "forwards"
+    to_a_side = {step.lower, step.upper} & _TO_A_SIDE and not step.arms_ahead
     return bool(sides & {"left", "right", "side", "seat"} or signed or placed or to_a_side)
 
 

@@ -28,6 +28,7 @@ _COMING_BACK = words_in(
     "lower lowers lowering lowered drop drops dropping down up upright straightens straightening release releases"
     " uncrosses unfolds back stand_up"
 )
+_LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
 Lost = list[tuple[int, str]]
@@ -67,7 +68,23 @@ def with_what_is_held(
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
+    if result and _is_brought_back(result[-1], clauses):
+        result.append(
+            Step(
+                lower=result[-1].lower,
+                seat=result[-1].seat,
+                clauses=result[-1].clauses[-1:],
+                clause=clauses[result[-1].clauses[-1]],
+            )
+        )
     return result, lost
+
+
+def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
+    """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
+    own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
+    still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
+    return still and bool(own & _LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
@@ -85,7 +102,8 @@ def _stays_raised(before: Step, step: Step) -> bool:
 def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
     """The hand that was raised or held out is the one that does what comes next."""
     lifted = before is not None and before.upper in ("raise", "raise_hold", "arms_out") and before.hand in OPPOSITE
-    if before is None or not lifted or step.upper not in ONE_ARMED or step.hand or step.other_hand:
+    one_armed = step.upper in ONE_ARMED or step.upper == "throw"
+    if before is None or not lifted or not one_armed or step.hand or step.other_hand:
         return step
     return replace(step, hand=before.hand)
 
@@ -128,7 +146,9 @@ def _with_the_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
         return [before, step]
     arms = {"upper": before.upper, "hand": before.hand}
     if before.upper == "arms_out" and not step.moves:
-        arms["direction"] = step.direction or before.direction
+        arms["direction"] = step.direction or ("forwards" if before.arms_ahead else "")
+    if before.arms_ahead and step.moves:
+        arms["style"] = step.style or "ahead"
     if step.lower == before.lower and not step.moves and not step.facing and step.lower in ("stand", "sit", "kneel"):
         seconds = step.seconds + _SETTLING_S if step.seconds else before.seconds
         return [replace(before, seconds=seconds, clauses=_together(before, step))]

@@ -95,12 +95,13 @@ PHRASES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bas well(?: as)?\b|\balso\b|\btoo\b", " "),
     (r"\bhands? together\b", " hands "),
     (r"\bhands and knees\b|\ball fours\b", " allfours "),
-    (r"(?<!the )(?<!his )(?<!her )(?<!its )(?<!turns )(?<!turn )(?<!turning )\bright (after|before|now)\b", r" \1 "),
+    (r"(?<!the )(?<!his )(?<!her )(?<!its )(?<!their )(?<!turns )(?<!turn )(?<!turning )"
+     r"\bright (after|before|now)\b", r" \1 "),
     (r"\ba (?:couple|pair) of (times|steps)\b", r" 2 \1 "),
     (r"\b(?:several|many|a few|multiple|some|few) "
      r"((?:(?:more |other |small |large |big |little |short |long |quick |slow )*(?:[a-z]+ )?)??)"
      r"(times|steps|punches|squats|jumps|claps|sips|kicks|hops|strides|bows|lunges)\b", r" 3 \1\2 "),
-    (r"\bonce again\b|\bagain\b|\bonce more\b", " "),
+    (r"\bonce again\b|\bagain\b|\bonce more\b", " again "),
     (r"\bone[- ]two\b", " "),
 )  # fmt: skip
 

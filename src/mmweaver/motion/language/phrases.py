@@ -210,8 +210,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?! (?:down|over|forward|posture|position|pose|stance|manner|way|legs?|knees?))", " arc60 "),
     (r"\b(?:counter|anti)[- ]*(?:clock|clook)[- ]?wise\b|\bcounter clock wise\b", " to the left "),
     (r"\bclock[- ]?wise\b", " to the right "),
-    (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)[a-z ]*"
-     r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back_to_start "),
+    (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)"
+     r"[a-z]*(?: (?!and\b|then\b|before\b|after\b|while\b|but\b)[a-z]+)*\b", " back_to_start "),
     (r"\b(?:back )?to (?:the (?:place|spot|point|position) )?where (?:he|she|it|they|the person) (?:came from|started|began|was(?: before)?|stood(?: before)?)\b",
      " back_to_start "),
     (r"\bto (?:the|his|her|its) (?:original |starting |initial |start )(?:standing )?(?:position|point|place|spot)\b", " back_to_start "),

@@ -23,7 +23,9 @@ class Step:
     )
     arc_deg: float = 0.0  # bend of the path, to the person's left where positive
     turn_deg: float = 0.0  # of a turn, to the person's left where positive; 0: by the direction
-    style: str = ""  # back | front (lying and falling) | bent (walking) | knee (of one knee)
+    style: str = (
+        ""  # back | front (lying and falling) | bent (walking) | ahead (arms held out, walking) | knee (of one knee)
+    )
     speed: int = 0  # -1 slowly, 0, 1 quickly
     count: int = 0  # repetitions; 0: as many as the time allows
     seat: str = ""  # the word of the sentence: sofa, chair, ...
@@ -61,6 +63,12 @@ class Step:
     def each(self) -> "tuple[Step, ...]":
         """The step, and what the other hand does."""
         return (self,) if self.other_hand is None else (self, self.other_hand)
+
+    @property
+    def arms_ahead(self) -> bool:
+        """Whether arms that are held out are ahead, not to the sides; a walk has its own direction."""
+        ahead = self.style == "ahead" if self.moves else self.direction == "forwards"
+        return self.upper == "arms_out" and ahead
 
     @property
     def moves(self) -> bool:

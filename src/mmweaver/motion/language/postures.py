@@ -153,7 +153,7 @@ def _styled(steps: list[Step]) -> list[Step]:
 def _back_in_place(before: Step, step: Step) -> Step:
     """ "Returns to the starting position" of who has not walked: stands as before, or turns back."""
     turned = before.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
-    if turned:
+    if turned and (before.turn_deg == 0.0 or before.turn_deg % 360.0):
         back = OPPOSITE.get(before.direction, "")
         return replace(step, lower="turn", direction=back, turn_deg=-before.turn_deg)
     return replace(step, lower="stand", direction="")

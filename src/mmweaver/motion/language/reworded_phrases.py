@@ -9,6 +9,7 @@ _GAIT = r"(?:walk|run|jog|mov|go|step|head|march|stroll)(?:s|es|ing|ning|ging|pi
 _SLIGHTLY = r"(?:slightly|a (?:little )?bit|a little|somewhat)"
 _ENDS = r"(?= *(?:$|[.,;]| and\b| then\b| before\b))"
 _DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lowers? (?:him|her|them)self|falls?)"
+_ONWARD = r"(?:return|go|come|walk|run|jog|turn|sit|stand|jump|step|move|start|stop|wave|bend|kneel)"  # "and after return back"
 _ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
 
 
@@ -39,6 +40,12 @@ def _whole_turns(found: re.Match[str]) -> str:
     return f"turns {360 * _TURNS.index(found['times'].lower())} degrees"
 
 
+def _limb_after_limb(found: re.Match[str]) -> str:
+    verb, limb = found["verb"], found["limb"]
+    one = f"{verb} " if verb.startswith(("rais", "lift")) else f"{verb} with "
+    return f"{one}the left {limb}, then {one}the right {limb}"
+
+
 _TURNS = ["", "", "two", "three", "four", "five"]
 
 # Replaced in this order.
@@ -58,7 +65,33 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:walk|mov|go|step)(?:s|es|(?P<ending>ing))?(?P<way>(?: [a-z]+){0,3}?) with an? (?:(?:slight|heavy|bad|pronounced|visible|little|strong) )*limp\b(?: (?:on|in|with|of) (?:the|his|her|their) (?P<side>left|right) (?:leg|foot|side))?", _limps),
     (r"\b(?:walk|stroll|mov|go)(?P<ending>s|es|ing)?\b(?P<way>[^.;]*?),? (?:(?:and|while|who|that) )?(?:(?:as (?:if|though)|like)(?: (?:he|she|they|it))? ?)?(?:(?:seem|look|appear|act|is|are|was|were)(?:s|ing)?(?: to be| like)? )?(?:an? )?(?:very )?drunk(?:en)?(?: person| man| woman| guy)?(?= *(?:$|[.,;]| and\b| then\b))", lambda found: f"stagger{'ing' if found['ending'] == 'ing' else 's'}{found['way']}"),
     (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|{_OWN}?(?:both )?(?:arms|hands)) (?:to )?(?:fall|drop|go|hang|sink)\b(?! straight)(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
-    (rf"\bun(?:fold|cross)(?:s|es|ing)? (?:them|{_OWN}?arms)\b", "lowers them"),
+    (rf"\bun(?:fold|cross)(?:s|es|ing)? (?:them|{_OWN}?arms)\b", "lowers the arms"),
+    (r"\b(lean(?:s|ing)?) (quickly|slowly|slightly|carefully|far) (back(?:wards?)?|forwards?|to the (?:left|right))\b", r"\1 \3 \2"),
+    # one step, one way, the other way
+    (r"\bsteps (one|two|three|four|five|six|\d) (back(?:wards?)?|forwards?|to the (?:left|right|side))\b(?! steps?)", r"takes \1 step \2"),
+    (r"\b(takes|took|taking|makes|making) step\b(?! (?:by|after|like)\b)", r"\1 a step"),
+    (r"\b((?:takes?|taking|makes?|making) (?:an?|one) (?:[a-z]+ )??)stride\b", r"\1step"),
+    (r"\b(in|on|along|around) (an? (?:[a-z]+ )?)arch\b(?! of\b)", r"\1 \2arc"),
+    (rf"\b(to {_OWN}(?:left|right)(?:,| and| then)+ )(?={_OWN}(?:left|right)(?= *(?:$|[.,;]| and\b| then\b| before\b)))", r"\1to "),
+    (r"\bback (?=(?:to )?where (?:he|she|it|they) (?:was|were|started|began|came from|stood))", "back to "),
+    (r"\bto to\b", "to"),
+    (r"\b((?:an?|one) (?:[a-z]+ )?step((?: (?:back|forward)(?:wards?|s)?| to the (?:left|right|side)|))(?:,| and| then)+ )another(?= *(?:$|[.,;]| and\b| then\b))", r"\1one step\2"),
+    (r"\banother (?=(?:[a-z]+ )?step\b)", "one "),
+    (r"\bafter *, *", "then "),
+    (r"\b(and|,) then after (?=(?!this\b|that\b|which\b|his\b|its\b)[a-z]+s\b(?! *,))", r"\1 then "),
+    (rf"\b(and|,) after (?={_ONWARD}\b(?! *,)(?![^.;]*,? (?:he|she|they|it|the person) ))", r"\1 then "),
+    (r",? after(?= *(?:[.;]|$))", ""),
+    (r"\bweav(?:es|ing)\b(?! (?:an?|the|his|her|some)\b)(?: (?:in and out|left and right|right and left|back and forth|(?:from )?side to side))?", "walks in a zigzag"),
+    # limbs
+    (r"\b((?:turn|tilt|rotat|roll|mov|twist)(?:s|es|ing)) (?=(?:head|upper body|torso|neck)\b)", r"\1 the "),
+    (r"\b(?:two|2) (kick|punch)e?s,? one with each (leg|foot|hand|arm|fist)\b", r"one \1 with the left \2, then one \1 with the right \2"),
+    (r"\b(arms|hands) straight out (?=to )", r"\1 out "),
+    (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )+(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
+    (rf"\b(hold(?:s|ing)?|stretch(?:es|ing)?|extend(?:s|ing)?) ((?:{_OWN}|both )*(?:arms|hands)) out (?:straight )?(?:in front(?: of (?:him|her|them|it)(?:self|selves)?)?|ahead|forwards?)\b", r"\1 \2 forward"),
+    (r"\b((?:spin|rotat|swirl|circl|twirl|roll|swing)(?:s|es|ning|ing)) (?=(?:arms|hands|shoulders|wrists)\b)", r"\1 the "),
+    (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
+    (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),
+    (r"\b(?P<verb>(?:rais|lift|wav|kick|touch|punch|stretch|stomp|swing|shak|tap)(?:s|es|ing)(?: (?!and\b|then\b|with\b)[a-z]+){0,2}?)(?: with)? one (?P<limb>hand|arm|leg|foot|knee) after (?:another|the other)\b", _limb_after_limb),
     # postures
     (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
     (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),

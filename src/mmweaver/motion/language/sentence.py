@@ -14,7 +14,7 @@ from mmweaver.motion.language.clause_records import in_own_words, in_the_given_w
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.durations import in_seconds
-from mmweaver.motion.language.held import with_what_is_held
+from mmweaver.motion.language.held import ARM_POSTURES, with_what_is_held
 from mmweaver.motion.language.left_out import (
     EXACT,
     LEAVING_OUT,
@@ -24,7 +24,7 @@ from mmweaver.motion.language.left_out import (
     parse_with_less,
     says_more_of,
 )
-from mmweaver.motion.language.lexicon import ARMS, OWN, RADAR
+from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -33,9 +33,11 @@ from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
+from mmweaver.motion.language.shared_steps import says_again
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
+from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.verbs import RECOVERING
 from mmweaver.motion.language.words import Word, words_of
 
@@ -45,6 +47,8 @@ _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 _ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
 _WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
+_TRAVELLING = ("leap", "crawl", "limp", "stagger")  # the walks go on otherwise: `_goes_elsewhere`
+_OTHER_WAY = {**OPPOSITE, "forwards": "backwards", "backwards": "forwards"}
 JUMPING = ("jump", "leap", "hop")
 _HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
@@ -253,6 +257,7 @@ def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
+        _fill_in(found[-1], parsed)
         last = found[-1].steps[-1]
         other, another = _other_limb(last, parsed), _another_step(last, parsed)
         if other is not None:
@@ -276,10 +281,28 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
         last = found[-1].steps[-1]
         found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
-        if last.lower == "stumble" and _HELD_ON_TO.search(parsed.text):
-            parsed.lost.append("what the person holds on to is not shown")
+        parsed.lost += _lost_without_a_step(last, parsed)
     elif not parsed.is_empty:
         raise InputError(not_known(parsed.text))
+
+
+def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
+    """What a walk and the clause after it leave open: 'one step forward, two back', 'a step to the side and back'."""
+    last = before.steps[-1]
+    if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:
+        number = next((NUMBERS[word.text] for word in parsed.words if word.text in NUMBERS), 0)
+        parsed.about = replace(parsed.about, count=number)
+    if last.lower == "sidestep" and not last.direction and parsed.about.direction in ("back", "backwards"):
+        before.steps[-1] = replace(last, direction="right")
+
+
+def _lost_without_a_step(last: Step, parsed: ParsedClause) -> list[str]:
+    """What a clause that needs no step says and the step before does not show."""
+    words = set(parsed.text.split())
+    if last.hand == "both" and LOWERING & words and set(OPPOSITE) & words:
+        return ["both arms come down"]
+    held_on_to = last.lower == "stumble" and _HELD_ON_TO.search(parsed.text)
+    return ["what the person holds on to is not shown"] if held_on_to else []
 
 
 def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
@@ -287,6 +310,14 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     about = replace(parsed.about, clause=parsed.text, clauses=(parsed.number,), direction="")
     if last.upper in ("raise", "arms_out") and last.lower == "stand" and about.foot:
         return replace(about, lower="raise_leg", hand="")
+    ways = {last.direction, parsed.about.direction}
+    if (
+        last.upper == "arms_out"
+        and about.hand == OPPOSITE.get(last.hand)
+        and not last.moves
+        and ways == {"", "forwards"}
+    ):
+        return replace(about, lower="stand", upper="arms_out", direction=parsed.about.direction)
     if last.lower == "raise_leg" and not last.upper and about.hand:
         return replace(about, lower="stand", upper="raise", foot="")
     return None
@@ -312,21 +343,40 @@ def _faces_next(last: Step, parsed: ParsedClause) -> bool:
 def _once_more(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
-    other_side = parsed.link == "and" and last.direction == OPPOSITE.get(parsed.about.direction)
+    on_the_spot |= last.upper in AIMED and last.facing == OPPOSITE.get(parsed.about.direction)
+    sides = (last.direction, last.facing if last.upper in AIMED else "")
+    other_side = parsed.link == "and" and OPPOSITE.get(parsed.about.direction) in sides
     return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
 
 
 def _to_the_other_side(last: Step, parsed: ParsedClause) -> Step:
     if last.facing in OPPOSITE:  # "faces left, then right"
         return replace(last, facing=parsed.about.direction, direction="", clauses=(parsed.number,))
-    return replace(last, direction=_own_side(parsed), clauses=(parsed.number,))
+    side = _own_side(parsed)
+    if last.lower == "turn" and last.turn_deg:  # "spins clockwise, then counterclockwise"
+        angle_deg = abs(last.turn_deg) * SIDES[side]
+        return replace(last, turn_deg=angle_deg, direction="", style="", clauses=(parsed.number,))
+    return replace(last, direction=side, clauses=(parsed.number,))
 
 
 def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
     about = parsed.about
+    if last.lower == "bend" and not last.upper and about.direction == "backwards" and parsed.link in ("then", "comma"):
+        return replace(
+            last, lower="lean", direction="backwards", clauses=(parsed.number,)
+        )  # "bends forward, then back"
     if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
         return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
+    if last.direction == "circle" and SIDES.get(about.direction, 0.0) * last.arc_deg < 0:
+        return replace(last, arc_deg=-last.arc_deg, style="", clauses=(parsed.number,))
+    elsewhere = about.direction in _OTHER_WAY and last.direction not in ("", about.direction)
+    if (
+        last.lower in _TRAVELLING
+        and elsewhere
+        and (parsed.link != "and" or _OTHER_WAY[about.direction] == last.direction)
+    ):
+        return replace(last, direction=about.direction, count=about.count or last.count, clauses=(parsed.number,))
     if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
         return replace(last, speed=about.speed, clauses=(parsed.number,))
     return None
@@ -365,7 +415,7 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     return (
         (parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep")))
         and last.lower in ("walk", "jog", "sidestep")
-        and (direction != last.direction or (parsed.link == "then" and came_back))
+        and (direction != last.direction or (parsed.link == "then" and (came_back or direction in OPPOSITE)))
         and not last.arc_deg
         and sideways
     )
@@ -396,12 +446,21 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
         return True
     if len(parsed.steps) > 1 or before.upper:
         return False
+    if (before.lower, now.lower) == ("stumble", "stumble") and _is_another(parsed_clauses[-1], parsed):
+        return False
     if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
     again = before.lower in JUMPING and now.lower in JUMPING and parsed.link == "comma" and parsed.form == "ing"
     described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
     lifted = (before.lower, now.lower) == ("march", "raise_leg") and parsed.form == "ing"
     return described or lifted or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+
+
+def _is_another(before: ParsedClause, parsed: ParsedClause) -> bool:
+    """Whether a stumble is a second one: 'stumbles to the left, then stumbles to the right', 'is pushed again'."""
+    sides = {before.steps[-1].direction, parsed.steps[0].direction}
+    verbs = [{word.lemma for word in one.words if word.is_activity} for one in (before, parsed)]
+    return says_again(parsed) or (len(sides) == 2 and "" not in sides and bool(verbs[0] & verbs[1]))
 
 
 def _is_raised(steps: list[Step]) -> bool:
@@ -426,7 +485,7 @@ def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
         held = {"holds", "holding", "keeps", "keeping"} & words and {"it", "them"} & words
         return bool(LOWERING & words or (held and not parsed.about.seconds))
-    if before.upper and LOWERING & words and ARMS & words:
+    if before.upper and LOWERING & words and (ARMS | ({"them"} if before.upper in ARM_POSTURES else set())) & words:
         return True
     if before.lower in BENT:
         return bool({"straightens", "straightening", "comes", "coming"} & words and "up" in words)

@@ -281,7 +281,14 @@ def overlay(one: Step, other: Step) -> Step:
         first, second = hands
         legs = one if one.lower != "stand" else other
         together = overlay(
-            replace(legs, upper="", hand="", count=legs.count if legs.moves else 0), replace(first, lower="stand")
+            replace(
+                legs,
+                upper="",
+                hand="",
+                count=legs.count if legs.moves else 0,
+                direction="" if legs.lower == "stand" else legs.direction,
+            ),
+            replace(first, lower="stand"),
         )
         clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
         other_hand = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
@@ -293,7 +300,9 @@ def overlay(one: Step, other: Step) -> Step:
         upper=upper.upper,
         hand=upper.hand,
         count=upper.count or (0 if lower.moves else lower.count),
-        style="held" if lower.lower in ("bend", "lean") else lower.style,
+        style="held"
+        if lower.lower in ("bend", "lean")
+        else lower.style or ("ahead" if lower.moves and upper.arms_ahead else ""),
         direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,

@@ -130,7 +130,7 @@ def shrugging(context: StepContext, controls: Controls) -> Controls:
 def arms_out(context: StepContext, controls: Controls) -> Controls:
     """Straight arms held out: to the sides (as in a T), or ahead where the sentence says so."""
     held, n = _held(context, 0.9), len(context.time_s)
-    ahead = context.step.direction == "forwards"
+    ahead = context.step.arms_ahead
     tired = 0.03 * wander(context.time_s, context.rng, slow_hz=0.2, fast_hz=0.9)
     for side in sides(context) if context.step.hand else (LEFT, RIGHT):
         arm = np.zeros((n, 4))
