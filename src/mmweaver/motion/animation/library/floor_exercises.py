@@ -22,6 +22,8 @@ from mmweaver.motion.animation.step_context import StepContext
 _UP_RAD, _DOWN_RAD = 0.32, 0.06  # of the straight body over the floor, arms stretched and bent
 _ON_TOES_RAD = 1.35  # pitch of the feet
 _TURNING_M = 0.3  # of a limb from the middle about which the body turns
+_LIFTING_S = 0.15  # within which limbs begin and end to leave the floor
+_FASTEST_TURNING_MPS = 0.35  # of limbs in a turn: before they are on the floor, people turn faster than they crawl
 _STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
 
 
@@ -108,6 +110,8 @@ def _crawled(context: StepContext) -> tuple[Float[np.ndarray, " n"], Float[np.nd
     if not context.moves:
         return 0.15 * (time_s - context.start_s), np.ones_like(time_s)
     turning_mps = _TURNING_M * np.abs(path.facing_rad(time_s + 1e-3) - path.facing_rad(time_s - 1e-3)) / 2e-3
-    speed_mps = path.speed_mps(time_s) + turning_mps
+    speed_mps = path.speed_mps(time_s) + np.minimum(turning_mps, _FASTEST_TURNING_MPS)
     steps_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(time_s)
-    return np.concatenate([[0.0], np.cumsum(steps_m)]), rise(speed_mps / 0.12)
+    gone_m = np.concatenate([[0.0], np.cumsum(steps_m)])
+    before_m, after_m = (np.interp(time_s + lag, time_s, gone_m) for lag in (-_LIFTING_S, _LIFTING_S))
+    return gone_m, rise((after_m - before_m) / (2 * _LIFTING_S) / 0.12)
