@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Twelve draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Thirteen draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -20,11 +20,13 @@ strangers_fourth.txt, likewise, after the other two had been used to mend the gr
 too); `strangers_fourth`: the 150 of strangers_fifth.txt, after the other three had (two were in earlier files).
 `captions_fifth`: 283 captions of people again (from 112,000, 275,000, 735,000 and 840,000, 16,000 characters each),
 after all draws above had been used to mend the grammar; ten that an earlier draw had judged, as they are or with left
-and right swapped, are left out; that none stands so in a stretch that was read to widen it was not checked. Each
-prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right
-swapped.
+and right swapped, are left out; that none stands so in a stretch that was read to widen it was not checked.
+`captions_sixth`: 290 more (from 293,000, 752,000, 857,000 and 930,000), after `captions_fifth` had been used to mend
+it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Each prompt counts
+once, without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc and 41538419 before the last seven);
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419 and 1f1fe4eb before the last
+eight);
 what was understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
 results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
@@ -49,7 +51,7 @@ DRAWS = {  # -> ending of the names of their files
     "captions_second": "_captions_second", "captions_third": "_captions_third", "captions_fourth": "_captions_fourth",
     "strangers": "_strangers", "strangers_second": "_strangers_second",
     "strangers_third": "_strangers_third", "strangers_fourth": "_strangers_fourth",
-    "captions_fifth": "_captions_fifth",
+    "captions_fifth": "_captions_fifth", "captions_sixth": "_captions_sixth",
 }  # fmt: skip
 
 

@@ -296,7 +296,7 @@ UNREAD = {
         ("", False, True), ("_second", False, True), ("_captions", False, True), ("_third", True, True),
         ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
         ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
-        ("_strangers_fourth", True, False), ("_captions_fifth", True, False),
+        ("_strangers_fourth", True, False), ("_captions_fifth", True, False), ("_captions_sixth", True, False),
     )
 }  # fmt: skip
 STRANGERS = MetricTable(
