@@ -4,6 +4,7 @@ python tools/build_docs.py [--out build/docs]
 """
 
 import argparse
+import json
 import os
 import re
 import runpy
@@ -83,7 +84,7 @@ def decision_navigation(folder: Path) -> str:
     entries = []
     for subject, records in re.findall(r"^## (.*)\n\n((?:- .*\n)+)", page.read_text(encoding="utf-8"), re.MULTILINE):
         pages = [
-            f'{{ "{title.replace("`", "")}" = "decisions/{name}" }}'
+            f'{{ {json.dumps(title, ensure_ascii=False)} = "decisions/{name}" }}'  # quoted as TOML quotes it, too
             for title, name in re.findall(r"^- \[(.*?)\]\((.*?)\)", records.replace("`", ""), re.MULTILINE)
         ]
         entries.append(f'{{ "{subject}" = [{", ".join(pages)}] }}')

@@ -1,5 +1,6 @@
 """The documentation: links resolve, files that are named exist, every decision has a status."""
 
+import importlib
 import re
 import shlex
 import tomllib
@@ -128,3 +129,13 @@ def test_every_preset_is_in_the_page_of_radars():
 
 def test_the_readme_is_short():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
+
+
+def test_the_site_lists_every_decision_whatever_its_title(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Titles may hold quotation marks; the navigation is read as TOML."""
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    navigation = importlib.import_module("build_docs").decision_navigation
+    (tmp_path / "README.md").write_text((ROOT / "docs" / "decisions" / "README.md").read_text(encoding="utf-8"))
+    subjects = tomllib.loads(f"nav = [{navigation(tmp_path)}]")["nav"]
+    listed = {page for subject in subjects for pages in subject.values() for one in pages for page in one.values()}
+    assert listed == {f"decisions/{page.name}" for page in DECISIONS}
