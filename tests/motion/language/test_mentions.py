@@ -85,3 +85,16 @@ def test_furniture_that_no_step_uses_is_named(text: str, not_shown: str):
 
 def test_two_sides_that_are_shown_one_after_the_other_are_shown():
     assert [clause.status for clause in parse("a person turns to the left and to the right").clauses] == ["done"] * 2
+
+
+@pytest.mark.parametrize(
+    ("sentence", "is_said"),
+    [
+        ("a person is in a squat and then raises the left hand", True),
+        ("a person gets down on the knees and hops backwards", True),
+        ("a person squats and then raises the left hand", False),
+        ("a person gets down on the knees, then gets up and hops backwards", False),
+    ],
+)
+def test_getting_up_that_no_word_asks_for_is_said(sentence: str, *, is_said: bool) -> None:
+    assert any("after getting up" in record.how for record in parse(sentence, in_part=True).clauses) == is_said

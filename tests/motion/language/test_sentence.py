@@ -373,3 +373,15 @@ def test_how_a_bow_ends_is_no_step() -> None:
 def test_an_arm_that_is_held_out_comes_down() -> None:
     held = parse("a person raises their left arm to shoulder height, holds it, and lets it drop")
     assert [(step.lower, step.upper) for step in held.steps] == [("stand", "arms_out"), ("stand", "")]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "shown"),
+    [
+        ("a person is bowing down as if greeting someone", [("bow", "")]),
+        ("a man raises both his arms to do a t-pose", [("stand", "arms_out")]),
+        ("a person greets someone and bows", [("stand", "wave"), ("bow", "")]),
+    ],
+)
+def test_a_greeting_bow_is_a_bow_and_a_t_pose_one_movement(sentence: str, shown: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.upper) for step in parse(sentence).steps] == shown

@@ -12,6 +12,7 @@ from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, 
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.shared_steps import shown_only_once
+from mmweaver.motion.language.shown_in_turn import shown_in_turn
 from mmweaver.motion.language.words import word_of
 
 _ONE = ("left", "right")
@@ -41,7 +42,9 @@ def note_what_is_not_shown(
         own = [step for step in steps if parsed.number in step.clauses] or steps
         for how in [*parsed.lost, *not_shown(parsed.words, own)]:
             say(parsed.number, how)
-    for number, how in shown_only_once(every_clause, steps):
+    in_turn_is_said = any("one after the other" in record.how for record in records.values())
+    in_turn = [] if in_turn_is_said else shown_in_turn(every_clause, as_given(given_text, records), steps)
+    for number, how in [*shown_only_once(every_clause, steps), *in_turn]:
         say(number, how)
     for after, how in risings_that_no_clause_names(steps):
         say(after.clauses[0] if after.clauses else max(records), how)

@@ -145,13 +145,14 @@ _SIDED_WAY = re.compile(
     rf"\b(left|right)(?:wards?)?\b(?!-| (?:[a-z]+ )?(?:{_HAND}|{_LEG}|side|shoulder|hip|ear|eye|cheek"
     r"|punch|jab|hook|kick|after|before|now|there)\b)"
 )
+_STAYS_LOW = re.compile(r"\bin(?:to)? an? (?:[a-z]+ ){0,2}squat\b|\bsquat\w* down\b")
 _RISING = ("stand_up", "kneel_up", "get_up", "sit_up")
 _GOING_ON = ("walk", "jog", "turn", "sidestep", "leap", "stand")
 
 
 def _goes_on_feet(before: Step, after: Step) -> bool:
-    """Whether the movement needs feet anyway; who is on the knees or the floor may turn there."""
-    return after.lower in _GOING_ON and not (after.lower == "turn" and before.lower in ("kneel_up", "get_up"))
+    """Whether the movement needs feet anyway; who is on the knees or the floor may turn or hop there."""
+    return after.lower in _GOING_ON and not (after.lower in ("turn", "leap") and before.lower in ("kneel_up", "get_up"))
 
 
 def without_no_limbs(text: str) -> str:
@@ -211,7 +212,13 @@ def _moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
 
 def risings_that_no_clause_names(steps: Sequence[Step]) -> list[tuple[Step, str]]:
     """(step after, what is said) where somebody gets up only because the library does the next movement standing."""
-    return [
+    low = [
+        (after, f"{after.name} is shown standing, after getting up")
+        for before, after in pairwise(steps)
+        if before.lower == "squat" and _STAYS_LOW.search(before.clause) and not before.count
+        and after.lower == "stand" and after.upper and not after.on_feet and before.clauses != after.clauses
+    ]  # fmt: skip
+    return low + [
         (after, f"{after.name} is shown {'standing, ' * (after.posture == 'feet')}after getting up")
         for before, after in pairwise(steps)
         if before.lower in _RISING and not before.clauses and not _goes_on_feet(before, after)

@@ -47,6 +47,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bfrom (?:the|one|a) side\b", " from_side "),
     (r"\bpushed +(?:a bit |slightly |a little )?backs\b", " pushed backwards "),
     (r"\bbow(?:s|ing|ed)? (?:his|her|its|their|the) head\b", " look_around lookdown "),
+    (r"\b(bow(?:s|ing|ed)?(?: down| forwards?)?) (?:as if|like|to) greet(?:ing)? (?:someone|somebody|people|an? person)\b", r" \1 "),
     (r"\bupper[- ]?body\b|\btorso\b", " torso "),
     (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
      r"to the left and (?:to the )?right)\b", r" \1 "),
@@ -141,6 +142,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:holds?|holding|puts?|putting|has|having) (?:a |the |his |her |their )?(?:mobile |cell |smart)?-?(?:phone|telephone)"
      r" (?:to|at|against|on) (?:his |her |the |their )?(?:left |right )?ear\b", " phone "),
     (r"\bshrug(?:s|ging|ged)?(?: with)?(?: his| her| its| their| the)? shoulders\b", " shrugs "),
+    (r"\b(?:rais(?:es|ing|ed?)|lift(?:s|ing|ed)?) ((?:his |her |its |their |the |both )*arms) (?:up )?"
+     r"(?:to (?:do |form |make |strike )?|into |in )(?:an? )?t-? ?pose\b", r" arms_out \1 "),
     (r"\b(?:in(?:to)? )?(?:an? )?t-? ?poses?\b", " arms_out "),
     (r"\b(?:stretch(?:es|ing|ed)?|hold(?:s|ing)?|spread(?:s|ing)?|extend(?:s|ing|ed)?|rais(?:es|ing|ed?)|lift(?:s|ing)?)"
      r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:out )?(?:horizontally )?"
