@@ -1,4 +1,4 @@
-"""Neighbours, echoes and fans are left out together; models of before leave out what moves in the empty place alone."""
+"""Neighbours, echoes and fans are left out together; older models leave out movers of the empty place alone."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
-"""Echoes of a person over a wall or another body: what moves behind somebody nearer who moves at the same time.
+"""Multipath of a person over a wall or another body: moving points behind a nearer group that moves at the same time.
 
-Such a way is always longer than the direct one, so of two groups that move at once the nearer is the person.
+Such a path is always longer than the direct one, so of two groups that move at once the nearer is the person.
 """
 
 from dataclasses import replace

@@ -49,7 +49,7 @@ class _Table:
     def _keys(self, frame: np.ndarray, row: np.ndarray, column: np.ndarray) -> np.ndarray:
         return (frame * self._rows + row + AROUND) * self.columns + column % self.columns
 
-    def beside(self, rows: int, columns: int) -> Int[np.ndarray, " cell"]:
+    def neighbour(self, rows: int, columns: int) -> Int[np.ndarray, " cell"]:
         """The number of the cell so many steps from each; -1 where it is empty."""
         wanted = self._keys(self.cells[:, 0], self.cells[:, 1] + rows, self.cells[:, 2] + columns)
         place = np.minimum(np.searchsorted(self._key, wanted), len(self._key) - 1)
@@ -60,7 +60,7 @@ class _Table:
         total = np.zeros(len(self.cells))
         for row in range(-rows, rows + 1):
             for column in range(-AROUND, AROUND + 1):
-                other = self.beside(row, column)
+                other = self.neighbour(row, column)
                 total += np.where(other >= 0, values[other], 0.0) / (1.0 + row**2 + column**2)
         return total
 
@@ -72,7 +72,7 @@ class _Table:
         here = np.arange(len(self.cells))
         for rows in (-1, 0, 1) if in_range else (0,):
             for columns in (-1, 0, 1) if in_velocity else (0,):
-                other = self.beside(rows, columns)
+                other = self.neighbour(rows, columns)
                 there = np.where(other >= 0, strength[other], -np.inf)
                 kept &= (there < strength) | ((there == strength) & (other >= here)) | (other < 0)
         return kept

@@ -21,16 +21,8 @@ from mmweaver.motion.language.plan import Step
 RATE_HZ = 120.0
 MARGIN_SAMPLES = 2  # before the start and after the end, for interpolation
 LONGEST_BLEND_S = 0.45
-_IN_THE_AIR = (
-    "jump",
-    "leap",
-    "hop",
-    "hop_one_leg",
-    "jumping_jacks",
-    "jog",
-    "turn",
-    "forward_roll",
-)  # gravity sets their tempo
+# Gravity sets their tempo.
+_IN_THE_AIR = ("jump", "leap", "hop", "hop_one_leg", "jumping_jacks", "jog", "turn", "forward_roll")
 
 
 def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:

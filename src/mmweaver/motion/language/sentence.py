@@ -138,9 +138,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
         taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
-        if (
-            step.lower == "put_down" and taken[-1:] == ["reach"] and not on_the_floor
-        ):  # what was taken from a table goes back there
+        # what was taken from a table goes back there
+        if step.lower == "put_down" and taken[-1:] == ["reach"] and not on_the_floor:
             sequence[number] = replace(step, lower="stand", upper="reach")
         if before.upper == "carry" and before.lower == "stand" and step.lower == "put_down":  # it is carried there
             walk = replace(before, lower="walk", place=step.place)
@@ -363,9 +362,8 @@ def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
     about = parsed.about
     if last.lower == "bend" and not last.upper and about.direction == "backwards" and parsed.link in ("then", "comma"):
-        return replace(
-            last, lower="lean", direction="backwards", clauses=(parsed.number,)
-        )  # "bends forward, then back"
+        # "bends forward, then back"
+        return replace(last, lower="lean", direction="backwards", clauses=(parsed.number,))
     if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
         return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
     if last.direction == "circle" and SIDES.get(about.direction, 0.0) * last.arc_deg < 0:

@@ -21,19 +21,7 @@ ONE_ARMED = words_in(
     """
 )
 AT_THE_HEAD = words_in("drink eat phone brush_teeth comb yawn")
-ARMS_TAKEN = {
-    "jumping_jacks",
-    "pick_up",
-    "put_down",
-    "throw",
-    "fall",
-    "lie_down",
-    "get_up",
-    "stumble",
-    "leap",
-    "jump",
-    "forward_roll",
-}
+ARMS_TAKEN = words_in("jumping_jacks pick_up put_down throw fall lie_down get_up stumble leap jump forward_roll")
 _IN_TURN = ({"walk", "turn"}, {"jog", "turn"})
 _REST_S = 0.5  # before a hand is raised to wave
 _WALKS_ON = re.compile(
@@ -44,14 +32,8 @@ _TURNING_JUMPS = {(jump, "turn", "ing") for jump in ("jump", "leap", "hop")}
 # What goes on for as long as there is time, so that what "and" adds happens meanwhile.
 _GOING_ON = {"dance", "march", "hop", "twist"}
 _PLAYED = {"guitar", "violin"}
-_LOW = {
-    "bend",
-    "lean",
-    "crouch",
-    "squat",
-    "one_leg",
-    "raise_leg",
-}  # the hands do what "and" adds before the body comes up
+# The hands do what "and" adds before the body comes up.
+_LOW = {"bend", "lean", "crouch", "squat", "one_leg", "raise_leg"}
 
 
 def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
