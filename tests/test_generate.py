@@ -15,7 +15,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.firmware import firmware_points
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.formats.npz_files import (
@@ -32,6 +32,7 @@ from mmweaver.methods import METHODS, Signal
 from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.stored_result import read_result
 from mmweaver.verification import verify
 
 README = Path(__file__).resolve().parents[1] / "README.md"
@@ -223,6 +224,28 @@ def test_several_people_each_with_a_body_and_a_place(weaver: Weaver, room: Room,
     )
     with pytest.raises(InputError, match="3 people"):
         read_pose_npz(tmp_path / "out" / "pose.npz")
+
+
+@pytest.mark.parametrize("method", ["weaver", "physics"])
+def test_an_empty_room_is_the_same_room_without_the_person(method: str, room: Room, tmp_path: Path):
+    """It has no movement, and nearer than the person, who occludes nothing there, the same static clutter."""
+    one = Weaver(method)
+    empty, walk = (one.generate(room, text, frames=3, board="ideal") for text in ("nobody", TEXT))
+    assert (empty.poses, empty.motions, empty.cube.values.shape) == ((), (), walk.cube.values.shape)
+    still, moving = (np.abs(remove_static(result.cube, "mean_chirp").values).max() for result in (empty, walk))
+    assert still < 0.02 * moving
+    nearest_m = np.linalg.norm(walk.motion.joints_m, axis=-1).min()
+    is_before = empty.cube.grid.range_m < nearest_m - 0.5
+    still, same = (result.cube.values[:, is_before, 16] for result in (empty, walk))
+    assert is_before.sum() > 5
+    assert np.abs(still - same).mean() < 0.1 * np.abs(still).mean()
+    meta = empty.save(tmp_path / "out", pictures=False)
+    assert (meta["text"], meta["people"]) == ("nobody", [])
+    assert "person" not in meta
+    assert read_result(tmp_path / "out").poses == ()
+    assert (tmp_path / "out" / "pose.npz").is_file()
+    with pytest.raises(InputError, match="nobody is in"):
+        _ = empty.pose
 
 
 def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -35,6 +35,9 @@ TEXT = "a person walks towards the radar"
         ({"text": []}, "1 to 8 texts"),
         ({"text": [TEXT] * 9}, "1 to 8 texts"),
         ({"text": [TEXT, "a person photosynthesises"]}, "walk"),
+        ({"text": [TEXT, "nobody"]}, "give it alone"),
+        ({"text": "an empty room", "at": (0.0, 1.0)}, "leave out place"),
+        ({"text": "nobody", "path_m": [(0.0, 1.0), (0.0, 2.0)]}, "leave out place"),
         ({"text": [TEXT, TEXT], "at": (0.0, 1.0)}, "list of at most 2 places"),
         ({"text": [TEXT, TEXT], "at": [None, (0.0, float("inf"))]}, "two numbers"),
     ],
@@ -42,6 +45,15 @@ TEXT = "a person walks towards the radar"
 def test_a_bad_request_is_refused_before_any_work(request_: dict, says: str):
     with pytest.raises(InputError, match=says):
         parse_request(AWR1843, **{"text": TEXT, **request_})
+
+
+def test_an_empty_room_has_no_people_and_two_seconds():
+    request = parse_request(AWR1843, text="An empty room.")
+    assert (request.people, request.text, request.frames) == ((), "nobody", 20)
+    assert (request.at, request.height_m, request.subject) == (None, None, None)
+    assert parse_request(AWR1843, text=["nobody"], seconds=1.0).frames == 10
+    with pytest.raises(InputError, match="a sequence of its own"):
+        module.parsed_text("nobody")
 
 
 def test_memory_is_asked_for_before_it_is_used():

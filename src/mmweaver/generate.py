@@ -186,6 +186,8 @@ class Weaver(RoomReader):
     ) -> Generation:
         """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
 
+        "nobody" is a text, too, given alone: the room is empty, and there are no poses.
+
         A `motion` comes from `read_motion` or a motion model; it is the first person's, and the first text only names
         it. `heading_rad` (from +x towards +y) is where the first body faces first, `path_m` the corners (x, y) of its
         walk; `as_recorded` takes a motion's positions as the radar's own. `height_m` is the body's height, for several
@@ -356,6 +358,8 @@ def compose_request(request: Request, scene: Scene) -> tuple[Motion, ...]:
     Raises InputError where the room has no place for it.
     """
     recorded = None
+    if not request.people:
+        return ()
     first = request.people[0]
     if request.motion is not None:
         clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
@@ -389,12 +393,12 @@ def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...
 
 
 def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
-    """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several."""
+    """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several or of nobody."""
     described = [
         {**_person(pose, person), "plan": person.plan, "clauses": person.clauses}
         for pose, person in zip(poses, people, strict=True)
     ]
-    if len(described) > 1:
+    if len(described) != 1:
         return {"people": described}
     return {"person": _person(poses[0], people[0]), "plan": people[0].plan, "clauses": people[0].clauses}
 

@@ -167,13 +167,13 @@ class Generation(ShownByFacts):
 
     @property
     def pose(self) -> PoseSequence:
-        """The first person's joints at the radar's frames."""
-        return self.poses[0]
+        """The first person's joints at the radar's frames. Raises InputError where nobody is there."""
+        return _first(self.poses)
 
     @property
     def motion(self) -> PoseSequence:
-        """The first person's joints densely in time."""
-        return self.motions[0]
+        """The first person's joints densely in time. Raises InputError where nobody is there."""
+        return _first(self.motions)
 
     @property
     def photo(self) -> RgbdPhoto:
@@ -233,6 +233,12 @@ class Generation(ShownByFacts):
             for number, meta in enumerate(metas, 1) for name, text in meta["files"].items()
         }  # fmt: skip
         return {**metas[0], "files": files}
+
+
+def _first(poses: tuple[PoseSequence, ...]) -> PoseSequence:
+    if not poses:
+        raise InputError("nobody is in this sequence, so there is no pose; `poses` is empty")
+    return poses[0]
 
 
 def _recording_digest(place: Path) -> dict[str, str]:

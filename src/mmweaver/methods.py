@@ -205,7 +205,8 @@ class Learned:
         with stages("weave the signal"):
             motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
             cube, adc = room.signal(
-                motions, seed=scene.radar_pose.noise_seed(seed), keep_adc=keep_adc, first_frame=first_frame
+                motions, seed=scene.radar_pose.noise_seed(seed), keep_adc=keep_adc, first_frame=first_frame,
+                num_frames=num_frames,
             )  # fmt: skip
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         note = FIELDS_NOTE if room.reads_cells else LEARNED_NOTE

@@ -12,6 +12,7 @@ from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
+from mmweaver.motion.empty_place import NOBODY, says_nobody
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
@@ -45,7 +46,7 @@ class PersonRequest:
 class Request:
     """A valid request for one sequence; made by `parse_request`."""
 
-    people: tuple[PersonRequest, ...]
+    people: tuple[PersonRequest, ...]  # none: an empty room
     config: RadarConfig  # at the requested frame rate
     frames: int = 20
     seed: int = 0
@@ -73,8 +74,8 @@ class Request:
 
     @property
     def text(self) -> str | list[str]:
-        """The text of one person, or a list of several people's."""
-        return _one_or_all([person.text for person in self.people])
+        """The text of one person, or a list of several people's; NOBODY of an empty room."""
+        return NOBODY if not self.people else _one_or_all([person.text for person in self.people])
 
     @property
     def at(self) -> Place | list[Place | None] | None:
@@ -126,6 +127,7 @@ def parse_request(
     texts = [text or ""] if text is None or isinstance(text, str) else list(text)
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
+    is_empty = _asks_for_nobody(texts, motion, at, heading_rad, path_m, height_m, subject)
     starts = _starts(at, len(texts))
     check_poses(tuple(radar_poses))
     config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
@@ -134,7 +136,7 @@ def parse_request(
     if asked is not None:
         _check_size(config, asked, has_adc)
     parsed: list[MotionPlan | None] = [
-        None if motion is not None and index == 0 else parsed_text(one) for index, one in enumerate(texts)
+        None if is_empty or (motion is not None and index == 0) else parsed_text(one) for index, one in enumerate(texts)
     ]
     if path_m is not None:
         parsed[0] = _along(parsed[0], path_m)
@@ -142,21 +144,38 @@ def parse_request(
     if motion is not None:
         check_lasts(motion, count * config.frame_period_s)
     heights, subjects = _one_each(height_m, len(texts), "height"), _one_each(subject, len(texts), "subject")
-    people = tuple(
-        PersonRequest(
-            text=text,
-            plan=_scheduled(plan, count * config.frame_period_s),
-            start_m=start,
-            height_m=None if height is None else float(height),
-            subject=None if who is None else check_subject(who),
+    people = (
+        ()
+        if is_empty
+        else tuple(
+            PersonRequest(
+                text=text,
+                plan=_scheduled(plan, count * config.frame_period_s),
+                start_m=start,
+                height_m=None if height is None else float(height),
+                subject=None if who is None else check_subject(who),
+            )
+            for text, plan, start, height, who in zip(texts, parsed, starts, heights, subjects, strict=True)
         )
-        for text, plan, start, height, who in zip(texts, parsed, starts, heights, subjects, strict=True)
     )
     return Request(
         people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
         as_recorded=as_recorded, keep_adc=keep_adc, board=None if board is None else find_board(board, config, seed),
         radar_poses=tuple(radar_poses),
     )  # fmt: skip
+
+
+def _asks_for_nobody(texts: Sequence[str], motion: MotionClip | None, *placing: Any) -> bool:
+    """Whether an empty room is asked for. Raises InputError where somebody is to be in it all the same."""
+    if motion is not None or not any(says_nobody(one) for one in texts):
+        return False
+    if len(texts) > 1:
+        raise InputError(f"{NOBODY!r} is an empty room; leave it out where others are in it, or give it alone")
+    if any(one is not None for one in placing):
+        raise InputError(
+            f"{NOBODY!r} is an empty room: leave out place, heading, path, height and subject, or say what is done"
+        )
+    return True
 
 
 def _frames_asked_for(frames: int | None, seconds: float | None, config: RadarConfig) -> int | None:
@@ -181,15 +200,17 @@ def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None
     """As many frames as the recorded motion has time for, or as the longest sentence needs and two seconds have."""
     if motion is not None:
         return max(1, math.floor(motion.duration_s / config.frame_period_s + 1e-6))
-    needed_s = max(LEAST_SECONDS, *(natural_s(plan) for plan in plans if plan is not None))
+    needed_s = max([LEAST_SECONDS, *(natural_s(plan) for plan in plans if plan is not None)])
     return max(1, math.ceil(needed_s / config.frame_period_s - 1e-6))
 
 
 def parsed_text(text: str) -> MotionPlan:
     """The parsed sentence; activities of plug-ins are looked up where it is not understood without.
 
-    Raises InputError where less than half of it is understood.
+    Raises InputError where less than half of it is understood, and for an empty place.
     """
+    if says_nobody(text):
+        raise InputError(f"{text[:60]!r} is an empty place, a sequence of its own: generate --text {NOBODY}, alone")
     try:
         return parse(text)
     except InputError:

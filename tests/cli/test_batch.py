@@ -47,6 +47,12 @@ def test_a_folder_for_each_and_more_of_them_later(texts: Path, tmp_path: Path, c
     assert np.array_equal(cubes[0], cubes[1])
 
 
+def test_an_empty_room_is_generated_alone(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    texts.write_text("a person stands\nnobody\n")
+    assert main([*SHORT, "--texts", str(texts), "--out", str(tmp_path / "set")]) == 2
+    assert "generate it alone" in capsys.readouterr().err
+
+
 def test_what_an_earlier_run_made_otherwise_is_not_touched(
     texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -16,7 +16,9 @@ from mmweaver.formats.npz_files import (
     read_npz,
     read_points_npz,
     read_pose_npz,
+    read_poses_npz,
     read_radar_npz,
+    write_empty_pose_npz,
     write_npz,
     write_points_npz,
     write_pose_npz,
@@ -52,6 +54,19 @@ def test_a_cube_needs_its_own_radar(tmp_path: Path):
         read_radar_npz(tmp_path / "radar.npz")
     with pytest.raises(InputError, match="mmmesh"):
         read_radar_npz(tmp_path / "radar.npz", MMMESH)
+
+
+def test_a_pose_file_of_nobody(tmp_path: Path):
+    write_empty_pose_npz(tmp_path / "pose.npz", np.arange(4) / 10)
+    arrays = read_npz(tmp_path / "pose.npz")
+    assert (arrays["joints_m"].shape, arrays["height_m"].shape) == ((0, 4, 22, 3), (0,))
+    assert arrays["frame_time_s"].tolist() == [0.0, 0.1, 0.2, 0.3]
+    assert read_poses_npz(tmp_path / "pose.npz") == ()
+    with pytest.raises(InputError, match="0 people"):
+        read_pose_npz(tmp_path / "pose.npz")
+    write_empty_pose_npz(tmp_path / "pose.npz", np.zeros(0))
+    with pytest.raises(InputError, match="no frames"):
+        read_poses_npz(tmp_path / "pose.npz")
 
 
 def test_pose_and_points_are_restored(tmp_path: Path):

@@ -34,6 +34,11 @@ def test_everything_that_may_be_said(tmp_path: Path):
     assert task.background == task.unlabelled == tmp_path / "empty.npz"
 
 
+def test_an_empty_place_may_be_put_in_other_words(tmp_path: Path):
+    task = read_task(written(tmp_path, HEAD + '[activities]\na = "a person walks"\nb = ["an empty room", "nobody"]\n'))
+    assert task.activities["b"] == ("nobody",)
+
+
 def test_what_is_missing_is_unknown(tmp_path: Path):
     task = read_task(written(tmp_path, HEAD + ACTIVITIES))
     assert task.mount.height_m is task.mount.distance_m is task.background is task.recordings.columns is None

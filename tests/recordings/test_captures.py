@@ -97,6 +97,21 @@ def test_inconsistent_captures_are_refused(made: Path, tmp_path: Path):
         read_capture(late)
 
 
+def test_a_capture_of_an_empty_room_has_no_pose(made: Path, tmp_path: Path):
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    for name in ("radar.npz", "radar.json", "meta.json"):
+        (folder / name).write_bytes((made / name).read_bytes())
+    from mmweaver.formats.npz_files import read_pose_npz, write_empty_pose_npz, write_pose_npz
+
+    pose = read_pose_npz(made / "pose.npz")
+    write_empty_pose_npz(folder / "pose.npz", pose.time_s)
+    assert read_capture(folder).pose is None
+    write_pose_npz(folder / "pose.npz", pose, pose)
+    with pytest.raises(InputError, match="2 people"):
+        read_capture(folder)
+
+
 def test_a_changed_photo_is_refused(made: Path, tmp_path: Path):
     rgb, depth = tmp_path / "rgb.jpg", tmp_path / "depth.npy"
     rgb.write_bytes(b"other")

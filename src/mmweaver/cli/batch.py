@@ -241,6 +241,8 @@ def parse_texts(
     for text in dict.fromkeys(texts):
         try:
             requests[text] = weaver.request(text, **settings)
+            if not requests[text].people:
+                raise InputError("an empty room is no sequence of a person; generate it alone, with --text")
         except InputError as error:
             raise InputError(f"{file}, {text[:60]!r}: {error}") from None
     longest = max(one.frames for one in requests.values())

@@ -10,6 +10,7 @@ from mmweaver.cli.arguments import number, whole
 if TYPE_CHECKING:
     from mmweaver.core.records import PoseSequence
 
+EMPTY_S = 2.0  # of an empty place, whose length nothing decides
 EXAMPLES = """examples:
   mmweaver motion "a person walks to the left, then waves"
   mmweaver motion "a person falls, then gets up" --seconds 8 --out fall.npz --picture fall.png
@@ -37,8 +38,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Animates the sentence and writes the requested files. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
+    from mmweaver.motion.empty_place import says_nobody
 
     _check_files(arguments)
+    if says_nobody(arguments.text):
+        return _show_nobody(arguments)
     motion = act_out(
         arguments.text, duration_s=arguments.seconds, seed=arguments.seed, height_m=arguments.height,
         subject=arguments.subject,
@@ -64,6 +68,31 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['name']}")
     for sentence in motion.assumptions:
         print(f"  assumed: {sentence}")
+    return 0
+
+
+def _show_nobody(arguments: argparse.Namespace) -> int:
+    """An empty place has no steps, and joints of nobody at the times of a motion. Raises InputError for a body."""
+    from mmweaver.core.atomic_files import atomic_file
+    from mmweaver.core.errors import InputError
+    from mmweaver.formats.npz_files import write_empty_pose_npz
+    from mmweaver.motion.animation.assemble import dense_times
+    from mmweaver.motion.language.timing import LONGEST_S
+
+    if any(one is not None for one in (arguments.height, arguments.subject, arguments.picture)):
+        raise InputError("nobody is there: leave out --height, --subject and --picture, or say what a person does")
+    seconds = EMPTY_S if arguments.seconds is None else arguments.seconds
+    if not 0 < seconds <= LONGEST_S:
+        raise InputError(f"a duration of {seconds:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
+    files = [] if arguments.out is None else [arguments.out]
+    for file in files:
+        with atomic_file(file) as temporary:
+            write_empty_pose_npz(temporary, dense_times(seconds))
+    if arguments.json:
+        facts = {"text": arguments.text, "seconds": seconds, "people": [], "steps": [], "clauses": []}
+        print(json.dumps({**facts, "assumptions": [], "files": list(map(str, files))}, indent=2))
+    else:
+        print(f"{0:6.2f} to {seconds:5.2f} s   nobody: an empty place")
     return 0
 
 

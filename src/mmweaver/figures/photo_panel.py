@@ -32,6 +32,9 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
         colours = matplotlib.colormaps[TIME_MAP]
         bodies = _bodies(people[0], SHOWN_POSES, lambda share: _time_colour(colours, share))
         axes.set_title("The room, and the person at several times", y=1.0)
+    elif not people:
+        bodies = []
+        axes.set_title("The room, with nobody in it", y=1.0)
     else:
         bodies = []
         for index, person in enumerate(people):

@@ -16,6 +16,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
 from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.core.shapes import PerFrame
 from mmweaver.core.skeleton import JOINT_NAMES
 
 CUBE_AXES = ("frame", "range", "doppler", "antenna")
@@ -98,13 +99,23 @@ def write_pose_npz(path: Path, pose: PoseSequence, *others: PoseSequence) -> Non
     poses = (pose, *others)
     joints_m = np.stack([np.asarray(one.joints_m, np.float32) for one in poses])
     height_m = np.array([one.height_m for one in poses], np.float64)
-    is_single = not others
+    first = ... if others else 0
+    _write_joints(path, joints_m[first], height_m[first], pose.time_s)
+
+
+def write_empty_pose_npz(path: Path, time_s: PerFrame) -> None:
+    """Writes that nobody is there at these times: `joints_m` (0, frame, 22, 3), `height_m` (0,)."""
+    joints_m = np.empty((0, len(time_s), len(JOINT_NAMES), 3), np.float32)
+    _write_joints(path, joints_m, np.empty(0, np.float64), time_s)
+
+
+def _write_joints(path: Path, joints_m: np.ndarray, height_m: np.ndarray | np.generic, time_s: PerFrame) -> None:
     write_npz(
         path,
-        joints_m=joints_m[0] if is_single else joints_m,
+        joints_m=joints_m,
         joint_names=np.array(JOINT_NAMES),
-        frame_time_s=np.asarray(pose.time_s, np.float64),
-        height_m=height_m[0] if is_single else height_m,
+        frame_time_s=np.asarray(time_s, np.float64),
+        height_m=height_m,
     )
 
 
@@ -117,7 +128,10 @@ def read_pose_npz(path: str | Path) -> PoseSequence:
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
-    """Reads all people of a pose.npz, as subjects 0, 1, 2 ... Raises InputError for anything else."""
+    """Reads all people of a pose.npz, as subjects 0, 1, 2 ...; none of an empty place.
+
+    Raises InputError for anything else.
+    """
     path = Path(path)
     held = _read(path)
     is_single = held.take("joints_m").ndim == 3
@@ -127,7 +141,7 @@ def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
         raise InputError(f"{path} has other joints than the {len(JOINT_NAMES)} of SMPL")
     time_s = held.numbers("frame_time_s", ("frame",), low=-MAX_TIME_S, high=MAX_TIME_S)
     height_m = np.atleast_1d(held.numbers("height_m", people, low=0.1, high=10))
-    if not joints_m.size:
+    if not len(time_s):
         raise InputError(f"{path} holds no frames; generate it again")
     return tuple(
         PoseSequence(time_s=time_s, joints_m=joints, height_m=float(height), subject=index)

@@ -123,17 +123,24 @@ class LearnedRoom:
     def _paths(
         self, motions: Sequence[FrameMotion], first_frame: int = 0, *, of_second_order: bool = True
     ) -> ScenePaths:
+        if not motions:
+            raise ValueError("without people the number of frames is not known; see `_paths_of_nobody`")
         moving = [
             self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions
         ]
         has_second = self.given.traced.propagation.bounces > 1 and not self.reads_cells
-        if motions and has_second and of_second_order:
+        if has_second and of_second_order:
             moving.append(second_order_paths(self.given.traced, motions, self.renderer.clock))
         noticed_m = self.static.departure_vertex_m[: self._num_noticed]
         by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
         hidden = torch.zeros(len(by_each[0]), len(self.static), dtype=torch.uint8)
         hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
         return ScenePaths(static=self.static, moving=Paths.cat(moving, 1), occluded=hidden)
+
+    def _paths_of_nobody(self, num_frames: int) -> ScenePaths:
+        rows = num_frames * len(self.renderer.clock.segments)
+        hidden = torch.zeros(num_frames, len(self.static), dtype=torch.uint8)
+        return ScenePaths(static=self.static, moving=Paths.padded([Paths.none()] * rows), occluded=hidden)
 
     def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
         """One person's paths (frame * segment, path), less those that others occlude."""
@@ -227,14 +234,21 @@ class LearnedRoom:
         return self.signal(motions, seed=seed, keep_adc=False)[0]
 
     def signal(
-        self, motions: Sequence[FrameMotion], *, seed: int, keep_adc: bool, first_frame: int = 0
+        self,
+        motions: Sequence[FrameMotion],
+        *,
+        seed: int,
+        keep_adc: bool,
+        first_frame: int = 0,
+        num_frames: int | None = None,
     ) -> tuple[RadarCube, AdcCube | None]:
         """The cube, and with `keep_adc`, on which it does not depend, ADC samples of the same paths and noise.
 
-        `first_frame`: where in a longer signal this part begins; each part has noise of its own.
+        `first_frame`: where in a longer signal this part begins; each part has noise of its own. `num_frames` is asked
+        for where there are no motions, and decides nothing else.
         """
         with torch.inference_mode(), one_thread():
-            paths = self._paths(motions, first_frame)
+            paths = self._paths(motions, first_frame) if motions else self._paths_of_nobody(num_frames or 1)
             grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
             frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
             if self.board is not None:

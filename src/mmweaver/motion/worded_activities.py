@@ -9,16 +9,17 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.empty_place import NOBODY, says_nobody
 from mmweaver.motion.language.sentence import parse
 
 MAX_LABELS, MAX_SENTENCES = 1000, 1000
-NOBODY = "nobody"  # the sentence of an empty place, where it may be given
 
 
 def activities_of(content: dict[str, Any], file: Path, *, with_nobody: bool = False) -> dict[str, tuple[str, ...]]:
     """The sentences of each label in the order of the file, all of them parsed.
 
-    Raises InputError where fewer than two labels are given, or a sentence is not understood.
+    `with_nobody`: a label may be an empty place, whose sentence is then NOBODY however it is put. Raises InputError
+    where fewer than two labels are given, or a sentence is not understood.
     """
     table = content.get("activities")
     if not isinstance(table, dict) or len(table) < 2:
@@ -31,11 +32,16 @@ def activities_of(content: dict[str, Any], file: Path, *, with_nobody: bool = Fa
         is_list = isinstance(said, list) and said and all(isinstance(one, str) for one in said)
         if not is_list or len(said) > MAX_SENTENCES:
             raise InputError(f"{file}, {label}: give a sentence or a list of 1 to {MAX_SENTENCES}")
-        if with_nobody and NOBODY in said and len(said) > 1:
-            raise InputError(f"{file}, {label}: {NOBODY!r} is an empty place; give it a label of its own")
+        if with_nobody:
+            said = [NOBODY if says_nobody(one) else one for one in said]
+        if NOBODY in said and with_nobody:
+            if len(set(said)) > 1:
+                raise InputError(f"{file}, {label}: {NOBODY!r} is an empty place; give it a label of its own")
+            sentences[label] = (NOBODY,)
+            continue
         for one in said:
-            if with_nobody and one == NOBODY:
-                continue
+            if says_nobody(one):
+                raise InputError(f"{file}, {label}: {one!r} is an empty place; say here what a person does")
             try:
                 parse(one)
             except InputError as error:

@@ -18,7 +18,7 @@ from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
-from mmweaver.motion.worded_activities import NOBODY
+from mmweaver.motion.empty_place import NOBODY
 from mmweaver.recognition.observed_points import PointRadar, observed_cloud
 from mmweaver.recognition.performance import (
     PerformancePrior,

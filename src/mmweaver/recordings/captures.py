@@ -27,7 +27,7 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.dsp.spectra import noise_power
-from mmweaver.formats.npz_files import read_pose_npz
+from mmweaver.formats.npz_files import read_poses_npz
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.capture_photo import photo_folder, read_capture_photo
@@ -91,7 +91,10 @@ def read_capture(
     """
     cube = read_recording(folder).cube
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
-    pose = read_pose_npz(folder / POSE) if (folder / POSE).is_file() else None
+    people = read_poses_npz(folder / POSE) if (folder / POSE).is_file() else ()
+    if len(people) > 1:
+        raise InputError(f"{folder / POSE} holds {len(people)} people; a capture is of one person, or of nobody")
+    pose = people[0] if people else None
     if pose is not None:
         _check_times(folder, pose, cube)
     return Capture(folder=folder, cube=cube, photo=photo, pose=pose)
