@@ -171,7 +171,8 @@ MORE = {
     "sits on the couch and drinks": "sit+drink",
     "nods": "nod",
     "crosses her arms": "cross_arms",
-    "walsk forwads": "refused",
+    "walsk forwads": "walk forwards",
+    "wolks forwads": "refused",
     "walks forwads": "walk forwards",
 }  # fmt: skip
 

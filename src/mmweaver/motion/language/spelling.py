@@ -1,15 +1,25 @@
-"""Spelling correction: a long unknown word one edit away from exactly one known word is read as that word."""
+"""Spelling correction: a long unknown word one edit away from exactly one known word is read as that word.
+
+Of short words only slips are corrected that hardly ever make another English word: neighbours swapped, a letter typed
+twice, and a missing letter without which the word cannot be spoken ("wlks"). Reference: decision 369.
+"""
 
 import re
 from collections.abc import Iterable
 from functools import lru_cache
+from itertools import pairwise
 
 from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.lexicon import ALL_WORDS, GOING, IRREGULAR, LIGHT
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
 
-SHORTEST = 6  # letters; shorter words have too many neighbours
+LONG = 6  # letters; shorter words have too many neighbours
+SHORTEST = 4
+# No vowel, or two consonants with which no English word begins.
+UNSPEAKABLE = re.compile(
+    r"[^aeiouy]+$|(?!b[lr]|c[hlr]|d[rw]|f[lr]|g[hlnr]|k[lnr]|p[hlrs]|rh|s[chklmnpqtvw]|t[hrsw]|w[hr])[^aeiouy]{2}"
+)
 # Correct English words one edit away from words of the lexicon.
 OTHER_WORDS = words_in(
     """
@@ -20,6 +30,8 @@ OTHER_WORDS = words_in(
     falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
     tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
     painting printing bending sending lending mending
+    angel baht beta booth clam clasp clod dose east fits garb garbs hoops juts leis lien lisp posse quiet resp spied
+    spies steep sties tinny tort torts tried weer wheen writs rial maths paris moore donne angels boyd salas
     """
 )
 # Other verbs: their inflected forms are no misspellings of words of the lexicon.
@@ -51,7 +63,8 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
 
     def replace_word(match: re.Match[str]) -> str:
         word = match.group()
-        better = corrected_word(word.lower())
+        is_name = len(word) < LONG and word.istitle()
+        better = "" if is_name else corrected_word(word.lower())
         if not better:
             return word
         notes.append(f"{word!r} is read as {better!r}")
@@ -64,14 +77,29 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
 def corrected_word(word: str) -> str:
     """The known word that an unknown one is a misspelling of, or "".
 
-    >>> corrected_word("forwads"), corrected_word("walks"), corrected_word("sings")
-    ('forwards', '', '')
+    >>> corrected_word("forwads"), corrected_word("walks"), corrected_word("sings"), corrected_word("wlks")
+    ('forwards', '', '', 'walks')
     """
     known = _known()
     if len(word) < SHORTEST or {word, f"{word}s"} & known or word in OTHER_WORDS or word in _other_forms():
         return ""
-    near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_edit_apart(word, other)]
+    if len(word) < LONG:
+        near = [other for other in _whole_words() if _is_slip(word, other)]
+        near = near if len(near) == 1 else [other for other in near if other in _movements()]
+    else:
+        near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_edit_apart(word, other)]
     return near[0] if len(near) == 1 else ""
+
+
+def _is_slip(word: str, other: str) -> bool:
+    """Whether a short word is another one with neighbours swapped, a letter twice or one missing that it needs."""
+    if len(other) < SHORTEST or other[0] != word[0] or not _one_edit_apart(word, other):
+        return False
+    if len(word) == len(other):
+        return sorted(word) == sorted(other)
+    if len(word) < len(other):
+        return UNSPEAKABLE.match(word) is not None
+    return any(one == next_ and word[:k] + word[k + 1 :] == other for k, (one, next_) in enumerate(pairwise(word)))
 
 
 def _one_edit_apart(one: str, other: str) -> bool:
@@ -88,8 +116,19 @@ def _one_edit_apart(one: str, other: str) -> bool:
 @lru_cache(maxsize=1)
 def _known() -> frozenset[str]:
     """Every word that the parser knows in some form."""
-    known = _forms({*ACTIVITY_OF_LEMMA, *GOING, *LIGHT}) | ALL_WORDS | set(IRREGULAR) | RECOVERING | words_in(_MORE)
-    return frozenset(word for word in known | _of_patterns() if word.isalpha() and word.islower())
+    return _whole_words() | frozenset(word for word in _of_patterns() if word.isalpha() and word.islower())
+
+
+@lru_cache(maxsize=1)
+def _whole_words() -> frozenset[str]:
+    """The known words without the stems of patterns."""
+    known = _movements() | _forms(LIGHT) | ALL_WORDS | RECOVERING | words_in(_MORE)
+    return frozenset(word for word in known if word.isalpha() and word.islower())
+
+
+@lru_cache(maxsize=1)
+def _movements() -> frozenset[str]:
+    return _forms({*ACTIVITY_OF_LEMMA, *GOING}) | set(IRREGULAR)
 
 
 def _of_patterns() -> set[str]:
@@ -117,5 +156,6 @@ def _other_forms() -> frozenset[str]:
 
 def forget_known_words() -> None:
     """For when a verb was added."""
-    _known.cache_clear()
+    for remembered in (_movements, _whole_words, _known):
+        remembered.cache_clear()
     corrected_word.cache_clear()
