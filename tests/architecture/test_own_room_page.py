@@ -33,11 +33,9 @@ standing = ["a person stands still"]
 """
 
 
-def block(language: str) -> str:
-    """The page's first block of a language."""
-    found = re.search(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
-    assert found is not None
-    return found.group(1)
+def block(language: str, number: int = 0) -> str:
+    """One of the page's blocks of a language, the first without a number."""
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)[number]
 
 
 def command(start: str) -> list[str]:
@@ -81,6 +79,8 @@ def test_the_page_gives_a_loader_and_no_leak(place: Path):
     assert batch["micro_doppler"].shape[2] == 16  # the loops of this .cfg
     assert set(batch["label"].tolist()) <= {0, 1, 2}
     assert len(names["train"].label_names) == 3
+    pytest.importorskip("xarray")
+    assert run_python(block("python", 1))["near"].shape[0] == 3
 
 
 @pytest.mark.slow  # the test above makes the set by the same commands; test_train_recipes.py trains on one

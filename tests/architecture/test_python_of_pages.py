@@ -1,0 +1,115 @@
+"""The Python of the pages runs as it stands, block after block, in a folder with what `make demo` wrote there.
+
+A page whose commands make something first (a model, recordings) finds a small one of it.
+"""
+
+import ast
+import importlib
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mmweaver import Weaver
+from mmweaver.cli.generate_options import DEMO_TEXT
+from mmweaver.recognition import train_pose
+from mmweaver.recognition.recogniser import save_recogniser
+from tests.recognition.small_recogniser import small_recogniser
+from tests.recognition.test_train_recogniser import TASK
+from tests.training.moving_arm import moving_arm
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = {page.name: page for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md")))}
+# Pages whose code is run by a test of their own.
+ELSEWHERE = {
+    "README.md": "tests/test_generate.py",
+    "extend.md": "tests/test_register.py, in a process of its own, for it registers things",
+    "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
+}
+# Smaller than on the page: a recogniser of 600 windows takes seven minutes.
+SMALLER = {"zero_shot.md": ("each=200", "each=2")}
+# Their parts are tested in tests/comparison, tests/motion/motiongpt and tests/recognition/test_zero_shot.py, and below.
+SLOW = {"compare.md", "motiongpt.md", "zero_shot.md"}
+NOT_INSTALLED = {"datasets": "Hugging Face datasets, which nothing here needs"}
+
+
+def blocks_of(page: Path) -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+WITH_CODE = [name for name, page in PAGES.items() if blocks_of(page) and name not in ELSEWHERE]
+
+
+def recogniser(place: Path, _: pytest.MonkeyPatch) -> None:
+    """What `mmweaver recognise train TASK.toml --out model/` leaves."""
+    (place / "task.toml").write_text(TASK.format(more=""))
+    save_recogniser(place / "model", small_recogniser(place / "task.toml"))
+
+
+def pose_network(place: Path, patch: pytest.MonkeyPatch) -> None:
+    """What `mmweaver train pose TASK.toml --out model/` leaves, after a step of training."""
+    from mmweaver.cli.main import main
+
+    patch.setattr(train_pose, "generate_sequences", lambda _, each, *__: [moving_arm(k) for k in range(each)])
+    (place / "task.toml").write_text(TASK.format(more="").replace("window_s = 2.0", "window_s = 0.8"))
+    words = ["train", "pose", str(place / "task.toml"), "--out", str(place / "model"), "--sequences", "3"]
+    assert main([*words, "--steps", "1", "--batch", "2", "--quiet"]) == 0
+
+
+def own_recordings(place: Path, _: pytest.MonkeyPatch) -> None:
+    """Two recordings of each activity that the page names, (point, 8) as its files have them."""
+    for index, label in enumerate(("walk", "wave", "squat")):
+        for take in range(2):
+            (place / "recordings" / label).mkdir(parents=True, exist_ok=True)
+            points = np.random.default_rng([index, take]).normal(2, 0.2, (600, 8)).astype(np.float32)
+            np.savez(place / "recordings" / label / f"{take}.npz", frame=np.arange(600) // 6, pts=points)
+
+
+MADE_BEFORE: dict[str, Callable[[Path, pytest.MonkeyPatch], None]] = {
+    "recognise.md": recogniser, "pose.md": pose_network, "zero_shot.md": own_recordings,
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder demo/ without its pictures."""
+    folder = tmp_path_factory.mktemp("pages") / "demo"
+    weaver = Weaver()
+    weaver.generate(weaver.sample_room(), DEMO_TEXT).save(folder, pictures=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in WITH_CODE]
+)
+def test_the_blocks_of_a_page_run(name: str, demo: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "demo").symlink_to(demo)
+    if name in MADE_BEFORE:
+        MADE_BEFORE[name](tmp_path, monkeypatch)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks_of(PAGES[name]):
+        code = block.replace(*SMALLER[name]) if name in SMALLER else block
+        assert (code != block) == (name in SMALLER)
+        exec(compile(code, name, "exec"), names)
+
+
+def test_what_the_blocks_import_is_there():
+    for name, page in PAGES.items():
+        for line in ast.walk(ast.parse("\n".join(blocks_of(page)))):
+            if isinstance(line, ast.ImportFrom) and line.module not in NOT_INSTALLED:
+                assert line.module is not None
+                module = importlib.import_module(line.module)
+                for one in line.names:
+                    assert hasattr(module, one.name), f"{name}: {line.module} has no {one.name}"
+
+
+def test_all_python_of_the_pages_is_in_blocks_that_are_run():
+    assert sum(len(blocks_of(page)) for page in PAGES.values()) >= 22
+    for name, page in PAGES.items():
+        assert not re.search(r"^ {4}(from \w+ )?import \w", page.read_text(encoding="utf-8"), flags=re.MULTILINE), name
+    for name in (*ELSEWHERE, *MADE_BEFORE, *SMALLER, *SLOW):
+        assert blocks_of(PAGES[name]), name
