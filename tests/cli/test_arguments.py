@@ -45,6 +45,15 @@ def test_the_parser_raises_rather_than_exits():
         Parser(prog="x").parse_args(["--nope"])
 
 
+def test_an_unknown_command_or_choice_is_said_with_the_nearest():
+    with pytest.raises(InputError, match=r"'trian' is unknown; did you mean train\?"):
+        build_parser().parse_args(["trian"])
+    with pytest.raises(InputError, match=r"'weavr' is unknown; did you mean weaver\?"):
+        build_parser().parse_args(["train", "weavr", "--out", "x"])
+    with pytest.raises(InputError, match="choose from 'generate'"):
+        build_parser().parse_args(["bench"])
+
+
 def test_an_unknown_option_is_said_by_its_command_with_the_nearest():
     with pytest.raises(InputError, match=r"--sedd 3; did you mean --seed\? \(see mmweaver generate --help\)"):
         build_parser().parse_args(["generate", "--demo", "--sedd", "3"])

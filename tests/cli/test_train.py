@@ -132,6 +132,10 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
         (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --captures"),
         (["--captures", "a", "--from", "w", "--rgb", "p.png"], "belong together"),
         (["--data", "d", "--save-every", "-1"], "0 or more seconds"), (["--data", "d", "--device", "no"], "device"),
+        (["--data", "d", "--steps", "0"], "--steps must be 1 or more"),
+        (["--data", "d", "--batch", "-1"], "--batch must be 1 or more"),
+        (["--data", "d", "--validate-every", "0"], "--validate-every must be 1"),
+        (["--data", "d", "--learning-rate", "0"], "above 0"), (["--data", "d", "--learning-rate", "1e9"], "at most 1"),
     ],
 )  # fmt: skip
 def test_options_that_contradict_are_one_line(

@@ -32,6 +32,13 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """As argparse, with the nearest choice instead of all where one is near."""
+        near = difflib.get_close_matches(str(value), map(str, action.choices or ()), 1)
+        if near and value not in (action.choices or ()):
+            raise argparse.ArgumentError(action, f"{value!r} is unknown; did you mean {near[0]}?")
+        super()._check_value(action, value)
+
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As argparse, but what no command knows is said by that command, with the nearest option."""
         found, unknown = self.parse_known_args(args, namespace)

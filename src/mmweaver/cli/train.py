@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 # what a run writes: none may be a folder, or the weights that it starts from
 RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.jsonl", "README.md", REQUEST_FILE)
+MOST_LEARNING_RATE = 1.0  # far above what Adam learns with
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
   mmweaver train weaver --data data/ --out run/ --tensorboard
@@ -158,6 +159,14 @@ def _kept(out: Path) -> str:
 
 def _check(arguments: argparse.Namespace) -> None:
     train_recipes.check(arguments)
+    for name in ("steps", "batch", "sequences", "validate_every"):
+        count = getattr(arguments, name)
+        if count is not None and count < 1:
+            raise InputError(f"--{name.replace('_', '-')} must be 1 or more, not {count}")
+    if arguments.learning_rate is not None and not 0 < arguments.learning_rate <= MOST_LEARNING_RATE:
+        raise InputError(
+            f"--learning-rate must be above 0 and at most {MOST_LEARNING_RATE:g}, not {arguments.learning_rate:g}"
+        )
     if arguments.recipe != "pose" and (arguments.data is None) == (arguments.captures is None):
         raise InputError(
             "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"

@@ -270,6 +270,8 @@ class BestValidation:
         before = {**self.recipe, **state["recipe"]}
         if not self.recipe.get("is_cosine", True):
             before["steps"] = self.recipe["steps"]
-        if before != self.recipe:
-            raise InputError("it has other settings")
+        others = [name for name, value in before.items() if value != self.recipe.get(name)]
+        if others:
+            differing = ", ".join(f"{name} {before[name]}, not {self.recipe.get(name)}" for name in others)
+            raise InputError(f"it has other settings: {differing[:200]}")
         self.value, self.since, self.figures = state["value"], state["since"], state.get("figures", {})
