@@ -146,7 +146,7 @@ def goes_round(step: Step) -> bool:
         step.direction == "circle"
         or step.arc_deg
         or step.turn_deg
-        or step.lower == "turn"
+        or step.lower in ("turn", "hula_hoop")
         or step.upper in ("draw_circle", "stir", "arm_circles", "wipe")
     )
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mmweaver.motion.language.accounts import alike
 from mmweaver.motion.language.checks.given import LINKS, Given, Token
-from mmweaver.motion.language.checks.matching import shown_at_all, shown_in_order
+from mmweaver.motion.language.checks.matching import not_shown_as_often, out_of_order
 from mmweaver.motion.language.lexicon import LIGHT, NUMBERS, SIZES
 from mmweaver.motion.language.named_steps import in_turn
 from mmweaver.motion.language.plan import Step
@@ -43,7 +43,6 @@ _NAMED = re.compile(
     rf"\b(?:the|a|an|his|her|their|some) (?:[a-z]+ )??([a-z]+ing|side ?step|[a-z]+)(?: ([a-z]+))?? {_KIND}\b"
 )
 _BOTH_AFTER = re.compile(r"\w \bafter (?:[a-z]+ )?[a-z]+ing\b[^,.;]*\band [a-z]+ing\b")
-_OFTEN = {1: "once", 2: "twice"}
 _ORDERING = words_in("after before until when once having following while as since whilst")
 
 
@@ -60,25 +59,16 @@ def movements_not_shown(given: Given) -> Iterator[tuple[int, str]]:
         [frozenset(i for i, one in enumerate(mentions) if alike(one.activity, key, step)) for key in _keys(step)]
         for step in given.steps
     ]
-    count = len(mentions)
-    at_all, in_order = shown_at_all(count, slots), shown_in_order(count, slots)
-    for i, one in enumerate(mentions):
-        if i in at_all or one.token.clause in given.otherwise:
-            continue
-        named = [k for k, other in enumerate(mentions) if other.token.word.lemma == one.token.word.lemma]
-        times = sum(k in at_all for k in named)
-        if times:
-            shown, said = (_OFTEN.get(n, f"{n} times") for n in (times, len(named)))
-            yield one.token.clause, f"{one.token.text!r} is shown {shown}, not {said}"
-        else:
-            is_taken = any(i in fitting for own in slots for fitting in own)
-            yield one.token.clause, f"{one.token.text!r} {'has no movement of its own' if is_taken else 'is not shown'}"
+    lemmas = [one.token.word.lemma for one in mentions]
+    for i, how in not_shown_as_often([one.token.text for one in mentions], lemmas, slots):
+        if mentions[i].token.clause not in given.otherwise:
+            yield mentions[i].token.clause, how
     yield from _otherwise_ordered(given)
     yield from _of_a_name(given)
     if _BOTH_AFTER.search(given.text) and len(given.steps) > 2:
         yield given.tokens[-1].clause, f"the order shown is {in_turn(given.steps)}"
-    if len(in_order) < len(at_all) and not says_its_order(given):
-        late = next(i for i in at_all if i not in in_order)
+    late = out_of_order(len(mentions), slots)
+    if late is not None and not says_its_order(given):
         yield mentions[late].token.clause, f"the order shown is {in_turn(given.steps)}"
 
 

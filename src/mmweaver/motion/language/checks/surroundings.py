@@ -14,17 +14,19 @@ _TURNED_ARMS = re.compile(
 _ON_GROUND = words_in("jump leap hop walk sidestep jog hop_one_leg march")
 _OVER = re.compile(
     r"\b(?:jump|step|hop|leap|climb|walk|run|jog|get|skip|go)\w* (?:[a-z]+ )??"
-    r"(?P<said>(?:down |up )?(?:off|onto|over|under|through)(?! to\b| it\b| there\b| and\b| towards\b| his\b| her\b| their\b)(?: of)?(?: [a-z]+){1,2})"
+    r"(?P<said>(?:down |up )?(?:off|onto|over|under|through)"
+    r"(?! to\b| it\b| there\b| and\b| towards\b| his\b| her\b| their\b)(?: of)?(?: [a-z]+){1,2})"
 )
 _STEPS_UP = re.compile(r"\bstep(?:s|ping|ped)? (?:up|down)\b(?! to\b)")
 _AROUND = re.compile(
     r"\baround (?:it|him|her|them|an? [a-z]+|the (?!room|place|house|kitchen|area|floor|world)[a-z]+)\b"
 )
 _ARMS_AHEAD = re.compile(r"\b(?:arms?|hands?) (?:[a-z]+ ){0,2}?(?:forwards?|ahead|in front|to the front)\b")
+_HELD = r"(?:straight |held |stretched )?"
 _TWO_ARMS = re.compile(
-    r"\b(?:left|right) (?:arm|hand) (?:straight |held |stretched )?"
-    r"(?P<way>out|up|down|forwards?|back|behind|to the side)\b[a-z ]*?(?:\band\b|,|\bwhile\b)[a-z ]*? ?(?:left|right) (?:arm|hand) (?:straight |held |stretched )?"
-    r"(?P<other>out|up|down|forwards?|back|behind|to the side)\b"
+    rf"\b(?:left|right) (?:arm|hand) {_HELD}(?P<way>out|up|down|forwards?|back|behind|to the side)\b"
+    r"[a-z ]*?(?:\band\b|,|\bwhile\b)[a-z ]*? ?"
+    rf"(?:left|right) (?:arm|hand) {_HELD}(?P<other>out|up|down|forwards?|back|behind|to the side)\b"
 )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mmweaver.motion.language.accounts import OF_A_LIMB, has_way
 from mmweaver.motion.language.checks.given import Given, Token
-from mmweaver.motion.language.checks.matching import shown_at_all, shown_in_order
+from mmweaver.motion.language.checks.matching import not_shown_as_often, out_of_order
 from mmweaver.motion.language.checks.movements import says_its_order
 from mmweaver.motion.language.coverage import goes_aside, goes_back
 from mmweaver.motion.language.lexicon import ARMS
@@ -25,7 +25,7 @@ _GOING = words_in("going walking moving stepping jogging running")
 _NOT_BACKWARDS = words_in("up down and to in into of at out together")
 _RETURNS = words_in("turn turns turning turned look looks looking comes goes")
 _TO_AND_FRO = words_in("circle pacing")
-_OFTEN = {1: "once", 2: "twice"}
+_MANY = 4  # mentions that a step shows which goes to and fro
 
 
 @dataclass(frozen=True)
@@ -35,43 +35,35 @@ class _Mention:
 
     def is_shown_by(self, step: Step) -> bool:
         if self.way in ("left", "right"):
-            return goes_aside(step) or self.way in (step.hand, step.foot) or "both" in (step.hand, step.foot)
+            to_both = bool({step.lower, step.upper} & BOTH_SIDES) and not step.direction
+            return to_both or goes_aside(step) or self.way in (step.hand, step.foot) or "both" in (step.hand, step.foot)
         return has_way(step, self.token.text) if self.way == "ahead" else goes_back(step)
 
 
 def ways_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for ways and sides that are named more often than they are shown."""
     mentions = list(_mentions(given))
-    slots = []
+    slots = _slots(given, mentions)
+    words, ways = [one.token.text for one in mentions], [one.way for one in mentions]
+    for i, how in not_shown_as_often(words, ways, slots):
+        yield mentions[i].token.clause, how
+    late = out_of_order(len(mentions), slots)
+    if late is not None and not says_its_order(given):
+        yield mentions[late].token.clause, f"the order shown is {in_turn(given.steps)}"
+    yield from _limbs_in_turn(given)
+
+
+def _slots(given: Given, mentions: list[_Mention]) -> list[list[frozenset[int]]]:
+    """Of each step, the mentions that it can show: one side and one way ahead or back, more where it goes to and fro."""
     own = [[step for step in given.steps if _is_own(one, step)] or given.steps for one in mentions]
+    slots = []
     for step in given.steps:
         fitting = frozenset(i for i, one in enumerate(mentions) if step in own[i] and one.is_shown_by(step))
         aside = frozenset(i for i in fitting if mentions[i].way in ("left", "right"))
-        often = (
-            (bool({step.lower, step.upper} & BOTH_SIDES) and not step.direction)
-            or step.direction in _TO_AND_FRO
-            or step.count > 1
-        )
-        often = (often and step.lower not in ("walk", "sidestep")) or step.direction in _TO_AND_FRO
-        slots.append([aside, fitting - aside] * (4 if often else 1))
-    at_all = shown_at_all(len(mentions), slots)
-    for i, one in enumerate(mentions):
-        if i in at_all:
-            continue
-        named = [k for k, other in enumerate(mentions) if other.way == one.way]
-        times = sum(k in at_all for k in named)
-        if times:
-            shown, said = (_OFTEN.get(n, f"{n} times") for n in (times, len(named)))
-            yield one.token.clause, f"{one.token.text!r} is shown {shown}, not {said}"
-        elif not any(i in fitting for own in slots for fitting in own):
-            yield one.token.clause, f"{one.token.text!r} is not shown"
-        else:
-            yield one.token.clause, f"{one.token.text!r} has no movement of its own"
-    in_order = shown_in_order(len(mentions), slots)
-    if len(in_order) < len(at_all) and not says_its_order(given):
-        late = next(i for i in at_all if i not in in_order)
-        yield mentions[late].token.clause, f"the order shown is {in_turn(given.steps)}"
-    yield from _limbs_in_turn(given)
+        to_both = bool({step.lower, step.upper} & BOTH_SIDES) and not step.direction
+        again = (to_both or step.count > 1) and step.lower not in ("walk", "sidestep")
+        slots.append([aside, fitting - aside] * (_MANY if again or step.direction in _TO_AND_FRO else 1))
+    return slots
 
 
 def _is_own(mention: _Mention, step: Step) -> bool:
@@ -138,12 +130,11 @@ def _limbs_in_turn(given: Given) -> Iterator[tuple[int, str]]:
         if not named or named[-1][1:] != one[1:]:
             named.append(one)
     slots = [
-        [frozenset(i for i, (_, side, is_hand) in enumerate(named) if moves_limb(step, side, is_hand=is_hand))] * 4
+        [frozenset(i for i, (_, side, is_hand) in enumerate(named) if moves_limb(step, side, is_hand=is_hand))] * _MANY
         for step in given.steps
     ]
-    at_all, in_order = shown_at_all(len(named), slots), shown_in_order(len(named), slots)
-    if len(in_order) == len(at_all) or {"after", "before", "with"} & {token.text for token in given.tokens}:
+    late = out_of_order(len(named), slots)
+    if late is None or {"after", "before", "with"} & {token.text for token in given.tokens}:
         return
-    late = next(i for i in at_all if i not in in_order)
     token, side, is_hand = named[late]
     yield token.clause, f"that the {side} {'hand' if is_hand else 'leg'} comes then is not shown"
