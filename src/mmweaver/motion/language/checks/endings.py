@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from itertools import pairwise
 
-from mmweaver.motion.language.checks.given import Given, Token
+from mmweaver.motion.language.checks.given import LINKS, Given, Token
 from mmweaver.motion.language.lexicon import ARMS
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verb_steps import LEGS
@@ -84,6 +84,8 @@ def _stopped(given: Given) -> Iterator[tuple[int, str]]:
         if token.text not in _STOPS:
             continue
         for after in given.tokens[token.place + 1 : token.place + 5]:
+            if after.part != token.part and after.text not in LINKS and not after.text.endswith("ing"):
+                break
             if after.word.form != "ing" or not after.word.is_activity or after.word.lemma == "stand":
                 continue
             activity = [key for key in ACTIVITY_OF_LEMMA[after.word.lemma] if key]

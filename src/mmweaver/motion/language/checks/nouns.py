@@ -55,6 +55,7 @@ _OPENING = words_in(
 )
 _PEOPLE = words_in("person man woman he she it they someone somebody figure subject human guy girl boy who that which")
 _ENDING = re.compile(r"[^a-z']|ly$|ing$")
+_VERBS = words_in("is are was were does plays playing")
 _QUALIFIERS = words_in("tight running imaginary balance")
 
 
@@ -69,7 +70,9 @@ def _is_shown(given: Given, token: Token) -> bool:
 def _is_noun(given: Given, token: Token) -> bool:
     """Whether a word belongs to what a determiner or a preposition opens, before the next verb: "on a tight rope"."""
     before = given.tokens[: token.place]
-    if not any(other.word.is_verb or other.word.is_going for other in before):  # whoever does it
+    if not any(
+        other.word.is_verb or other.word.is_going or other.text in _VERBS for other in before
+    ):  # whoever does it
         return False
     for other in reversed(before):
         text = other.text

@@ -54,7 +54,7 @@ def ways_not_shown(given: Given) -> Iterator[tuple[int, str]]:
 
 
 def _slots(given: Given, mentions: list[_Mention]) -> list[list[frozenset[int]]]:
-    """Of each step, the mentions that it can show: one side and one way ahead or back, more where it goes to and fro."""
+    """Of each step, the mentions that it can show: one side and one way ahead or back; more of what goes to and fro."""
     own = [[step for step in given.steps if _is_own(one, step)] or given.steps for one in mentions]
     slots = []
     for step in given.steps:
