@@ -33,7 +33,8 @@ def test_what_is_not_repeated_is_said(sentence: str, how: str) -> None:
     [
         "a person nods several times",
         "a person claps repeatedly",
-        "a person is doing squats",
+        "a person does squats",
+        "a person does side lunges with the left leg",
         "a person takes one step to the left and one step to the right",
         "a person spins three times to the left",
         "a person punches with both hands alternately",

@@ -71,6 +71,12 @@ def _own(given: Given, found: re.Match[str]) -> Sequence[Step]:
     return given.own(given.token_at(found.start()))
 
 
+def _fills_its_time(step: Step) -> bool:
+    """Whether it is an exercise of the whole body, which is repeated for as long as there is time."""
+    activity = BY_KEY[step.lower]
+    return activity.counted_s is not None and not activity.once
+
+
 def _several(given: Given) -> Iterator[tuple[int, str]]:
     for found in _OFTEN.finditer(given.text):
         token = given.token_at(found.start())
@@ -108,7 +114,7 @@ def _in_turn(given: Given) -> Iterator[tuple[int, str]]:
 def _plural(given: Given) -> Iterator[tuple[int, str]]:
     for found in _PLURAL.finditer(given.text):
         own = _own(given, found)
-        if len(own) < 2 and not any(map(repeats, own)):
+        if len(own) < 2 and not any(repeats(step) or _fills_its_time(step) for step in own):
             yield given.token_at(found.start()).clause, f"{found['noun']!r} is shown once"
 
 
