@@ -13,7 +13,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person walks and sits down and stretches out both legs", "stretched out"),
         ("a person jumps from side to side", "side to side"),
         ("a person hops sideways on the right foot", "the side"),
-        ("a man kicks to the side with the left leg", "the side"),
+        ("a man kicks, the left arm behind the back", "behind the back"),
         ("someone claps behind the back", "behind the back"),
         ("someone picks something up from a high shelf", "shelf"),
         ("a person hops on the left foot, then on the right", "other hand or foot"),

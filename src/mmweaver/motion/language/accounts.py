@@ -18,7 +18,7 @@ from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import word_of
 
-_TOKEN = re.compile(r"[a-z]+(?:'[a-z]+)?|\d+(?:\.\d+)?|[,.;:_]+")
+TOKEN = re.compile(r"[a-z]+(?:'[a-z]+)?|\d+(?:\.\d+)?|[,.;:_]+")
 _STEM = 4  # letters by which words are aligned: "twists" and "twist"
 _SMALL = words_in(
     """
@@ -117,7 +117,7 @@ _ROUND, _NOT_OUT = words_in("draw_circle stir arm_circles"), words_in("raise rai
 _ONE_LEGGED = words_in("kick stomp raise_leg one_leg hop_one_leg lunge")
 _COUNTED = words_in("few several multiple couple many")
 _SIDE = re.compile(r"(?:left|right)(?:wards?)?")
-_OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
+OF_A_LIMB = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger")
 _TO, _WHOSE = words_in("to towards toward on onto at"), words_in("the his her their its")
 _NOUNS = words_in(
     """
@@ -136,8 +136,8 @@ def unaccounted(
     record says already that something else is acted out; of the words that are gone from them only sides and numbers
     are looked for.
     """
-    tokens = _TOKEN.findall(text)
-    numbers, sure = _clause_of_each(tokens, records)
+    tokens = TOKEN.findall(text)
+    numbers, sure = clause_of_each(tokens, records)
     rewritten = {*records} - {number for number, is_sure in zip(numbers, sure, strict=True) if is_sure}
     lost: list[tuple[int, str]] = []
     for i in range(len(tokens)):
@@ -153,7 +153,7 @@ def unaccounted(
     return list(dict.fromkeys(lost))
 
 
-def _clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tuple[list[int], list[bool]]:
+def clause_of_each(tokens: list[str], records: dict[int, ClauseRecord]) -> tuple[list[int], list[bool]]:
     """The number of the clause that each token stands in, by aligning the sentence with its clauses, and if it does."""
     words = [(word, number) for number, record in sorted(records.items()) for word in record.clause.split()]
     words = [(word, number) for word, number in words if word not in _SMALL]
@@ -182,14 +182,14 @@ def as_given(text: str, records: dict[int, ClauseRecord]) -> dict[int, str]:
 
     Words that do not stand together are joined by an ellipsis. A clause that patterns have added has none.
     """
-    found = list(_TOKEN.finditer(text.lower()))
+    found = list(TOKEN.finditer(text.lower()))
     tokens = [one[0] for one in found]
     for i in range(1, len(tokens)):  # "for a while" and "back and forth" link nothing
         pair = tuple(tokens[i - 1 : i + 2 : 2])
         tokens[i] = (
             "_" if tokens[i - 1 : i + 1] == ["a", "while"] or (tokens[i] == "and" and pair in _PAIRS) else tokens[i]
         )
-    numbers = _of_whole_parts(tokens, records) or _clause_of_each(tokens, records)[0]
+    numbers = _of_whole_parts(tokens, records) or clause_of_each(tokens, records)[0]
     words = {}
     for number in records:
         runs = [[*run] for own, run in groupby(range(len(tokens)), key=numbers.__getitem__) if own == number]
@@ -233,7 +233,7 @@ def _wholly_rewritten(
 
 def _side(tokens: list[str], i: int, own: list[Step]) -> str:
     """A side that something goes to, which no step does."""
-    if not _SIDE.fullmatch(tokens[i]) or _OF_A_LIMB & set(tokens[i + 1 : i + 3]):
+    if not _SIDE.fullmatch(tokens[i]) or OF_A_LIMB & set(tokens[i + 1 : i + 3]):
         return ""
     before = tokens[max(i - 2, 0) : i]
     aimed = len(before) == 2 and before[0] in _TO and before[1] in _WHOSE
@@ -306,10 +306,7 @@ def _way(tokens: list[str], i: int, own: list[Step]) -> str:
     if token == "out":
         lifted = any(step.upper in _NOT_OUT for step in own) and tokens[i + 1 : i + 2] != ["of"]
         return "'out' is not shown" if lifted else ""
-    if token not in _SHOWN_BY:
-        return ""
-    also = _ALSO.get(token, lambda step: False)
-    if any(_doing(step) & _SHOWN_BY[token] or also(step) for step in own):
+    if token not in _SHOWN_BY or any(has_way(step, token) for step in own):
         return ""
     after = tokens[i + 1 : i + 4]
     lifted = any(step.upper in _NOT_OUT for step in own)
@@ -320,6 +317,11 @@ def _way(tokens: list[str], i: int, own: list[Step]) -> str:
     if token == "up" and i and {word_of(word).lemma for word in tokens[max(i - 2, 0) : i]} & _RISES:
         return ""
     return f"{token!r} is not shown"
+
+
+def has_way(step: Step, word: str) -> bool:
+    """Whether a step has the part of the body or the way that a word of `SHOWN_BY` names."""
+    return bool(_doing(step) & _SHOWN_BY[word]) or (word in _ALSO and _ALSO[word](step))
 
 
 def _doing(step: Step) -> set[str]:
@@ -359,18 +361,22 @@ _ALIKE = tuple(
         "reach pick_up put_down text drink carry phone read", "push push_hand", "pull pull_hand jacket_off",
         "wipe brush_teeth sweep stir", "fall lower_arm", "stretch push_hand", "turn twist", "kick raise_leg",
         "read text type", "throw punch jab cross hook uppercut", "throw roll_over roll_in_bed", "turn roundhouse",
-        "turn hula_hoop", "walk lunge walking_lunge",
+        "turn hula_hoop", "walk lunge walking_lunge", "kick roundhouse side_kick",
         "turn roll_over roll_in_bed", "carry walk",
     )
 )  # fmt: skip
 
 
+def alike(activity: str, key: str, step: Step | None = None) -> bool:
+    """Whether one activity shows another, or what the grammar makes of it; `step`: a path or a look turns, too."""
+    bent = step is not None and bool(step.arc_deg or step.facing)
+    round_about = activity == "turn" and (bent or key in _ROUND or key == "look_around")
+    return round_about or activity == key or any(activity in group and key in group for group in _ALIKE)
+
+
 def _is_like(step: Step, activity: str) -> bool:
-    """Whether a step is what a verb names, or what the grammar makes of it."""
-    round_about = activity == "turn" and (step.arc_deg or step.facing or step.upper in _ROUND | {"look_around"})
-    return bool(
-        round_about or activity in _doing(step) or any(activity in alike and _doing(step) & alike for alike in _ALIKE)
-    )
+    """Whether a step is what a verb names."""
+    return any(alike(activity, key, step) for key in _doing(step))
 
 
 _OF_SPEED = ("ly", "fast", "quick", "slow")

@@ -20,6 +20,7 @@ _PARTS = {  # of patterns
 }
 _ALWAYS, _IN_PART = ("instead_of_another", "always"), ("in_part",)
 MARK = "approx_"
+_IN_TURN = "in turn"  # the fourth column of a row
 _THESE = "THESE"  # in what is said: the words of the sentence that were replaced
 
 
@@ -32,14 +33,17 @@ class Approximation:
     how: str
     always: bool = False  # also where the sentence would be understood, but as something else
     in_part: bool = False  # only where a sentence may be read in part
+    in_turn: bool = False  # two movements for one, shown one after the other
 
 
 def _read() -> tuple[Approximation, ...]:
     table = read_toml(Path(__file__).with_suffix(".toml"))
     return tuple(
-        Approximation(_whole(pattern), instead, how, always=group in _ALWAYS, in_part=group in _IN_PART)
+        Approximation(
+            _whole(pattern), instead, how, always=group in _ALWAYS, in_part=group in _IN_PART, in_turn=_IN_TURN in more
+        )
         for group, rows in table.items()
-        for pattern, instead, how in rows
+        for pattern, instead, how, *more in rows
     )
 
 
@@ -136,7 +140,8 @@ def _filled(found: re.Match[str], instead: str) -> str:
     return re.sub(r"\\(\d)", lambda group: found[int(group[1])] or "", instead)
 
 
-def how_of(token: str) -> str:
-    """What a token of `with_approximations` says."""
+def approximation_of(token: str) -> tuple[str, bool]:
+    """What a token of `with_approximations` says, and whether that is that movements are shown one after the other."""
     words, _, number = token.removeprefix(MARK).rpartition("_")
-    return APPROXIMATIONS[int(number)].how.replace(_THESE, repr(words.replace("_", " ")))
+    one = APPROXIMATIONS[int(number)]
+    return one.how.replace(_THESE, repr(words.replace("_", " "))), one.in_turn

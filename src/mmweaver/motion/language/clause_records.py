@@ -1,29 +1,24 @@
 """The record of every clause: what of it no step shows, and what it is shown as, in the sentence's own words."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from mmweaver.motion.language.accounts import as_given, unaccounted
-from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.clause_parser import ParsedClause
+from mmweaver.motion.language.confirmed import unconfirmed
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
+from mmweaver.motion.language.named_steps import doing
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.shared_steps import shown_only_once
 from mmweaver.motion.language.shown_in_turn import shown_in_turn
 from mmweaver.motion.language.words import word_of
 
-_ONE = ("left", "right")
-_AIMED = ("turn", "stumble", "lean", "leap")
-_WAYS = {
-    **{way: f" {way}" for way in ("forwards", "backwards", "away", "back", "around")},
-    **{side: f" to the {side}" for side in _ONE}, "towards": " towards the radar", "pacing": " to and fro",
-    "circle": " in a circle", "spot": " on the spot",
-}  # fmt: skip
 _WORSE = (DONE, APPROXIMATED, NOT_DONE)
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_OF_A_SIDE = re.compile("'(?:left|right)'")
 _STEM = 4
 
 
@@ -42,22 +37,39 @@ def note_what_is_not_shown(
         own = [step for step in steps if parsed.number in step.clauses] or steps
         for how in [*parsed.lost, *not_shown(parsed.words, own)]:
             say(parsed.number, how)
-    in_turn_is_said = any("one after the other" in record.how for record in records.values())
-    in_turn = [] if in_turn_is_said else shown_in_turn(every_clause, as_given(given_text, records), steps)
-    for number, how in [*shown_only_once(every_clause, steps), *in_turn]:
+    for number, how in _found(given_text, every_clause, steps, records):
         say(number, how)
-    for after, how in risings_that_no_clause_names(steps):
-        say(after.clauses[0] if after.clauses else max(records), how)
-    for how in sizes_not_shown(given_text, steps):
-        size = how.split("'")[1]
-        say(next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how)
-    for words, how in not_in_any_step(given_text, steps, records):
-        if not any(words in record.how for record in records.values()):
-            say(next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how)
     otherwise = {parsed.number for parsed in every_clause if parsed.approximations}
     for number, how in unaccounted(without_no_limbs(given_text), steps, records, otherwise):
-        if how.split("'")[1:2] == [] or not any(how.split("'")[1] in record.how for record in records.values()):
+        if not _is_named(how, records):
             say(number, how)
+    for number, how in unconfirmed(given_text, every_clause, steps, records):
+        side_is_named = _OF_A_SIDE.match(how) and "side is not shown" in records[number].how
+        if not (side_is_named or _is_named(how, records)):
+            say(number, how)
+
+
+def _found(
+    given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
+) -> Iterator[tuple[int, str]]:
+    """(number of the clause, what of it is not shown) of what the grammar is known to lose."""
+    is_said = any(parsed.in_turn for parsed in every_clause)
+    yield from shown_only_once(every_clause, steps)
+    yield from () if is_said else shown_in_turn(every_clause, as_given(given_text, records), steps)
+    for after, how in risings_that_no_clause_names(steps):
+        yield after.clauses[0] if after.clauses else max(records), how
+    for how in sizes_not_shown(given_text, steps):
+        size = how.split("'")[1]
+        yield next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how
+    for words, how in not_in_any_step(given_text, steps, records):
+        if not any(words in record.how for record in records.values()):
+            yield next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how
+
+
+def _is_named(how: str, records: dict[int, ClauseRecord]) -> bool:
+    """Whether the words that a reason quotes are named by a record already."""
+    words = how.split("'")[1:2]
+    return bool(words) and any(words[0] in record.how for record in records.values())
 
 
 def in_the_given_words(
@@ -77,7 +89,7 @@ def in_the_given_words(
         words, status = own_words[number] or given_text.strip(), max((part.status for part in parts), key=_WORSE.index)
         every = [part for step in steps for part in step.each]
         own = [step for step in every if number in {of_given[n] for n in step.clauses}]
-        shown = ", then ".join(dict.fromkeys(map(_doing, own)))
+        shown = ", then ".join(dict.fromkeys(map(doing, own)))
         hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
         if status == NOT_DONE and shown:  # a part of it that patterns have made a clause of
             status = APPROXIMATED
@@ -159,27 +171,3 @@ def _where(step: Step) -> tuple[str, ...]:
 _NO_WORDS = _stems(
     " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do"))
 )
-
-
-def _doing(step: Step) -> str:
-    """What a step shows, with its way or side: 'walking backwards', 'kicking with the left foot'."""
-    limb = (
-        f" with the {step.hand} hand"
-        if step.hand in _ONE
-        else f" with the {step.foot} foot"
-        if step.foot in _ONE
-        else ""
-    )
-    limb = " with both hands" if step.hand == "both" and step.upper else limb
-    way = _WAYS.get(step.direction, "") if step.moves or step.lower in _AIMED else ""
-    way = f" to the {step.target}" if step.moves and step.target else way
-    if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
-        way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
-    upper = BY_KEY[step.upper].name if step.upper else ""
-    if step.upper == "raise":
-        upper, limb = (
-            {"": "raising a hand", "both": "raising both hands"}.get(step.hand, f"raising the {step.hand} hand"),
-            "",
-        )
-    lower = "" if step.lower == "stand" and upper else f"{BY_KEY[step.lower].name}{way}"
-    return " and ".join(filter(None, (lower, upper))) + limb

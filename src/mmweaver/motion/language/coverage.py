@@ -57,7 +57,7 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     if "sideways" in texts and not any(goes_aside(step) for step in steps):
         lost.append("the side is not shown")
     aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
-    if {"backwards", "backward"} & set(texts) and (aimed_back or not any(_goes_back(step) for step in steps)):
+    if {"backwards", "backward"} & set(texts) and (aimed_back or not any(goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
     goes = any(step.moves for step in steps)
     comes_back = any(step.lower in ("stand", "turn") for step in steps) and not _ON_FOOT & set(texts)
@@ -136,7 +136,7 @@ def moves_one_hand(step: Step) -> bool:
     )
 
 
-def _goes_back(step: Step) -> bool:
+def goes_back(step: Step) -> bool:
     back = step.direction in ("backwards", "back", "pacing", "away") or step.style == "back"
     return back or step.place is not None or step.lower in ("lie", "lie_down", "fall", "turn")
 
@@ -146,7 +146,7 @@ def goes_round(step: Step) -> bool:
         step.direction == "circle"
         or step.arc_deg
         or step.turn_deg
-        or step.lower == "turn"
+        or step.lower in ("turn", "hula_hoop")
         or step.upper in ("draw_circle", "stir", "arm_circles", "wipe")
     )
 

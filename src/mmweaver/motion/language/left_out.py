@@ -10,7 +10,7 @@ from itertools import combinations, pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.approximations import MARK
-from mmweaver.motion.language.clause_parser import ParsedClause, is_known, parse_clause
+from mmweaver.motion.language.clause_parser import is_known, parse_clause
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.lexicon import (
     ARMS,
@@ -23,6 +23,7 @@ from mmweaver.motion.language.lexicon import (
     SEATS,
     TARGETS,
 )
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in

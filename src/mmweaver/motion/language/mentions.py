@@ -73,7 +73,7 @@ _PARTS = (
     ),
 )
 _TO_AND_FRO = words_in("swipe lean twist shake_head look_around hips dance wave wipe sweep vacuum stumble stagger")
-_BOTH_SIDES = words_in("swipe stumble stagger twist shake_head look_around hips dance wave")
+BOTH_SIDES = words_in("swipe stumble stagger twist shake_head look_around hips dance wave")
 _ABOVE = words_in("raise raise_hold arm_extension hands_up stretch jumping_jacks arm_circles draw_circle draw_z")
 
 
@@ -171,7 +171,7 @@ def not_in_any_step(text: str, steps: Sequence[Step], records: dict[int, ClauseR
     lost = []
     for found in _SIDED_LIMB.finditer(folded):
         side, is_hand = found[1], re.fullmatch(_HAND, found[2]) is not None
-        if not any(_moves_limb(step, side, is_hand=is_hand) for step in steps_of(found[0])):
+        if not any(moves_limb(step, side, is_hand=is_hand) for step in steps_of(found[0])):
             lost.append((found[0], "which hand or foot it is is not shown"))
     for part in _PARTS:
         for found in re.finditer(rf"\b(?:{part.words})\b", folded):
@@ -193,17 +193,17 @@ def _sides_left_out(folded: str, steps: Sequence[Step]) -> list[tuple[str, str]]
     """Of two sides that are named, the one that no step has."""
     for found in _OTHER_LIMB.finditer(folded):
         is_hand = re.fullmatch(_HAND, found[2]) is not None
-        if found[3] != found[1] and not any(_moves_limb(step, found[3], is_hand=is_hand) for step in steps):
+        if found[3] != found[1] and not any(moves_limb(step, found[3], is_hand=is_hand) for step in steps):
             return [(found[3], "the other hand or foot is not shown")]
     named = {found[1] for found in _SIDED_WAY.finditer(folded)}
     shown = {side for step in steps for side in sides_of(step) | (set() if step.place is None else step.place.sides)}
-    to_and_fro = any({step.lower, step.upper} & _BOTH_SIDES and not step.facing for step in steps)
+    to_and_fro = any({step.lower, step.upper} & BOTH_SIDES and not step.facing for step in steps)
     if len(named) == 2 and len(shown) < 2 and not to_and_fro:
         return [(next(found[0] for found in _SIDED_WAY.finditer(folded)), "the other side is not shown")]
     return []
 
 
-def _moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
+def moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
     if is_hand:
         with_hand = step.hand in (side, "both") and moves_one_hand(step)
         return with_hand or (step.lower == "limb_extension" and step.foot == side)

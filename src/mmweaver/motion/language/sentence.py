@@ -9,7 +9,7 @@ from itertools import pairwise
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
-from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
+from mmweaver.motion.language.clause_parser import parse_clause
 from mmweaver.motion.language.clause_records import in_own_words, in_the_given_words, note_what_is_not_shown
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
@@ -27,6 +27,7 @@ from mmweaver.motion.language.left_out import (
 from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.coverage import sides_gone_to, sides_of
 from mmweaver.motion.language.lexicon import FILLERS
 from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
 
 _WAYS = {"up", "down", "out", "in"}

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.clause_parser import ParsedClause
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import word_of

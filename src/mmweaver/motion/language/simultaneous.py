@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.clause_parser import ParsedClause
 from mmweaver.motion.language.left_out import ROUGH
 from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
 
@@ -49,18 +49,18 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
                 before = steps.pop()
                 steps += _joined(before, first)
                 if {before.lower, first.lower} in _IN_TURN and steps[-1] is first:
-                    parsed.lost.append(f"{before.name} and {first.name} are shown one after the other")
+                    parsed.say_in_turn(before, first)
             except InputError:
                 steps.append(before)
                 arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
                 if not leaving or (leaving < ROUGH and steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
-                parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
+                parsed.say_in_turn(steps[-2], first)
         else:
             is_last = i + 1 == len(parsed_clauses)
             if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed, is_last=is_last):  # "dances, jumping"
-                parsed.lost.append(f"{steps[-1].name} and {first.name} are shown one after the other")
+                parsed.say_in_turn(steps[-1], first)
             if steps and (steps[-1].lower, first.lower, parsed.form) in _TURNING_JUMPS and parsed.link == "comma":
                 parsed.lost.append("the turn in the air is shown after the jump")
             low = bool(steps) and steps[-1].lower in ("crouch", "lean")
@@ -76,7 +76,7 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"
                 if together or form == "past":  # "walks with the legs raised"
-                    parsed.lost.append(f"{steps[-1].name} and {step.name} are shown one after the other")
+                    parsed.say_in_turn(steps[-1], step)
                 steps.append(step)
     return steps
 

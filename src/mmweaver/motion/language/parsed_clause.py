@@ -1,0 +1,122 @@
+"""A clause with its steps, and what a clause without an activity adds to the steps of the one before."""
+
+from dataclasses import dataclass, field, replace
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.lexicon import NUMBERS, TIMES
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verb_steps import GAITS, facing_of, target_of
+from mmweaver.motion.language.words import Word
+
+
+@dataclass
+class ParsedClause:
+    """Steps and modifiers of one clause."""
+
+    link: str
+    text: str
+    steps: list[Step] = field(default_factory=list)
+    form: str = ""  # of the first verb: ing, s, ...
+    forms: list[str] = field(default_factory=list)  # of each step's verb
+    about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
+    notes: list[str] = field(default_factory=list)  # what was assumed
+    approximations: list[str] = field(default_factory=list)  # what is not shown as it was said
+    unknown: list[str] = field(default_factory=list)
+    number: int = 0  # of the clause in the sentence
+    words: list[Word] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)  # as `approximations`, found once all clauses are parsed
+    in_turn: bool = False  # what is said of it has that movements are shown one after the other
+
+    @property
+    def adds_nothing(self) -> bool:
+        """Whether it names no activity, only modifiers: "and slowly", "and arm"."""
+        return not self.steps and not self.unknown
+
+    @property
+    def says_times(self) -> bool:
+        """Whether it says how often: 'twice', 'multiple times'."""
+        return any(word.text in TIMES or word.text == "times" for word in self.words)
+
+    @property
+    def is_empty(self) -> bool:
+        return self.adds_nothing and replace(self.about, clause="") == Step()
+
+    def say_in_turn(self, one: Step, other: Step) -> None:
+        """Says that two movements are shown one after the other."""
+        self.lost.append(f"{one.name} and {other.name} are shown one after the other")
+        self.in_turn = True
+
+    def absorb(self, more: "ParsedClause") -> None:
+        """Applies the modifiers of a clause without an activity to the last step."""
+        last, about = self.steps[-1], more.about
+        if (
+            more.link == "and"
+            and last.lower in GAITS
+            and about.direction == "back"
+            and last.direction in ("", "seat")
+            and last.moves
+        ):
+            back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
+            self.steps.append(_as_far_as(about, back))
+            self.forms.append("s")
+            return
+        if last.direction and about.direction and last.direction != about.direction:
+            if last.moves and self._leads_back(last, about, more.number):
+                return
+            raise InputError(
+                f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
+            )
+        self.steps[-1] = replace(
+            last,
+            hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
+            direction=last.direction or about.direction,
+            speed=last.speed or about.speed,
+            count=last.count or (0 if last.lower in GAITS and more.says_times else about.count),
+            seat=last.seat or about.seat,
+            seconds=last.seconds or about.seconds,
+            clauses=(*last.clauses, more.number),
+            place=last.place or about.place,
+            distance_m=last.distance_m or about.distance_m,
+            target=last.target or (target_of(more.words) if last.lower in ("walk", "jog") else ""),
+            facing=last.facing or facing_of(more.words),
+            foot=last.foot or about.foot,
+        )
+
+    def go_on(self, more: "ParsedClause") -> None:
+        """Adds a step like the last one in another direction."""
+        about = more.about
+        last = self.steps[-1]
+        count = about.count or next((NUMBERS[word.text] for word in more.words if word.text in NUMBERS), 0)
+        aside = count in (1, 2) or any(word.text == "sideways" for word in more.words)
+        lower = "sidestep" if aside else last.lower
+        self.steps.append(
+            replace(last, lower=lower, direction=about.direction, count=count, speed=about.speed or last.speed,
+                    distance_m=about.distance_m, seconds=about.seconds, clauses=(*last.clauses, more.number))
+        )  # fmt: skip
+        self.forms.append("s")
+
+    def _leads_back(self, last: Step, about: Step, number: int) -> bool:
+        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
+        if last.lower == "sidestep":
+            other = {"left": "right", "right": "left"}.get(last.direction, "")
+            if about.direction not in ("back", "backwards", other) or not other:
+                return False
+            other_way = {"direction": other}
+        elif (
+            about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
+        ):
+            other_way = {"direction": about.direction}
+        else:
+            return False
+        self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
+        self.forms.append("s")
+        return True
+
+
+def _as_far_as(about: Step, walk: Step) -> Step:
+    """A walk with the speed and the length of a clause that says more of it; as long as before where it says none."""
+    says_how_far = bool(about.count or about.seconds or about.distance_m)
+    own = about if says_how_far else walk
+    return replace(
+        walk, speed=about.speed or walk.speed, seconds=about.seconds, count=own.count, distance_m=own.distance_m
+    )
