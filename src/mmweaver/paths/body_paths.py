@@ -1,5 +1,6 @@
 """A person's paths: direct, over one face of the room, over a face both ways; and which static paths are occluded."""
 
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,7 +48,8 @@ class BodyPaths(SeenBody):
             self.parts += self._ghosts(index, direct)
         self.second: BodyRoomPaths | None = None
         if room.propagation.bounces > 1 and known is None:
-            self.second = BodyRoomPaths(self)
+            # a copy: two records that hold each other stay in memory until the garbage collector runs
+            self.second = BodyRoomPaths(copy(self))
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over the person in one frame, a record (path,) for each time segment."""
