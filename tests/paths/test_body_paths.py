@@ -26,7 +26,9 @@ def paths_of(person: PoseSequence, simulator: Simulator) -> BodyPaths:
     return BodyPaths(simulator.room, body_of(person), simulator.clock, joints_m)
 
 
-@pytest.mark.parametrize("place_m", [(0.0, 0.5, -1.2), (0.3, 1.0, -1.2), (-1.2, 1.5, -1.2), (0.9, 0.7, -1.2), (0.4, 2.9, -1.2)])
+@pytest.mark.parametrize(
+    "place_m", [(0.0, 0.5, -1.2), (0.3, 1.0, -1.2), (-1.2, 1.5, -1.2), (0.9, 0.7, -1.2), (0.4, 2.9, -1.2)]
+)
 def test_whatever_is_occluded_is_near_the_body(place_m: tuple[float, float, float], room: Simulator):
     paths = paths_of(standing_person(place_m), room)
     every = np.arange(len(room.room.paths))

@@ -18,6 +18,7 @@ from mmweaver.compression.rate_search import Progress, error_db, within_bytes
 from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
 
@@ -129,9 +130,8 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
     return RadarCube(values=joined, grid=grid, config=header.config, scale=header.scale)
 
 
-def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
-    """Error-to-signal ratio in dB of a compressed cube against the original: in active cells, and in all cells."""
-    again = values_of_bytes(data)
+def errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
+    """Error-to-signal ratio in dB of decoded values against the original: in active cells, and in all cells."""
     is_active = active_cells(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
@@ -143,7 +143,10 @@ def values_of_bytes(data: bytes) -> CubeValues:
     """The values of the bytes of a .mmw file. Raises InputError where they are damaged."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.mmw"
-        path.write_bytes(data)
+        try:
+            path.write_bytes(data)
+        except OSError as error:
+            raise cannot_write(path, error) from error
         return read_cube(path).values
 
 
