@@ -130,8 +130,13 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
     return RadarCube(values=joined, grid=grid, config=header.config, scale=header.scale)
 
 
-def errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
-    """Error-to-signal ratio in dB of decoded values against the original: in active cells, and in all cells."""
+def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
+    """Error-to-signal ratio in dB of a compressed cube against the original: in active cells, and in all cells."""
+    return decoded_errors_db(values_of_bytes(data), cube)
+
+
+def decoded_errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
+    """As `errors_db`, of values that were read again."""
     is_active = active_cells(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
