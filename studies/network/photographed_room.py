@@ -1,6 +1,7 @@
 """How much of the static echoes of a room can be predicted from its photo, and which parts cannot?
 
     python -m studies run photographed_room
+    python -m studies run photographed_room --scan     # from a scan of it, as in `whole_room`
 
 Empty rooms of the nine kinds that training may see, in layouts of no data set. Ground truth is the simulator in the
 true room, with all paths and clutter; range-azimuth pictures of one frame without noise are compared. `realization`,
@@ -15,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from scipy.spatial import KDTree
 
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
@@ -34,6 +36,7 @@ from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
 from studies.network.learned_scores import interval
+from studies.network.whole_room import scanned
 from studies.result_rows import complete_rows
 
 REALIZATION = "realization"  # the true room with other micro-phases
@@ -50,22 +53,27 @@ METRICS = {
 Scores = dict[str, dict[str, float]]
 
 
-def evaluated(kind: str, layout: int, seed: int = 0) -> Scores:
-    """Scores of one room by method."""
+def evaluated(kind: str, layout: int, seed: int = 0, *, by: str = "photo") -> Scores:
+    """Scores of one room by method; `by` a "photo" or a "scan" of it."""
     config = PRESETS["awr1843"]
     made = make_room(kind, layout, seed)
-    photo = made.photo("day", noise=True)
     truth, realization = (_room(made.scene("day"), config, seed) for seed in (0, 1))
-    own, true = _parts(_room(reconstruct(photo), config, 1)), _parts(realization)
+    if by == "scan":
+        scene = scanned(made)
+        variants = {"scan, true materials": _with_materials_of(scene, made.scene("day"))}
+    else:
+        photo = made.photo("day", noise=True)
+        scene, variants = reconstruct(photo), {"photo without mask": reconstruct(_without_mask(photo))}
+    own, true = _parts(_room(scene, config, 1)), _parts(realization)
     specular = _parts(realization, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
     cubes = {
         "zeros": 0 * _adc(truth),
-        "photo without mask": _adc(_room(reconstruct(_without_mask(photo)), config, 1)),
-        "photo": sum(own.values()),
-        "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: specular}).values()),
-        "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
-        "photo, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
-        "photo, true second order": sum((own | {Interaction.ROOM_ROOM: true[Interaction.ROOM_ROOM]}).values()),
+        **{name: _adc(_room(variant, config, 1)) for name, variant in variants.items()},
+        by: sum(own.values()),
+        f"{by}, true specular reflectors": sum((own | {Interaction.SPECULAR: specular}).values()),
+        f"{by}, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
+        f"{by}, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
+        f"{by}, true second order": sum((own | {Interaction.ROOM_ROOM: true[Interaction.ROOM_ROOM]}).values()),
         REALIZATION: _adc(realization),
     }
     azimuth = azimuth_axis_rad()
@@ -92,6 +100,14 @@ def _without_mask(photo: RgbdPhoto) -> RgbdPhoto:
     return RgbdPhoto(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)
 
 
+def _with_materials_of(scene: Scene, true: Scene) -> Scene:
+    """The scene with the material of the nearest of the true faces on each of its own."""
+    nearest = KDTree(true.vertices_m[true.faces].mean(axis=1)).query(scene.vertices_m[scene.faces].mean(axis=1))[1]
+    names = (*scene.material_names, *(name for name in true.material_names if name not in scene.material_names))
+    materials = np.array([names.index(name) for name in true.material_names])[true.face_material[nearest]]
+    return replace(scene, face_material=materials.astype(np.int32), material_names=names)
+
+
 def _adc(room: RayTracedRoom) -> np.ndarray:
     """Samples (tx, rx, sample) of a room."""
     return AdcSynthesis(room.config).static(room.paths).numpy()
@@ -111,11 +127,13 @@ def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> di
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layouts", type=int, nargs="+", default=list(LAYOUTS))
+    parser.add_argument("--scan", action="store_true", help="rooms from a scan, in place of a photo")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rooms = [(kind, layout) for kind in KINDS if kind not in HeldOut().test_kinds for layout in options.layouts]
-    scores = [evaluated(kind, layout) for kind, layout in rooms]
+    by = "scan" if options.scan else "photo"
+    scores = [evaluated(kind, layout, by=by) for kind, layout in rooms]
     names = [f"{kind}_{layout}" for kind, layout in rooms]
     rows = [_row(method, scores, names) for method in scores[0]]
     settings = {"layouts": options.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}
@@ -123,7 +141,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rows = complete_rows(
         rows, dataset=dataset, seeds=[0], baselines=("zeros",), oracles=(REALIZATION,), unknown=UNKNOWN
     )
-    run.write("photographed_room", "echoes", config=settings, rows=rows)
+    run.write("photographed_room", "scan" if options.scan else "echoes", config=settings, rows=rows)
 
 
 def _row(method: str, scores: list[Scores], rooms: list[str]) -> dict[str, Any]:

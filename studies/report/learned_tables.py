@@ -178,12 +178,15 @@ CAPTURE_TUNING = RowTable(
         ("Chamfer, m", "{metrics.chamfer_m:interval.2}"),
     ),
 )  # fmt: skip
-PHOTOGRAPHED = RowTable(
-    sources=("photographed_room/echoes",),
-    columns=(
-        ("echoes of the room", "{method}"), ("RA SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("RA difference, dB", "{metrics.ra_difference_db:fixed.2}"),
-    ),
+PHOTOGRAPHED, SCANNED = (
+    RowTable(
+        sources=(f"photographed_room/{result}",),
+        columns=(
+            ("echoes of the room", "{method}"), ("RA SSIM", "{metrics.ra_ssim:interval.2}"),
+            ("RA difference, dB", "{metrics.ra_difference_db:fixed.2}"),
+        ),
+    )
+    for result in ("echoes", "scan")
 )  # fmt: skip
 PAPER_COLUMNS = (
     ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
@@ -246,7 +249,7 @@ LEARNED = {
     "whole_room": WHOLE_ROOM, "radar_poses": RADAR_POSES,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
-    "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
+    "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED, "scanned_room": SCANNED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
     "real_or_simulated": REAL_OR_SIMULATED, "learned_cost": COST, "power_scores": POWER,

@@ -1,4 +1,6 @@
+import errno
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +32,20 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     assert "times fewer" in shown
     assert "dB in cells with signal" in shown
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
+
+
+@pytest.mark.parametrize("words", [["-o", "a.mmw"], ["--compare"]], ids=["written", "compared"])
+def test_a_file_that_may_not_grow_is_named(
+    words: list[str], recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def refused(*_: object) -> int:
+        raise OSError(errno.EFBIG, "File too large")
+
+    monkeypatch.chdir(recording.parent)
+    monkeypatch.setattr(Path, "write_bytes", refused)
+    assert main(["compress", str(recording), "--bytes", "3000", *words]) == 2
+    assert re.search(r"cannot write \S+\.mmw: File too large", capsys.readouterr().err)
+    assert not Path("a.mmw").exists()
 
 
 def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

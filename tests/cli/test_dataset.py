@@ -33,7 +33,8 @@ def test_a_small_set_and_going_on(tmp_path: Path, capsys: pytest.CaptureFixture[
     ("words", "shown"),
     [
         (["--rooms", "castle"], "unknown kind of room"),
-        (["--layouts", "0"], "num_layouts"),
+        (["--layouts", "0"], "--layouts must be 1 to"),
+        (["--frames", "0"], "--frames must be 1 to"),
         (["--radar", "x"], "x"),
         (["--workers", "0", "--dry-run"], "--workers must be 1 to"),
     ],

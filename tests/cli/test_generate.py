@@ -239,6 +239,16 @@ def test_bad_input_is_one_line_and_writes_nothing(
     assert sorted(str(file) for file in tmp_path.rglob("*")) == before
 
 
+@pytest.mark.parametrize("words", [["--seconds", "0"], ["--fps", "0"], ["--text", "a person photosynthesises"]])
+def test_a_mistake_is_said_before_pytorch_is_loaded(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    for name in ("torch", "mmweaver.generate"):
+        monkeypatch.setitem(sys.modules, name, None)
+    assert main(["generate", "--demo", *words]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("raised", "status", "word"),
     [

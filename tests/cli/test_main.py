@@ -56,6 +56,42 @@ def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]):
     assert "generate" in capsys.readouterr().out
 
 
+INTERRUPTED_IMPORT = """
+import sys
+class Stop:
+    def find_spec(self, name, *_):
+        if name == "mmweaver.cli.generate":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Stop())
+sys.argv = ["mmweaver", "generate", "--demo"]
+from mmweaver.cli.main import main
+sys.exit(main())
+"""
+INTERRUPTED_PYTORCH = """
+import signal, sys, time, types
+from mmweaver.cli import main
+torch = sys.modules["torch"] = types.ModuleType("torch")
+torch.__spec__ = types.SimpleNamespace(_initializing=True)
+main._stop_cleanly()
+signal.raise_signal(signal.SIGINT)
+torch.__spec__._initializing = False
+try:
+    time.sleep(5)
+except KeyboardInterrupt:
+    sys.exit(130)
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "says"),
+    [(INTERRUPTED_IMPORT, "mmweaver: error: interrupted; nothing was written\n"), (INTERRUPTED_PYTORCH, "")],
+    ids=["while commands are imported", "while PyTorch starts, which an exception would abort"],
+)
+def test_an_interruption_of_the_start_is_quiet(code: str, says: str):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (130, says)
+
+
 @pytest.mark.parametrize(
     ("raised", "status", "word"),
     [

@@ -13,7 +13,7 @@ from mmweaver.paths.fast_time import BAND_CYCLES, NUM_NODES, FastTime
 
 def beats(ranges_m: np.ndarray, seed: int = 0) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
     rng = np.random.default_rng(seed)
-    weights = rng.standard_normal((1, len(ranges_m), 6, 2)).astype(np.float32)
+    weights = rng.standard_normal((1, 6, len(ranges_m), 2)).astype(np.float32)
     delay_s = torch.from_numpy(2 * np.sort(ranges_m) / SPEED_OF_LIGHT_MPS)[None]
     shift_hz = torch.from_numpy(rng.uniform(-3000, 3000, delay_s.shape))
     return torch.view_as_complex(torch.from_numpy(weights)), delay_s, shift_hz

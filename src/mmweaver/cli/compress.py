@@ -154,7 +154,7 @@ def _said(errors: dict[str, float], quality_db: float | None) -> str:
 
 def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dict[str, float]:
     """Writes the file of a recording that fits into one piece; returns its errors."""
-    from mmweaver.compression.mmw_codec import compress_cube, errors_db
+    from mmweaver.compression.mmw_codec import compress_cube, decoded_errors_db, read_cube
     from mmweaver.core.atomic_files import atomic_file
 
     data = compress_cube(
@@ -162,10 +162,9 @@ def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dic
         effort=arguments.effort, progress=bar,
     )  # fmt: skip
     bar("check")
-    errors = errors_db(data, cube)
     with atomic_file(arguments.out) as temporary:
         temporary.write_bytes(data)
-    return errors
+        return decoded_errors_db(read_cube(temporary).values, cube)
 
 
 def _compress_samples(arguments: argparse.Namespace) -> int:

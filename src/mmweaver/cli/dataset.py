@@ -85,20 +85,21 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.core.range_window import chosen_range
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
-    from mmweaver.datasets.dataset_plan import DatasetPlan, check_for_leaks
+    from mmweaver.datasets.dataset_plan import MOST, DatasetPlan, check_for_leaks
     from mmweaver.datasets.dataset_store import PLAN_FILE
     from mmweaver.datasets.generate_rooms import generate_dataset
     from mmweaver.formats.radar_file import load_radar
 
+    workers = arguments.workers
+    for name, most in (("layouts", MOST), ("sequences", MOST), ("frames", MOST), ("workers", MOST_WORKERS)):
+        if not 1 <= getattr(arguments, name) <= most:
+            raise InputError(f"--{name} must be 1 to {most}, not {getattr(arguments, name)}")
     config = chosen_range(load_radar(radar_of(arguments) or "awr1843"), arguments.range_m, arguments.range_bins)
     plan = DatasetPlan(
         kinds=_kinds(arguments.rooms), lightings=_lightings(), num_layouts=arguments.layouts,
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
         geometry_only=arguments.geometry_only, board=_board(arguments),
     )  # fmt: skip
-    workers = arguments.workers
-    if not 1 <= workers <= MOST_WORKERS:
-        raise InputError(f"--workers must be 1 to {MOST_WORKERS}, not {workers}")
     check_for_leaks(plan.rooms())
     cost = estimate_cost(plan, config, arguments.out)
     if arguments.dry_run:

@@ -25,6 +25,7 @@ from mmweaver.core.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.records import RadarCube
     from mmweaver.generate import Weaver
     from mmweaver.generation import Room
@@ -80,6 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
     from mmweaver.core.output_checks import check_output_file, check_output_folder
+    from mmweaver.request import parse_request
     from mmweaver.result_folder import FILES
 
     many = len(arguments.radar_pose or ()) > 1
@@ -91,10 +93,13 @@ def run(arguments: argparse.Namespace) -> int:
         check_output_file(arguments.html, overwrite=arguments.overwrite, inputs=_inputs(arguments))
     with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         background = _background(arguments)
-        weaver = _weaver(arguments, background, bar)
+        radar = _radar(arguments, background)
         if texts is None and arguments.motion is None:
             texts = [DEMO_TEXT]
         text = texts[0] if texts is not None and len(texts) == 1 else texts
+        if arguments.motion is None and arguments.motion_model is None:  # before PyTorch starts, which takes 2 s
+            parse_request(radar, text, **_settings(arguments), **placing_options(arguments))
+        weaver = _weaver(arguments, radar, bar)
         motion = read_own_motion(arguments) or _motion_of_model(arguments, weaver, text)
         placing = placing_options(arguments, of_model=motion if arguments.motion is None else None)
         request = weaver.request(text, motion=motion, **_settings(arguments), **placing)
@@ -121,7 +126,7 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
     if out.is_dir() and not is_empty(out):
         raise InputError(f"{out} is not empty; a stream needs a folder of its own")
     background = _background(arguments)
-    weaver = _weaver(arguments, background)
+    weaver = _weaver(arguments, _radar(arguments, background))
     meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out, _board(arguments))
     if arguments.json:
         print(json.dumps(plain({"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}), indent=2))
@@ -139,7 +144,7 @@ def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
     check_output_folder(out, overwrite=True, files=[many.LIST, many.LEAKS], inputs=_inputs(arguments))
     texts, matched = many.checked_texts(arguments), arguments.draws == "matched"
     background = _background(arguments)
-    weaver = _weaver(arguments, background)
+    weaver = _weaver(arguments, _radar(arguments, background))
     settings = _settings(arguments)
     if not matched:
         given = many.given_placing(arguments)
@@ -188,13 +193,10 @@ def _board(arguments: argparse.Namespace) -> str | None:
     return f"typical:{arguments.seed % 2**31}" if name == "typical" else name
 
 
-def _weaver(
-    arguments: argparse.Namespace, background: "RadarCube | None", listener: "Callable[[str], object] | None" = None
-) -> "Weaver":
+def _radar(arguments: argparse.Namespace, background: "RadarCube | None") -> "RadarConfig":
+    """The radar asked for, else that of the background recording, else the default."""
     from mmweaver.core.range_window import chosen_range
-    from mmweaver.formats.radar_file import load_firmware, load_radar
-    from mmweaver.formats.ti_calibration import read_ti_calibration
-    from mmweaver.generate import Weaver
+    from mmweaver.formats.radar_file import load_radar
 
     radar = (
         background.config
@@ -202,8 +204,16 @@ def _weaver(
         else load_radar(radar_of(arguments, DEFAULT_RADAR) or "")
     )
     radar = chosen_range(radar, arguments.range_m, arguments.range_bins)
-    if arguments.tx_order is not None:
-        radar = replace(radar, tx_order=arguments.tx_order)
+    return radar if arguments.tx_order is None else replace(radar, tx_order=arguments.tx_order)
+
+
+def _weaver(
+    arguments: argparse.Namespace, radar: "RadarConfig", listener: "Callable[[str], object] | None" = None
+) -> "Weaver":
+    from mmweaver.formats.radar_file import load_firmware
+    from mmweaver.formats.ti_calibration import read_ti_calibration
+    from mmweaver.generate import Weaver
+
     firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
     return Weaver(
         method=arguments.method, radar=radar, listener=listener, points=arguments.points, firmware=firmware,

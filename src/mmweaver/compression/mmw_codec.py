@@ -18,6 +18,7 @@ from mmweaver.compression.rate_search import Progress, error_db, within_bytes
 from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
 
@@ -131,7 +132,11 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
 
 def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
     """Error-to-signal ratio in dB of a compressed cube against the original: in active cells, and in all cells."""
-    again = values_of_bytes(data)
+    return decoded_errors_db(values_of_bytes(data), cube)
+
+
+def decoded_errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
+    """As `errors_db`, of values that were read again."""
     is_active = active_cells(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
@@ -143,7 +148,10 @@ def values_of_bytes(data: bytes) -> CubeValues:
     """The values of the bytes of a .mmw file. Raises InputError where they are damaged."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.mmw"
-        path.write_bytes(data)
+        try:
+            path.write_bytes(data)
+        except OSError as error:
+            raise cannot_write(path, error) from error
         return read_cube(path).values
 
 

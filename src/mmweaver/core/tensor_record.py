@@ -1,7 +1,7 @@
 """Frozen dataclasses of torch tensors that are moved, stacked, joined and indexed as one."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
@@ -29,7 +29,8 @@ class TensorRecord:
 
     def map(self: RecordT, function: Callable[["Tensor"], "Tensor"]) -> RecordT:
         """The record with `function` applied to each tensor."""
-        return replace(self, **{field.name: _mapped(getattr(self, field.name), function) for field in fields(self)})
+        values = {name: _mapped(getattr(self, name), function) for name in self.__dataclass_fields__}
+        return type(self)(**values)  # `replace` takes twice as long
 
     def to(self: RecordT, *target: Any, **options: Any) -> RecordT:
         """The record on another device or of another type; arguments are those of `Tensor.to`."""
@@ -67,10 +68,10 @@ def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]],
 
     first = records[0]
     values = {}
-    for field in fields(first):
-        each = [getattr(record, field.name) for record in records]
+    for name in first.__dataclass_fields__:
+        each = [getattr(record, name) for record in records]
         if isinstance(each[0], TensorRecord):
-            values[field.name] = _combined(each, join)
+            values[name] = _combined(each, join)
         else:
-            values[field.name] = join(each) if isinstance(each[0], torch.Tensor) else each[0]
-    return replace(first, **values)
+            values[name] = join(each) if isinstance(each[0], torch.Tensor) else each[0]
+    return type(first)(**values)

@@ -14,7 +14,7 @@ from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
 
 # Singular values below this share of the largest carry nothing but rounding.
 SMALLEST_SINGULAR_VALUE = 1e-9
-FRAMES_A_BLOCK = 20
+FRAMES_A_BLOCK = 5  # stay in the cache
 STATIC_REMOVALS = ("auto", "mean_chirp", "mean_frame", "none")
 
 
@@ -30,7 +30,7 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     """
     config = adc.config
     values = np.empty((len(adc.samples), config.num_range_bins, config.num_loops, config.num_antennas), np.complex64)
-    # in blocks, so that a long recording needs little more memory than its samples and its cube
+    # in blocks: also, a long recording needs little more memory than its samples and its cube
     for start in range(0, len(values), FRAMES_A_BLOCK):
         block = slice(start, start + FRAMES_A_BLOCK)
         values[block] = cube_values(adc.samples[block], config, compensate_tdm=compensate_tdm)

@@ -18,7 +18,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.paths.fast_time import FastTime, phasor
-from mmweaver.paths.frame_clock import FrameClock, Segment
+from mmweaver.paths.frame_clock import NUM_NODES, FrameClock, Segment
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements
 
@@ -72,8 +72,9 @@ class AdcSynthesis:
         if any(share is not None for _, share in self._segments):
             adc.zero_()
         for index, (segment, share) in enumerate(self._segments):
+            of_segment = paths[index::count].to(self.device)
             for batch in batches:
-                some = unpadded(paths[index::count][batch]).to(self.device)
+                some = unpadded(of_segment[batch])
                 own = adc[batch, segment.loops]
                 if share is None:
                     self._add_segment(some, segment, own)
@@ -150,27 +151,29 @@ class AdcSynthesis:
         if self.device.type == "cpu" and len(paths) == 1:
             paths = paths[:, paths.length_m[0].argsort()]
             bands = self._fast.bands(paths.length_m[0] / SPEED_OF_LIGHT_MPS)
-        length_m = paths.departure.at(segment.node_s).norm(dim=-1) + paths.arrival.at(segment.node_s).norm(dim=-1)
-        by_chirp_m = (length_m @ segment.to_chirps).unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)
-        by_block_m = length_m @ segment.to_blocks  # (frame, path, block)
-        shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m
-        by_chirp_m = by_chirp_m.transpose(2, 3)  # (frame, path, tx, loop)
-        carrier = phasor(by_chirp_m / config.wavelength_m) * paths.amplitude[..., None, None]
-        array = self.array(*(end.at(segment.block_s) for end in (paths.departure, paths.arrival)), paths.is_reciprocal)
-        between = segment.between_blocks.to(torch.complex64)
+        # (frame, time, 3, path): paths come last, as loops over few antennas or chirps cost more than they compute
+        ends = paths.departure.at(segment.place_s), paths.arrival.at(segment.place_s)
+        out_m, back_m = (distance_m(end[:, :NUM_NODES]) for end in ends)
+        length_m = out_m + back_m  # (frame, node, path)
+        by_chirp_m = (segment.to_chirps @ length_m).unflatten(1, (-1, config.num_tx))  # (frame, loop, tx, path)
+        by_block_m = segment.to_blocks @ length_m  # (frame, block, path)
+        shift_hz = segment.slope_at_blocks @ length_m / config.wavelength_m
+        carrier = phasor(by_chirp_m / config.wavelength_m) * paths.amplitude[:, None, None]
+        array = self.array(*(end[:, NUM_NODES:] for end in ends), paths.is_reciprocal)
+        at_blocks = torch.view_as_real(array.phase).flatten(2)
         for index, block in enumerate(segment.segment.blocks):
-            phases = torch.einsum("fpbtr,bl->fptrl", array.phase, between[:, block])
-            later_m = (by_chirp_m[..., block] - by_block_m[..., index, None, None]).float()
-            chirp = carrier[..., None, block]
-            left = torch.empty((*chirp.shape[:2], 2, *phases.shape[2:]), dtype=phases.dtype, device=phases.device)
-            slow, late = left.unbind(2)  # (frame, path, tx, rx, loop)
-            torch.mul(chirp, phases, out=slow)
-            torch.mul(chirp, array.excess[:, :, index, ..., None], out=late)
-            late += slow * later_m[..., None, :]
-            delay_s = (by_block_m[..., index] + self._extra_m) / SPEED_OF_LIGHT_MPS
-            both = self._fast.summed(left.flatten(2), delay_s, shift_hz[..., index], bands)
-            plain, tilted = both.unflatten(1, (2, config.num_tx, config.num_rx, -1)).unbind(1)
-            adc[:, block] = plain.addcmul_(tilted, self._turn_per_m).movedim(3, 1)
+            phases = (segment.between_blocks[block] @ at_blocks).unflatten(2, (*array.phase.shape[2:], 2))
+            later_m = (by_chirp_m[:, block] - by_block_m[:, index, None, None]).to(phases.dtype)
+            chirp = carrier[:, block, :, None]
+            left = carrier.new_empty(len(paths), 2, *phases.shape[1:-1])
+            slow, late = left.unbind(1)  # (frame, loop, tx, rx, path)
+            torch.mul(chirp, torch.view_as_complex(phases), out=slow)
+            torch.mul(chirp, array.excess[:, index, None], out=late)
+            late += slow * later_m[:, :, :, None]
+            delay_s = (by_block_m[:, index] + self._extra_m) / SPEED_OF_LIGHT_MPS
+            both = self._fast.summed(left.flatten(1, 4), delay_s, shift_hz[:, index], bands)
+            plain, tilted = both.unflatten(1, left.shape[1:-1]).unbind(1)
+            torch.addcmul(plain, tilted, self._turn_per_m, out=adc[:, block])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,7 +186,8 @@ class _StaticFactors(TensorRecord):
     def summed(self, weight: Tensor) -> Tensor:
         """Sums (2, set, tx, rx, sample) of paths with weights (set, path), real or complex."""
         some = weight.ne(0).any(dim=0).nonzero()[:, 0]
-        chosen = self if len(some) == len(weight[0]) else self[some]
+        # `index_select` takes half as long as an index
+        chosen = self if len(some) == len(weight[0]) else self.map(lambda factor: factor.index_select(0, some))
         left = weight[:, some].T.to(torch.complex64)[:, None, :, None, None] * chosen.pairs[:, :, None]
         shape = (*left.shape[1:], self.fast.shape[-1])
         return (left.flatten(1).T @ chosen.fast).view(shape)
@@ -194,11 +198,12 @@ class _SegmentFactors:
 
     def __init__(self, segment: Segment, device: torch.device):
         self.segment, self.loops = segment, segment.loops
-        self.node_s, self.block_s = _double(segment.node_s, device), _double(segment.block_s, device)
-        self.to_chirps = _double(segment.weights(segment.chirp_s.ravel()), device)  # (node, loop * tx)
-        self.to_blocks = _double(segment.weights(segment.block_s), device)  # (node, block)
-        self.slope_at_blocks = _double(segment.slopes(segment.block_s), device)
-        self.between_blocks = _double(between(segment.block_s, segment.chirp_s.mean(axis=1)), device)  # (block, loop)
+        self.place_s = _double(np.concatenate([segment.node_s, segment.block_s]), device)
+        self.to_chirps = _double(segment.weights(segment.chirp_s.ravel()).T, device)  # (loop * tx, node)
+        self.to_blocks = _double(segment.weights(segment.block_s).T, device)  # (block, node)
+        self.slope_at_blocks = _double(segment.slopes(segment.block_s).T, device)
+        in_between = between(segment.block_s, segment.chirp_s.mean(axis=1)).T
+        self.between_blocks = _double(in_between, device).float()  # (loop, block)
 
 
 class ArrayPhases:
@@ -214,14 +219,15 @@ class ArrayPhases:
         self.rx_m = _double(np.asarray(config.rx_position_m), device)
 
     def __call__(self, departure_m: Tensor, arrival_m: Tensor, is_reciprocal: Tensor) -> "PairPhases":
-        """Of paths between these places (frame, path, time, 3); both orders of reciprocal ones (frame, path)."""
+        """Of paths between these places (frame, ..., 3, path); both orders of reciprocal ones (frame, path)."""
         pairs = self._pairs(departure_m, arrival_m)
-        both = is_reciprocal.nonzero(as_tuple=True)
-        if len(both[0]):
-            back = self._pairs(arrival_m[both], departure_m[both])
-            pairs.phase[both] += back.phase
-            pairs.excess[both] += back.excess
-        return PairPhases(phase=self.mixed(pairs.phase, -2), excess=self.mixed(pairs.excess, -2))
+        some = is_reciprocal.any(dim=0).nonzero()[:, 0]
+        if len(some):
+            back = self._pairs(arrival_m[..., some], departure_m[..., some])
+            counts = is_reciprocal[:, some].unflatten(0, (-1, *[1] * (departure_m.dim() - 1)))
+            pairs.phase[..., some] += back.phase * counts
+            pairs.excess[..., some] += back.excess * counts
+        return PairPhases(phase=self.mixed(pairs.phase, -3), excess=self.mixed(pairs.excess, -3))
 
     def mixed(self, values: Tensor, axis: int) -> Tensor:
         """Values of antenna pairs, transmitters on an axis and receivers on the next, as the board records them."""
@@ -232,7 +238,7 @@ class ArrayPhases:
         return pairs.movedim(-1, axis).unflatten(axis, values.shape[axis : axis + 2])
 
     def _pairs(self, departure_m: Tensor, arrival_m: Tensor) -> "PairPhases":
-        out_m, back_m = excess_m(departure_m, self.tx_m)[..., :, None], excess_m(arrival_m, self.rx_m)[..., None, :]
+        out_m, back_m = excess_m(departure_m, self.tx_m)[..., None, :], excess_m(arrival_m, self.rx_m)[..., None, :, :]
         phase = phasor(out_m / self.wavelength_m) * phasor(back_m / self.wavelength_m)
         return PairPhases(phase=phase, excess=phase * (out_m + back_m).float())
 
@@ -241,14 +247,19 @@ class ArrayPhases:
 class PairPhases:
     """What a path's length from each transmitter to each receiver does to its phase, relative to the array's centre."""
 
-    phase: Tensor  # (..., tx, rx) complex64, the sum over both orders of a reciprocal path
+    phase: Tensor  # (..., tx, rx, path) complex64, the sum over both orders of a reciprocal path
     excess: Tensor  # the same, each times how much longer the path is, in m
 
 
+def distance_m(place_m: Tensor) -> Tensor:
+    """(..., path) from the array's centre to places (..., 3, path)."""
+    return place_m.square().sum(dim=-2).sqrt()
+
+
 def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
-    """|p - a| - |p| (..., antenna) for places p (..., 3) and antennas a; written so that nothing cancels."""
-    distance = place_m.norm(dim=-1)[..., None]
-    excess = antenna_m.square().sum(dim=-1) - 2 * (place_m @ antenna_m.T)
+    """|p - a| - |p| (..., antenna, path) of places p (..., 3, path) and antennas a, written so that nothing cancels."""
+    distance = distance_m(place_m)[..., None, :]
+    excess = antenna_m.square().sum(dim=-1)[:, None] - 2 * (antenna_m @ place_m)
     both_m = (distance.square() + excess).clamp(min=0).sqrt() + distance
     return excess / both_m.clamp(min=1e-12)  # 0 for the place of an antenna itself, as padding is
 

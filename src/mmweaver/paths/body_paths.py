@@ -1,5 +1,6 @@
 """A person's paths: direct, over one face of the room, over a face both ways; and which static paths are occluded."""
 
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +23,8 @@ ROOM_MARGIN_M = 0.05  # nor by the seat it touches
 WALL_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
 FAINTEST = 1e-4  # ghosts over one face of less power than this share of the direct paths are left out,
 LEFT_OUT = 0.02  # and so much of the others' power, in their faintest paths
+CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine from its middle,
+SIDE_MARGIN = 0.05  # and in the sine to its right and left
 
 
 class BodyPaths(SeenBody):
@@ -45,7 +48,8 @@ class BodyPaths(SeenBody):
             self.parts += self._ghosts(index, direct)
         self.second: BodyRoomPaths | None = None
         if room.propagation.bounces > 1 and known is None:
-            self.second = BodyRoomPaths(self)
+            # a copy: two records that hold each other stay in memory until the garbage collector runs
+            self.second = BodyRoomPaths(copy(self))
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over the person in one frame, a record (path,) for each time segment."""
@@ -80,12 +84,18 @@ class BodyPaths(SeenBody):
         )  # fmt: skip
 
     def near_body(self, frame: int) -> np.ndarray:
-        """Indices of the static paths within the cone that the body fills, seen from the radar."""
+        """Indices of the static paths that the body may occlude: a cone around it, between its right and its left."""
+        away = -self.towards[frame]
         axis = self.posed.place_m[frame].mean(axis=0)
-        axis = axis / np.linalg.norm(axis)
-        opening = (-self.towards[frame] @ axis).min() - 0.02
-        first, last = (directions @ axis for directions in self.room.vertex_directions)
-        return np.flatnonzero((first > opening) | (last > opening))
+        ahead = axis / np.linalg.norm(axis)
+        right = np.array([axis[1], -axis[0], 0.0]) / max(np.hypot(axis[0], axis[1]), 1e-9)
+        opening, across = (away @ ahead).min() - CONE_MARGIN, away @ right
+        first, last = across.min() - SIDE_MARGIN, across.max() + SIDE_MARGIN
+        near = np.zeros(len(self.room.paths), bool)
+        for directions in self.room.vertex_directions:
+            sideways = directions @ right
+            near |= (directions @ ahead > opening) & (sideways > first) & (sideways < last)
+        return np.flatnonzero(near)
 
     def _visible(self) -> np.ndarray:
         if self.known is not None:

@@ -183,8 +183,7 @@ class BodyRoomPaths:
         cos_out = cos_to(of.posed.normal[frame, seen])
         # |towards + out|^2 = 2 + 2 towards . out
         half = np.sqrt(np.maximum(2 + 2 * cos_to(of.towards[frame, seen]), 1e-9))
-        cos_half = np.clip((cos_in + cos_out) / half, -1, 1)
-        each = of.body.echo.over(cos_in, cos_out, cos_half)
+        each = of.body.echo.over(cos_in, cos_out, (cos_in + cos_out) / half)
         return (self._of_part[:, seen] * area_m2) @ each
 
     def _body_radar_body(self, frame: int, direct_power: float) -> np.ndarray:

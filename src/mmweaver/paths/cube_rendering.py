@@ -118,10 +118,10 @@ class CubeRenderer:
         """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
         config = self.config
         length_m, rate_mps = paths.length_m, paths.rate_mps
-        pairs = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal)
-        amplitude = paths.amplitude[..., None, None]
-        array = (pairs.phase * amplitude)[..., None]  # (frame, path, tx, rx, 1)
-        longer = (pairs.excess * amplitude)[..., None] / (2 * config.range_resolution_m)  # in bins, than the centre's
+        pairs = self._array(paths.departure.position_m.mT, paths.arrival.position_m.mT, paths.is_reciprocal)
+        amplitude = paths.amplitude[:, None, None]
+        array, longer_m = ((part * amplitude).movedim(-1, 1)[..., None] for part in (pairs.phase, pairs.excess))
+        longer = longer_m / (2 * config.range_resolution_m)  # in bins, than the centre's; (frame, path, tx, rx, 1)
         plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
         plain, late = plain[..., None, :], late[..., None, :]  # (frame, path, tx, 1, doppler)

@@ -57,30 +57,29 @@ class FastTime:
     def summed(
         self, weights: Tensor, delay_s: Tensor, shift_hz: Tensor, bands: list[slice] | None = None
     ) -> Tensor:  # fmt: skip
-        """Sums (frame, row, sample) of the factors of beats (frame, path) with weights (frame, path, row).
+        """Sums (frame, row, sample) of the factors of beats (frame, path) with weights (frame, row, path).
 
         `bands`: runs of paths of the only frame that lie within a band, or about so.
         """
         if not bands:
-            return weights.transpose(1, 2) @ self.factor(delay_s, shift_hz)
-        rows = weights[0].T
-        cycles, square = self._cycles(delay_s, shift_hz)[0], self._square(delay_s[0]).float()
-        total = torch.zeros(len(rows), self.config.num_samples, dtype=rows.dtype)
-        for band in bands:
-            total += self._of_band(rows[:, band], cycles[band], square[band])
+            return weights @ self.factor(delay_s, shift_hz)
+        rows, cycles, square = weights[0], self._cycles(delay_s, shift_hz)[0], self._square(delay_s[0]).float()
+        factors = [self._of_band(rows[:, band], cycles[band], square[band]) for band in bands]
         ends = [0, *(end for band in bands for end in (band.start, band.stop)), len(cycles)]
-        for first, last in zip(ends[::2], ends[1::2], strict=True):
-            if last > first:
-                total.addmm_(rows[:, first:last], self.factor(delay_s[0, first:last], shift_hz[0, first:last]))
-        return total[None]
+        for alone in map(slice, ends[::2], ends[1::2]):
+            factors.append((rows[:, alone], self.factor(delay_s[0, alone], shift_hz[0, alone])))
+        left, right = zip(*factors, strict=True)
+        return (torch.cat(left, dim=1) @ torch.cat(right))[None]
 
-    def _of_band(self, weights: Tensor, cycles: Tensor, square: Tensor) -> Tensor:
-        """Sum (row, sample) with weights (row, path) of beats within a band, of so many cycles in the sampling."""
+    def _of_band(self, weights: Tensor, cycles: Tensor, square: Tensor) -> tuple[Tensor, Tensor]:
+        """Sums (row, node) with weights (row, path) of beats within a band, and what makes samples of them.
+
+        `cycles` (path,) are those in the sampling.
+        """
         middle = (cycles.min() + cycles.max()) / 2
         angle = (cycles - middle).float()[:, None] * self._node - square[:, None]
         angle *= 2 * math.pi
-        at_nodes = weights @ torch.complex(angle.cos(), angle.sin())
-        return at_nodes @ (self._interpolation * phasor(middle * self._sample))
+        return weights @ torch.complex(angle.cos(), angle.sin()), self._interpolation * phasor(middle * self._sample)
 
     def _cycles(self, delay_s: Tensor, shift_hz: Tensor | float) -> Tensor:
         """Periods of beats within the sampling."""

@@ -53,10 +53,13 @@ class ApparentPoint(TensorRecord):
         return cls(position_m=position, velocity_mps=velocity, acceleration_mps2=acceleration)
 
     def at(self, time_s: Tensor) -> Tensor:
-        """Positions (..., path, time, 3) in metres, float64, at times (time,) since the segment's middle."""
-        time = time_s[:, None]
-        quadratic = self.acceleration_mps2[..., None, :] * (time**2 / 2)
-        return quadratic.addcmul_(self.velocity_mps[..., None, :], time).add_(self.position_m[..., None, :])
+        """Positions (..., time, 3, path) in metres, float64, at times (time,) since the segment's middle."""
+        position, velocity, acceleration = (
+            part.mT.contiguous()[..., None, :, :]
+            for part in (self.position_m, self.velocity_mps, self.acceleration_mps2)
+        )
+        time = time_s[:, None, None]
+        return (acceleration * (time**2 / 2)).addcmul_(velocity, time).add_(position)
 
     @property
     def distance_m(self) -> Tensor:

@@ -51,9 +51,9 @@ class SkinEcho:
 
         Where skin shines on nobody (a cosine of 0 or less) it is 0. In and out may change places.
         """
-        half = np.clip(cos_half, 1e-3, 1.0)
-        tan2 = 1 / half**2 - 1
-        lobe = self.reflectivity / (2 * self.slope**2 * half**4) * np.exp(-tan2 / (2 * self.slope**2))
+        secant2 = 1 / np.clip(cos_half, 1e-3, 1.0) ** 2
+        narrow = 1 / (2 * self.slope**2)
+        lobe = self.reflectivity * narrow * secant2**2 * np.exp(narrow * (1 - secant2))
         lit = (cos_in > 0) & (cos_out > 0)
         return np.where(lit, lobe + 4 * self.albedo * cos_in * cos_out, 0.0)
 

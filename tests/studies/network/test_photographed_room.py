@@ -1,5 +1,7 @@
 """Photographed rooms compared with true ones."""
 
+import pytest
+
 from studies.network.photographed_room import evaluated
 
 
@@ -13,3 +15,10 @@ def test_a_photo_is_better_than_nothing_and_another_realization_better_still():
         > scores["photo"]["ra_difference_db"]
         > scores["realization"]["ra_difference_db"]
     )
+
+
+@pytest.mark.slow  # the test above holds the rows; this one that a scan takes the place of the photo
+def test_a_scan_is_better_than_a_photo():
+    scores = evaluated("kitchen", 30, by="scan")
+    assert scores["scan"]["ra_ssim"] > evaluated("kitchen", 30)["photo"]["ra_ssim"]
+    assert {"scan, true materials", "scan, true edges"} < scores.keys()
