@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Seat
 from mmweaver.core.shapes import Array, GridMask
+from mmweaver.scene.affordances.chair_backs import chairs_behind_tables
 from mmweaver.scene.layout.class_evidence import GridClass
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.layout.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
@@ -116,11 +117,14 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
 
     A low table has no backrest: what stands behind it is lower, too far away, or a wall. `evidence`, of
     `class_evidence.seat_evidence`, excludes other furniture and accepts chairs, benches and beds without a backrest.
-    Benches are looked for again with their planks made whole where no seat is found on them.
+    Benches are looked for again with their planks made whole where no seat is found on them. Chairs that a table hides
+    but for their backs come last.
     """
     seats = _seats_of(height_map, evidence)
     whole = with_flat_planks(height_map, seats)
-    return seats if np.array_equal(whole.top_m, height_map.top_m, equal_nan=True) else _seats_of(whole, evidence)
+    if not np.array_equal(whole.top_m, height_map.top_m, equal_nan=True):
+        seats = _seats_of(whole, evidence)
+    return (*seats, *chairs_behind_tables(height_map, table_squares(height_map), seats, evidence))
 
 
 def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, ...]:
