@@ -76,7 +76,7 @@ def test_a_bench_on_trestles_is_a_seat_and_a_cabinet_of_its_size_is_none(box_roo
 
 
 def test_a_bench_seen_at_a_flat_angle_is_a_seat():
-    """In this procedural corridor the camera is 12 cm above a bench along the wall: little but its edges is measured."""
+    """In this procedural corridor the camera is 12 cm above a bench: little but its edges is measured."""
     corridor = make_room("corridor", layout=7, seed=60007)
     seats = see(dataclasses.replace(corridor.photo(list(LIGHTINGS)[3], noise=True), classes=None)).seats
     for place in corridor.seats:
