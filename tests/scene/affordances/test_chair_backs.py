@@ -42,6 +42,8 @@ def test_what_is_no_back_of_a_chair():
     behind = (slice(71, 86), slice(52, 77))
     assert not chairs_behind_tables(_seen(), _tables(), (), None)  # no table
     assert not chairs_behind_tables(_seen(), _tables(TABLE, behind), (), None)  # a table on either side: a laptop
+    under = (slice(45, 60), slice(52, 77))
+    assert not chairs_behind_tables(_seen(), _tables(under), (), None)  # it stands on the table: a laptop at an edge
     assert not chairs_behind_tables(_seen((slice(60, 62), slice(50, 75))), _tables(TABLE), (), None)  # a cupboard
     assert not chairs_behind_tables(_seen(height_m=1.2), _tables(TABLE), (), None)  # a screen
     other_furniture = np.where(_tables(BACK), -1, 0)

@@ -14,7 +14,8 @@ from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 
 _BACK_TOP_M, _LONG_M, _THICK_M = (0.78, 1.05), (0.3, 0.62), 0.22  # as seen: squares are 5 cm
 _LEVEL_M, _LEAST_SQUARES = 0.05, 7  # between the quartiles of a back's height: plants and laptops slope
-_AHEAD_M, _MOST_BEHIND, _LEAST_AHEAD = (0.4, 0.8), 0.05, 0.3  # shares of table there
+_AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # where a table is, and where none is: a laptop stands on one
+_LEAST_AHEAD, _MOST_ELSEWHERE = 0.3, 0.05  # shares of table there
 _TO_SEAT_M, _SEAT_HEIGHT_M, _SEAT_SIZE_M = 0.18, 0.45, (0.42, 0.4)  # of usual chairs, as nothing of the seat is seen
 _APART_M = 0.45  # from seats that are found
 
@@ -45,8 +46,9 @@ def _before_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Sea
     if not _LONG_M[0] <= long_m <= _LONG_M[1] or thick_m > _THICK_M or high_m - low_m > _LEVEL_M:
         return None
     middle, across = places.mean(axis=0), axes[:, 0]
-    shares = [_share_of_table(tables, middle, sign * across) for sign in (-1.0, 1.0)]
-    if min(shares) > _MOST_BEHIND or max(shares) < _LEAST_AHEAD:
+    shares = [_share_of_table(tables, middle, sign * across, _AHEAD_M) for sign in (-1.0, 1.0)]
+    nearby = [_share_of_table(tables, middle, sign * across, _NEAR_M) for sign in (-1.0, 1.0)]
+    if max(min(shares), *nearby) > _MOST_ELSEWHERE or max(shares) < _LEAST_AHEAD:
         return None
     ahead = across if shares[1] > shares[0] else -across
     row, column = middle + ahead * _TO_SEAT_M / CELL_M
@@ -57,10 +59,10 @@ def _before_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Sea
     )  # fmt: skip
 
 
-def _share_of_table(tables: GridMask, middle: Place, ahead: Place) -> float:
-    """Of the squares ahead, as far as a table is from the back of a chair at it."""
+def _share_of_table(tables: GridMask, middle: Place, ahead: Place, reach_m: tuple[float, float]) -> float:
+    """Of the squares ahead of the middle of a strip, between two distances."""
     aside = np.array([-ahead[1], ahead[0]])
-    steps = np.arange(*_AHEAD_M, CELL_M)[:, None, None] * ahead + np.array([[-0.1], [0.0], [0.1]]) * aside
+    steps = np.arange(*reach_m, CELL_M)[:, None, None] * ahead + np.array([[-0.1], [0.0], [0.1]]) * aside
     row, column = np.round(middle + steps.reshape(-1, 2) / CELL_M).astype(int).T
     inside = (row >= 0) & (row < tables.shape[0]) & (column >= 0) & (column < tables.shape[1])
     return float((inside & tables[np.where(inside, row, 0), np.where(inside, column, 0)]).mean())
