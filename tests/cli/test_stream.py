@@ -27,3 +27,11 @@ def test_what_streams_do_not_have_is_refused(given: list[str], named: str, tmp_p
     assert main(["generate", "--demo", "--stream", *given, "--out", str(out)]) == 2
     assert named in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_a_stream_into_a_folder_that_holds_one_says_what_to_do(tmp_path: Path, capsys):
+    (tmp_path / "parts.jsonl").write_text("", encoding="utf-8")
+    assert main(["generate", "--demo", "--stream", "--text", "a person walks", "--out", str(tmp_path)]) == 2
+    message = capsys.readouterr().err
+    assert "cannot be continued" in message
+    assert "choose another --out" in message

@@ -124,7 +124,7 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
     check_output_folder(out, overwrite=True, inputs=_inputs(arguments))
     sweep(out / PARTS)
     if out.is_dir() and not is_empty(out):
-        raise InputError(f"{out} is not empty; a stream needs a folder of its own")
+        raise InputError(_why_no_stream_into(out))
     background = _background(arguments)
     weaver = _weaver(arguments, _radar(arguments, background))
     meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out, _board(arguments))
@@ -133,6 +133,18 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
     elif not arguments.quiet:
         print(f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
     return 0
+
+
+def _why_no_stream_into(out: Path) -> str:
+    """What to do where a stream's folder holds something already, an interrupted stream mostly."""
+    from mmweaver.stream_folder import LIST
+
+    if (out / LIST).is_file():
+        return (
+            f"{out} holds a stream already, and streams cannot be continued; choose another --out, or delete that"
+            " folder (`mmweaver verify` checks and `mmweaver compress` reads what it holds, even after an interruption)"
+        )
+    return f"{out} is not empty; a stream needs a folder of its own: choose another --out"
 
 
 def _run_batch(arguments: argparse.Namespace, out: Path) -> int:

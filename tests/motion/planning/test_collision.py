@@ -7,7 +7,7 @@ import numpy as np
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto, Scene
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from tests.motion.rooms import WINDOW_M, seat
@@ -74,3 +74,22 @@ def test_a_table_behind_a_seat_is_no_back_of_it():
         depth[:, : 160 - half] = depth[:, 160 + half :] = np.nan
         obstacles = CollisionMap(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
         assert (obstacles.penetration_m(sits.pose, (place,)) > 0.0) == touches
+
+
+def test_the_back_of_a_chair_that_is_pulled_out_is_left_out_with_it():
+    """Posts from the floor up behind its seat, as upright as a table's legs, where the sitter is once it is pulled."""
+    bare = bare_room(seats=(seat(y_m=2.3),))
+    sits = compose(plan_motion("a person sits", 1.0), bare, seed=0, range_window_m=WINDOW_M)
+    scene = _before_a_board(0.0, 2.2)
+    lens, depth = scene.photo.intrinsics, np.full(scene.photo.depth_m.shape, np.nan)
+    top, low = (round(lens.cy - (scene.floor_z_m + height) / 2.2 * lens.fy) for height in (0.9, 0.1))
+    for x in (-0.2, 0.2):
+        column = round(lens.cx + x / 2.2 * lens.fx)
+        depth[top:low, column - 2 : column + 3] = 2.2
+    obstacles = CollisionMap(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
+    place = ((0.0, 2.3),)
+    chair = PulledChair((0.0, 2.0), -np.pi / 2, 0.3)  # it faces the radar
+    assert obstacles.penetration_m(sits.pose, place) > 0.0
+    assert obstacles.penetration_m(sits.pose, place, chair=chair) == 0.0
+    table_leg = np.array([[0.2, 1.8, 0.5]])  # ahead of the chair's middle: no part of its back
+    assert not chair.has_back_at(table_leg, 0.0).any()

@@ -6,12 +6,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mmweaver.scene.affordances.seats import cut_beds
-from mmweaver.scene.layout.height_map import CELL_M
+from mmweaver.core.records import Seat
+from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.scene.affordances.seats import cut_beds, with_flat_planks
+from mmweaver.scene.layout.height_map import CELL_M, make_height_map
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.seen_room import see
+from tests.motion.rooms import room as bare_room
 
 SOFA = [((-0.8, 0.8), (2.3, 2.9), (0.0, 0.44)), ((-0.8, 0.8), (2.9, 3.1), (0.0, 0.85))]
 
@@ -70,6 +73,29 @@ def test_a_bench_on_trestles_is_a_seat_and_a_cabinet_of_its_size_is_none(box_roo
     assert all(abs(seat.position_m[0]) < 0.6 and 2.15 < seat.position_m[1] < 2.6 for seat in seats)
     cabinet = ((-0.6, 0.6), (2.2, 2.56), (0.0, 0.46))
     assert reconstruct(box_room(boxes=[cabinet]).photo(width=640, height=480)).seats == ()
+
+
+def test_a_bench_seen_at_a_flat_angle_is_a_seat():
+    """In this procedural corridor the camera is 12 cm above a bench: little but its edges is measured."""
+    corridor = make_room("corridor", layout=7, seed=60007)
+    seats = see(dataclasses.replace(corridor.photo(list(LIGHTINGS)[3], noise=True), classes=None)).seats
+    for place in corridor.seats:
+        assert any(np.hypot(*(seat.position_m - place.position_m)[:2]) < 0.35 for seat in seats)
+
+
+def test_between_the_edges_of_a_plank_is_plank_but_not_of_what_reaches_down():
+    for lowest_m, is_plank in ((0.40, True), (0.10, False)):
+        height_map = make_height_map(AlignedPhoto.of(bare_room()))
+        top_m, bottom_m = np.full(height_map.top_m.shape, np.nan), np.full(height_map.top_m.shape, np.inf)
+        for edge in (70, 76):
+            top_m[40:62, edge], bottom_m[40:62, edge] = 0.44, lowest_m
+        height_map = dataclasses.replace(height_map, top_m=top_m, bottom_m=bottom_m)
+        filled = with_flat_planks(height_map, ()).top_m
+        assert np.isfinite(filled[42:60, 70:77]).all() == is_plank
+        assert np.isfinite(filled).sum() == (22 * 7 if is_plank else 44)
+        place_m = np.array([height_map.x_m[73], height_map.y_m[50], 0.4])
+        on_it = Seat(position_m=place_m, facing_rad=0.0, size_m=(0.5, 0.4))
+        assert np.isfinite(with_flat_planks(height_map, (on_it,)).top_m).sum() == 44  # a seat is found there already
 
 
 def test_a_bed_that_the_picture_cuts_is_sat_on_and_a_low_table_is_not():

@@ -57,10 +57,16 @@ class PulledChair:
 
     def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
         """Which points belong to it where it stands in the photo; what is ahead above the armrests is a table's."""
-        ahead = np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
-        is_front = (points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M
-        top_m = np.where(is_front, _FRONT_TOP_M, _CHAIR_TOP_M)
+        top_m = np.where(self._is_front(points_m), _FRONT_TOP_M, _CHAIR_TOP_M)
         return self.covers(points_m[:, :2]) & (points_m[:, 2] < floor_z_m + top_m)
+
+    def has_back_at(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
+        """Which points are of its back and rear legs, which stand upright as table legs do."""
+        return self.holds(points_m, floor_z_m) & ~self._is_front(points_m)
+
+    def _is_front(self, points_m: Float[Array, "point 3"]) -> Bool[Array, " point"]:
+        ahead = np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        return np.asarray((points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
         """Which places (x, y) it stands on in the photo."""
@@ -128,6 +134,7 @@ class CollisionMap:
             solid, tops, legs = (_about(points, chair.place_m, _NEAR_CHAIR_M) for points in self._hard_m)
             others = solid[~chair.holds(solid, self.scene.floor_z_m)]
             below = tops - np.array([0.0, 0.0, _THICK_M])
+            legs = legs[~chair.has_back_at(legs, self.scene.floor_z_m)]
             self._without_chair[chair] = np.concatenate([others, tops, below, legs])
         return self._without_chair[chair]
 

@@ -1,12 +1,13 @@
 """Where a person could sit: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Seat
 from mmweaver.core.shapes import Array, GridMask
+from mmweaver.scene.affordances.chair_backs import chairs_behind_tables
 from mmweaver.scene.layout.class_evidence import GridClass
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.layout.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
@@ -32,6 +33,7 @@ _MAX_STOOL_HEIGHT_M = 0.52
 # A bench is a narrow plank through under which one sees: a cabinet's front reaches down, a low table is wider.
 _BENCH_LENGTH_M, _BENCH_WIDTH_M, _BENCH_HEIGHT_M = (0.75, 2.1), (0.2, 0.46), (0.38, 0.52)
 _PLANK_M, _MOST_BELOW = 0.15, 0.5  # what is seen farther below its top is no plank; on so much of its length at most
+_GAP_SQUARES, _EDGE_NOISE_M = np.ones((7, 7), bool), 0.04  # of a plank that is seen at a flat angle
 _TABLE_SQUARES = np.ones((7, 7), bool)
 
 # Sample places around a sitter, in metres: forward, leftward.
@@ -115,7 +117,17 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
 
     A low table has no backrest: what stands behind it is lower, too far away, or a wall. `evidence`, of
     `class_evidence.seat_evidence`, excludes other furniture and accepts chairs, benches and beds without a backrest.
+    Benches are looked for again with their planks made whole where no seat is found on them. Chairs that a table hides
+    but for their backs come last.
     """
+    seats = _seats_of(height_map, evidence)
+    whole = with_flat_planks(height_map, seats)
+    if not np.array_equal(whole.top_m, height_map.top_m, equal_nan=True):
+        seats = _seats_of(whole, evidence)
+    return (*seats, *chairs_behind_tables(height_map, table_squares(height_map), seats, evidence))
+
+
+def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, ...]:
     is_seat_height = _horizontal_squares(height_map)
     if evidence is not None:
         is_seat_height &= evidence >= 0
@@ -219,6 +231,25 @@ def cut_beds(near: GridMask) -> GridMask:
     return found
 
 
+def with_flat_planks(height_map: HeightMap, seats: tuple[Seat, ...]) -> HeightMap:
+    """The map with the planks of benches whole on which no seat is found: at a flat angle little but edges is seen."""
+    from scipy import ndimage
+
+    top_m = height_map.top_m.copy()
+    taken = [(seat.position_m[1] - height_map.y_m[0], seat.position_m[0] - height_map.x_m[0]) for seat in seats]
+    row, column = np.round(np.array(taken).reshape(-1, 2).T / CELL_M).astype(int)
+    for height_m in np.arange(*_BENCH_HEIGHT_M, 0.02):
+        near = np.abs(height_map.top_m - height_m) < _EDGE_NOISE_M
+        labels, _ = label_components(np.asarray(ndimage.binary_closing(near, structure=_GAP_SQUARES), bool))
+        for label, region in enumerate(bounding_slices(labels), start=1):
+            if max(part.stop - part.start for part in region) * CELL_M < _BENCH_LENGTH_M[0]:
+                continue
+            patch = labels == label
+            if not patch[row, column].any() and _is_bench(height_map, patch, height_m):
+                top_m[patch & np.isnan(top_m)] = np.median(height_map.top_m[near & patch])
+    return replace(height_map, top_m=top_m)
+
+
 def _is_open(height_map: HeightMap) -> GridMask:
     """Squares where legs have room: floor that is visible or inferred."""
     return height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
@@ -271,15 +302,15 @@ def _on_bench(height_map: HeightMap, squares: GridMask, candidates: _Candidates)
     is_bench = np.zeros(count + 1, bool)
     for label, (rows, columns) in enumerate(bounding_slices(labels), start=1):
         if max(rows.stop - rows.start, columns.stop - columns.start) * CELL_M >= 0.7 * _BENCH_LENGTH_M[0]:
-            is_bench[label] = _is_bench(height_map, labels == label)
+            patch = labels == label
+            is_bench[label] = _is_bench(height_map, patch, float(np.median(height_map.top_m[patch])))
     row, column = candidates.cells(height_map)
     return is_bench[labels[row, column]]
 
 
-def _is_bench(height_map: HeightMap, patch: GridMask) -> bool:
+def _is_bench(height_map: HeightMap, patch: GridMask, height_m: float) -> bool:
     from scipy import ndimage
 
-    height_m = float(np.median(height_map.top_m[patch]))
     places_m = np.argwhere(patch) * CELL_M
     axes = np.linalg.eigh(np.cov(places_m.T))[1]
     width_m, length_m = np.ptp(places_m @ axes, axis=0) + CELL_M
