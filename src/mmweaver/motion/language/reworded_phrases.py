@@ -72,7 +72,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bin (?:the shape of an? s|an? s[- ]?(?:shaped? )?(?:pattern|motion|line|path|way|curve|shape))\b", "in a 90 degree curve to the left, then walks in a 90 degree curve to the right"),
     (r"\b(?:appears?|seems?) to be (?=[a-z]+ing\b)", "is "),
     (r"\bside ways\b", "sideways"),
-    (r"\b(reach(?:es|ing)?)((?: (?!up\b)[a-z]+){0,4}?) (?=(?:into|towards?|for) the (?:air|sky|ceiling)\b)", r"\1 up\2 "),
+    (r"\b(reach(?:es|ing)?)((?: (?!up\b)[a-z]+){0,4}?) (?:into|towards?|for) the (?:air|sky|ceiling)\b", r"\1 up\2"),
     # one step, one way, the other way
     (r"\bsteps (one|two|three|four|five|six|\d) (back(?:wards?)?|forwards?|to the (?:left|right|side))\b(?! steps?)", r"takes \1 step \2"),
     (r"\b(takes|took|taking|makes|making) step\b(?! (?:by|after|like)\b)", r"\1 a step"),

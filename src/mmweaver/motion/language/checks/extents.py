@@ -11,7 +11,7 @@ from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 
 _SLIGHTLY = re.compile(r"\b(?:slightly|somewhat|(?<!for )a (?:little )?bit(?! of)|a little(?! (?:[a-z]+ )?step))\b")
 # Shown as one size of the trunk, a limb or the knees.
-_OF_ONE_SIZE = words_in("bend bow lean squat crouch raise raise_hold raise_leg arms_out")
+_OF_ONE_SIZE = words_in("bend lean squat crouch raise raise_hold raise_leg arms_out")
 _SIDE_TO_SIDE = re.compile(r"\b(?:from )?side to side\b|\bfrom one side to the other\b")
 _TO_THE_GROUND = re.compile(r"\b(?:to|towards?|for|on|off|from|at) (?:the )?(?:ground|floor)\b")
 _INTO_THE_AIR = re.compile(r"\b(?:into|in|to|towards?|for|at) the (?:air|sky|ceiling)\b")
@@ -42,7 +42,7 @@ def _slightly(given: Given) -> Iterator[tuple[int, str]]:
     """ "Bends slightly": shown as far as any other bend."""
     for found in _SLIGHTLY.finditer(given.text):
         token = given.token_at(found.start())
-        own = _own(given, token)
+        own = [] if token.clause in given.otherwise else _own(given, token)
         if own and all((step.upper or step.lower) in _OF_ONE_SIZE and not step.arc_deg for step in own):
             yield token.clause, f"{found[0]!r} is not shown"
 
