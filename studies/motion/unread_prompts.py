@@ -22,8 +22,9 @@ too); `strangers_fourth`: the 150 of strangers_fifth.txt, after the other three 
 after all draws above had been used to mend the grammar; ten that an earlier draw had judged, as they are or with left
 and right swapped, are left out; that none stands so in a stretch that was read to widen it was not checked.
 `captions_sixth`: 290 more (from 293,000, 752,000, 857,000 and 930,000), after `captions_fifth` had been used to mend
-it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Each prompt counts
-once, without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
+it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Those from 420,000,
+516,000, 546,000 and 676,000 (16,000 characters each) were read to widen the checks since. Each prompt counts once,
+without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
 3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419 and 1f1fe4eb before the last
 eight);

@@ -11,6 +11,7 @@ from mmweaver.motion.language.sentence import parse
     ("sentence", "what"),
     [
         ("a person raises both their hands to the left", "the side"),
+        ("a person picks up a box from his left", "the side"),
         ("waving hands around near face", "face"),
         ("a person raises both arms to his chest", "chest"),
         ("a man waves forward", "forward"),

@@ -89,6 +89,19 @@ def test_the_hand_that_was_raised_throws() -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "hand"),
+    [
+        ("picks up a ball with the left hand and throws it", "left"),
+        ("picks up a cup with the left hand and drinks", "left"),
+        ("raises the left arm and punches", "left"),
+        ("picks up a cup with the left hand, then waves", ""),
+    ],
+)
+def test_the_hand_that_was_raised_or_took_something_does_what_comes_next(text: str, hand: str) -> None:
+    assert parse(f"a person {text}").steps[-1].hand == hand
+
+
+@pytest.mark.parametrize(
     ("text", "ahead"),
     [
         ("stretches both arms forward and walks", True),

@@ -115,6 +115,35 @@ def test_counts_and_ways() -> None:
     assert parse("a person walks straight back").steps[0].direction in words_in("back backwards")
 
 
+@pytest.mark.parametrize("text", ["walks in an s curve", "walks in the shape of an s", "walks in an s shaped pattern"])
+def test_an_s_bends_to_both_sides(text: str) -> None:
+    plan = parse(f"a person {text}")
+    assert [step.arc_deg > 0 for step in plan.steps] == [True, False]
+    assert all(record.status == "done" for record in plan.clauses), plan.notes
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("is walking and turning to the left", [("walk", 60.0)]),
+        ("walks on all four", [("crawl", 0.0)]),
+        ("gets down on his knees and hands and walks around", [("crawl", 0.0)]),
+        ("appears to be jumping", [("jump", 0.0)]),
+        ("walks side ways", [("sidestep", 0.0)]),
+        ("spins around and walks back", [("turn", 0.0), ("walk", 0.0)]),
+    ],
+)
+def test_movements_in_other_words(text: str, steps: list[tuple[str, float]]) -> None:
+    plan = parse(f"a person {text}")
+    assert [(step.lower, step.arc_deg) for step in plan.steps] == steps
+    assert [step.turn_deg for step in plan.steps] == [0.0] * len(steps)
+    assert all(record.status == "done" for record in plan.clauses), plan.notes
+
+
+def test_a_reach_into_the_air_is_high() -> None:
+    assert parse("a person reaches with the right hand into the air").steps[0].style == "high"
+
+
 @pytest.mark.parametrize(
     ("text", "steps"),
     [

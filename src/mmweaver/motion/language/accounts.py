@@ -236,7 +236,7 @@ def _side(tokens: list[str], i: int, own: list[Step]) -> str:
     if not _SIDE.fullmatch(tokens[i]) or OF_A_LIMB & set(tokens[i + 1 : i + 3]):
         return ""
     before = tokens[max(i - 2, 0) : i]
-    aimed = len(before) == 2 and before[0] in _TO and before[1] in _WHOSE
+    aimed = len(before) == 2 and before[0] in _TO | {"from"} and before[1] in _WHOSE
     if not aimed or any(goes_aside(step) or step.turn_deg for step in own):
         return ""
     shown = any(step.direction in ("left", "right") and step.lower in ("kick", "fall_off", "side_kick") for step in own)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from mmweaver.motion.language.checks.counts import counts_not_shown
 from mmweaver.motion.language.checks.endings import endings_not_shown
+from mmweaver.motion.language.checks.extents import extents_not_shown
 from mmweaver.motion.language.checks.given import given
 from mmweaver.motion.language.checks.movements import movements_not_shown
 from mmweaver.motion.language.checks.nouns import nouns_not_shown
@@ -13,7 +14,8 @@ from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
 
 _CHECKS = (
-    movements_not_shown, ways_not_shown, special_ways_not_shown, counts_not_shown, endings_not_shown, nouns_not_shown,
+    movements_not_shown, ways_not_shown, special_ways_not_shown, counts_not_shown, endings_not_shown,
+    extents_not_shown, nouns_not_shown,
 )  # fmt: skip
 
 

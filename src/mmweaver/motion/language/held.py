@@ -29,6 +29,7 @@ _COMING_BACK = words_in(
     " uncrosses unfolds back stand_up"
 )
 _LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
+_WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
 Lost = list[tuple[int, str]]
@@ -100,12 +101,12 @@ def _stays_raised(before: Step, step: Step) -> bool:
 
 
 def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
-    """The hand that was raised or held out is the one that does what comes next."""
-    lifted = before is not None and before.upper in ("raise", "raise_hold", "arms_out") and before.hand in OPPOSITE
-    one_armed = step.upper in ONE_ARMED or step.upper == "throw"
-    if before is None or not lifted or not one_armed or step.hand or step.other_hand:
+    """The hand that was raised, held out or took something is the one that does what comes next."""
+    if before is None or before.hand not in OPPOSITE or step.hand or step.other_hand:
         return step
-    return replace(step, hand=before.hand)
+    lifted = before.upper in ("raise", "raise_hold", "arms_out") and step.upper in ONE_ARMED | _WITH_A_RAISED_HAND
+    took = (before.lower == "pick_up" or before.upper == "reach") and step.upper in _WITH_WHAT_IS_TAKEN
+    return replace(step, hand=before.hand) if lifted or took else step
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:

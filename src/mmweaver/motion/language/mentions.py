@@ -85,16 +85,17 @@ def _opens_no_door(step: Step) -> bool:
     return not _does("open_door")(step)
 
 
-def _goes_to_and_fro(step: Step) -> bool:
-    return bool({step.lower, step.upper} & _TO_AND_FRO) or step.direction == "pacing"
+def goes_to_and_fro(step: Step, *keys: str) -> bool:
+    """Whether a step, or one activity of it, goes to one side and the other."""
+    return bool({*(keys or (step.lower, step.upper))} & _TO_AND_FRO) or step.direction == "pacing"
 
 
 # (words, whether a step has what they say): a way, a height or a thing; the words are named where no step has it.
 _WAYS: tuple[tuple[str, Callable[[Step], bool]], ...] = (
-    (r"(?:from )?side to side|from one side to the other", _goes_to_and_fro),
+    (r"(?:from )?side to side|from one side to the other", goes_to_and_fro),
     (
         r"(?:to the )?left and (?:to the )?right(?! (?:hand|arm|leg|foot|fist|punch))",
-        lambda step: _goes_to_and_fro(step) or step.hand == "both" or bool(step.foot),
+        lambda step: goes_to_and_fro(step) or step.hand == "both" or bool(step.foot),
     ),
     (
         r"arms? (?:straight )?(?:up )?out(?:wards?)? (?:away )?(?:to|from)|away from (?:his|her|their|the) sides?",

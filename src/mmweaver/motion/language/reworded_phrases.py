@@ -67,6 +67,12 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b(?:let(?:s|ting)?|allow(?:s|ing)?) (?:them|{_OWN}?(?:both )?(?:arms|hands)) (?:to )?(?:fall|drop|go|hang|sink)\b(?! straight)(?: (?:down|back))*(?: (?:to|by|at) (?:{_OWN}|both )?sides?)?", "lowers them"),
     (rf"\bun(?:fold|cross)(?:s|es|ing)? (?:them|{_OWN}?arms)\b", "lowers the arms"),
     (r"\b(lean(?:s|ing)?) (quickly|slowly|slightly|carefully|far) (back(?:wards?)?|forwards?|to the (?:left|right))\b", r"\1 \3 \2"),
+    (rf"\b(walk|jog|runn)ing and turning (?:slightly )?{_TO}(left|right)\b", r"\1ing in a curve to the \2"),
+    (r"\bspin(?:s|ning)?(?: around)?(?=(?:,| and| then)+ (?:walk|run|jog|go|step)(?:s|es) back\b(?! ?wards))", "turns around"),
+    (r"\bin (?:the shape of an? s|an? s[- ]?(?:shaped? )?(?:pattern|motion|line|path|way|curve|shape))\b", "in a 90 degree curve to the left, then walks in a 90 degree curve to the right"),
+    (r"\b(?:appears?|seems?) to be (?=[a-z]+ing\b)", "is "),
+    (r"\bside ways\b", "sideways"),
+    (r"\b(reach(?:es|ing)?)((?: (?!up\b)[a-z]+){0,4}?) (?:into|towards?|for) the (?:air|sky|ceiling)\b", r"\1 up\2"),
     # one step, one way, the other way
     (r"\bsteps (one|two|three|four|five|six|\d) (back(?:wards?)?|forwards?|to the (?:left|right|side))\b(?! steps?)", r"takes \1 step \2"),
     (r"\b(takes|took|taking|makes|making) step\b(?! (?:by|after|like)\b)", r"\1 a step"),
@@ -93,6 +99,8 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),
     (r"\b(?P<verb>(?:rais|lift|wav|kick|touch|punch|stretch|stomp|swing|shak|tap)(?:s|es|ing)(?: (?!and\b|then\b|with\b)[a-z]+){0,2}?)(?: with)? one (?P<limb>hand|arm|leg|foot|knee) after (?:another|the other)\b", _limb_after_limb),
     # postures
+    (r"\bon all four\b", "on all fours"),
+    (rf"\b{_DOWN}(?: down)? (?:on|onto|to) {_OWN}(?:hands and knees|knees and hands|all fours)(?:,| and| then)+ (?:walk|mov|go|crawl)(?:s|es)\b", "crawls"),
     (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
     (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),
     (rf"\b{_DOWN}{_ADVERBS}(?: down)?{_ADVERBS} (?:on|onto|to) (?:one|a|a single) knee\b", "kneels down one_knee"),

@@ -15,6 +15,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person raises their arms one at a time", "'one at a time' is not shown"),
         ("the person is doing arm lifts with his right arm", "'arm lifts' is shown once"),
         ("a person takes a step to the left and then to the right", "that it is one step is not kept"),
+        ("a person takes a step forward, then the step back", "that it is one step is not kept"),
         ("a person turns 90 degrees to the left, then 90 more", "'then 90 more' is not shown"),
         ("a person turns in place for two full turns", "'two full turns' is not shown"),
         ("a person steps left and right twice", "'twice' is shown for one side"),

@@ -11,6 +11,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person walks with a cane", "'cane' is not shown"),
         ("someone is playing an air banjo", "'banjo' is not shown"),
         ("a person bends over the patient", "'patient' is not shown"),
+        ("a person is in a stance and punches", "'stance' is not shown"),
     ],
 )
 def test_things_that_no_step_has_are_named(sentence: str, how: str) -> None:

@@ -34,7 +34,9 @@ _PLURAL = re.compile(
 )
 _ANGLE = re.compile(r"\b(\d+) ?(?:deg\w*|°)|\b(quarter|half|full) (?:turn|circle|rotation|spin)")
 _MORE_ANGLE = re.compile(r"\b(?:another |then |and )(\d+|ninety)(?: deg\w*)? more\b|\banother (\d+)")
-_ONE_STEP = re.compile(r"\bsteps? (?:one|once)\b|\b(?:a|an|one|single|another)(?: (?!side)[a-z]+)? step\b")
+_ONE_STEP = re.compile(
+    r"\bsteps? (?:one|once)\b|\bthe step(?= back| forward)|\b(?:a|an|one|single|another)(?: (?!side)[a-z]+)? step\b"
+)
 FULL_TURN_DEG = 360.0
 _FULL_TURNS = re.compile(
     r"\b(two|three|four|five|several|multiple|few|\d+) (?:full|complete|whole|entire)"

@@ -84,7 +84,7 @@ def _is_noun(given: Given, token: Token) -> bool:
 
 
 def _has_to_do_with(step: Step, text: str) -> bool:
-    keys = {step.lower, step.upper}
+    keys = {step.upper} if step.upper and step.lower == "stand" else {step.lower, step.upper}
     if any(text in _OF_ACTIVITY.get(key, ()) for key in keys) or (text in _CARRIED and keys & _HANDLING):
         return True
     if text in _CURVES and (step.arc_deg or step.direction in ("circle", "around") or step.lower == "turn"):
