@@ -49,9 +49,12 @@ def places_m(cells: Cells) -> list[tuple[float, float]]:
     first = cells.min(axis=0)
     held = np.zeros(np.ptp(cells, axis=0) + 1, bool)
     held[tuple((cells - first).T)] = True
-    found = find_objects(label(held, np.ones((3, 3)))[0])
-    middles = ([(one.start + one.stop) / 2 for one in place] for place in found)
-    return [tuple(round(float(value), 1) for value in (first + middle) * CELL_M) for middle in middles]
+    found: list[tuple[float, float]] = []
+    for right, ahead in find_objects(label(held, np.ones((3, 3)))[0]):
+        middle = first + np.array([right.start + right.stop, ahead.start + ahead.stop]) / 2
+        right_m, ahead_m = (middle * CELL_M).round(1).tolist()
+        found.append((right_m, ahead_m))
+    return found
 
 
 def left_out_line(place_m: tuple[float, float]) -> str:
