@@ -184,11 +184,9 @@ def perform(
     sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
     even_s = pose.time_s
-    if is_event:
-        pass
-    elif moves:
+    if moves and not is_event:
         even_s = slow_at_turns(pose.time_s, joints_m, who.at_turns)
-    elif not once:
+    elif not (once or is_event):
         even_s = lingering(pose.time_s, joints_m, who.linger)
     time_s = time_warped(
         even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
