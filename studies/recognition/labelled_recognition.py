@@ -53,7 +53,7 @@ def accuracy(
 
 def curve(
     made: TrainingWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray,
-    may_train: np.ndarray | None = None,
+    may_train: np.ndarray | None = None, seeds: tuple[int, ...] = SEEDS,
 ) -> list[dict[str, Any]]:  # fmt: skip
     """Scores by number of recordings; `owner` (window,) is the recording, `kinds` (recording,) its label.
 
@@ -67,12 +67,12 @@ def curve(
         for generated in (False, True) if each else (True,):
             began = time.process_time()
             scores = []
-            for seed in SEEDS if each else SEEDS[:1]:
+            for seed in seeds if each else seeds[:1]:
                 trains = np.isin(owner, allowed[chosen_recordings(kinds[allowed], each, seed)])
                 tested = ~trains if may_train is None else ~may_train[owner]
                 scores.append(accuracy(made, features, labels, trains, tested, each=each, generated=generated))
             rows.append({
-                "real_recordings_each": each, "generated": generated, "seeds": list(SEEDS[: len(scores)]),
+                "real_recordings_each": each, "generated": generated, "seeds": list(seeds[: len(scores)]),
                 "n": len(scores),
                 "seconds": {"all": round(time.process_time() - began, 1)}, "scores": scores,
                 "alone": alone if generated else [],
@@ -84,6 +84,10 @@ def curve(
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_task_options(parser)
+    parser.add_argument(
+        "--samples", type=int, choices=range(2, len(SEEDS) + 1), default=len(SEEDS), metavar="N",
+        help="of the recordings that train",
+    )  # fmt: skip
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
@@ -99,7 +103,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         made, recognition_features([made.points(window) for own in windows for window in own], made.names),
         np.array([number[window.label] for own in windows for window in own]),
         np.repeat(np.arange(len(windows)), [len(own) for own in windows]),
-        np.array([number[one.label] for one in recordings]), may_train,
+        np.array([number[one.label] for one in recordings]), may_train, SEEDS[: options.samples],
     )  # fmt: skip
     data = {"name": options.task, "sha256": content_of(options.recordings)["sha256"], "recordings": len(recordings)}
     settings = asdict(replace(TrainingOptions(), sequences=options.people, trees=TREES))

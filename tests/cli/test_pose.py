@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
+from mmweaver.formats.npz_files import write_points_npz
 from mmweaver.recognition import train_pose
 from mmweaver.recognition.pose_estimator import load_estimator
 from tests.recognition.test_mars_data import write_split
@@ -53,6 +54,9 @@ def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: py
     with np.load(tmp_path / "poses" / "pose.npz") as held:
         assert held["joints_m"].shape == (20, 22, 3)
     assert (tmp_path / "poses" / "pose.png").stat().st_size > 5000
+    write_points_npz(tmp_path / "nobody.npz", cloud.select(np.zeros(len(cloud.frame), bool)))
+    assert main(["pose", str(model), "--points", str(tmp_path / "nobody.npz"), "--out", str(tmp_path / "none")]) == 2
+    assert "nobody to give poses of" in capsys.readouterr().err
     words = ["evaluate", "zero-shot-pose", "--recordings", str(tmp_path), "--model", str(model)]
     assert main([*words, "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)

@@ -76,6 +76,7 @@ def test_sdk_3_has_thresholds_in_db(tmp_path: Path):
     assert settings.range_cfar.threshold == round(15 / 6.0206 * 256 * 8)
     assert settings.doppler_cfar.threshold == round(12 / 6.0206 * 256 * 8)
     assert (settings.group_range, settings.group_doppler) == (True, False)
+    assert settings.most_objects == load_firmware("iwr6843isk").most_objects == 500
 
 
 @pytest.mark.parametrize("mode", [0, 1, 2])

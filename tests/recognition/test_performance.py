@@ -48,6 +48,30 @@ def test_who_holds_still_sways_little(sentence: str, once: bool, between_mps: tu
     assert between_mps[0] < fastest < between_mps[1]
 
 
+@pytest.mark.parametrize("sentence", ["a person falls", "a person sits down on a chair"])
+def test_what_happens_once_is_in_every_sequence(sentence: str):
+    """Whoever falls stands first and lies at the end, in people of any tempo."""
+    for index in range(6):
+        who = performer(PRIOR, task_variation(Mount()), index, 0)
+        did = perform(who, PRIOR, sentence, seconds=6.0, once=False, rng=stream(0, "performance", index))
+        assert did.lasts_s == 6.0
+        assert did.pose.time_s[-1] > 6.0
+        height_m = np.interp([0.0, 0.1, 6.0], did.pose.time_s, did.pose.joints_m[:, joint("pelvis"), 2])
+        assert height_m[1] == pytest.approx(height_m[0], abs=0.02)
+        assert height_m[2] < height_m[0] - 0.15
+
+
+def test_what_is_counted_goes_on():
+    """Three jumps are not all of it: people who "jump repeatedly" jump in the last second, too."""
+    for index in range(6):
+        who = performer(PRIOR, task_variation(Mount()), index, 0)
+        did = perform(
+            who, PRIOR, "a person jumps repeatedly", seconds=4.0, once=False, rng=stream(0, "performance", index)
+        )
+        last = (did.pose.time_s > 2.3) & (did.pose.time_s <= 4.0)
+        assert np.ptp(did.pose.joints_m[last, joint("pelvis"), 2]) > 0.05
+
+
 def test_a_gesture_done_once_is_brisk():
     assert np.median(speeds_mps("a person pushes the right hand forward", "right_wrist", once=True)) > 1.2
 

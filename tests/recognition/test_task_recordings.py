@@ -53,6 +53,30 @@ def test_an_empty_room_may_have_no_points(tmp_path: Path):
     assert (one.num_frames, len(windows_of(one, SETTINGS))) == (30, 3)
 
 
+def test_without_points_and_a_number_of_frames_it_lasts_a_window(tmp_path: Path):
+    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)))
+    write_points_npz(tmp_path / "points.npz", recording().cloud)
+    for name in ("a.npz", "points.npz"):
+        assert len(windows_of(read_task_recording(tmp_path / name, SETTINGS), SETTINGS)) == 1
+
+
+def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
+    folder = tmp_path / "walk" / "result"
+    folder.mkdir(parents=True)
+    write_points_npz(folder / "points.npz", recording(3, 7).cloud)
+    np.savez(folder / "radar.npz", frame_time_s=np.arange(25) / 10)
+    np.savez(folder / "pose.npz", joints_m=np.zeros(3))
+    for place in (folder, folder / "points.npz"):
+        found = read_task_recording(place, SETTINGS)
+        assert (found.name, found.num_frames) == ("result", 25)
+    (one,) = read_task_recordings(tmp_path, SETTINGS)
+    assert (one.label, one.num_frames) == ("walk", 25)
+    with pytest.raises(InputError, match=r"10 frames a second, the recogniser's recordings 30; .* \(--fps\)"):
+        read_task_recording(folder, replace(SETTINGS, frame_rate_hz=30.0))
+    with pytest.raises(InputError, match=r"holds no points\.npz; give a result folder"):
+        read_task_recording(tmp_path, SETTINGS)
+
+
 def test_where_a_log_counts_again_another_take_begins(tmp_path: Path):
     np.savez(tmp_path / "a.npz", frame=[4, 6, 2, 3, 1], pts=np.zeros((5, 6)))
     assert read_task_recording(tmp_path / "a.npz", SETTINGS).cloud.frame.tolist() == [0, 2, 102, 103, 203]
@@ -73,6 +97,11 @@ def test_a_short_performance_is_a_window_with_empty_frames():
     assert [one.num_frames for one in windows_of(recording(*range(15), num_frames=15), seldom)] == [10]
     assert windows_of(recording(num_frames=25), single) == []
     assert len(windows_of(recording(num_frames=25), seldom)) == 2  # an empty place
+    known = replace(single, labels=("empty", "up"), empty_label="empty")
+    assert len(windows_of(recording(num_frames=25), known)) == 2
+    between = recording(3, 4, 30, num_frames=45)
+    assert [one.first_frame for one in windows_of(between, known)] == [3, 5, 15, 30, 31]
+    assert [one.first_frame for one in windows_of(replace(between, label="up"), known)] == [3, 30]
 
 
 @pytest.mark.parametrize(

@@ -135,6 +135,31 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     assert score_recordings(again, with_fan)["window"]["balanced_accuracy"] == 1.0
 
 
+@pytest.mark.usefixtures("drawn")
+def test_what_moves_all_the_time_is_left_out_by_scores_and_training(task_file: Path, tmp_path: Path):
+    """A fan in all recordings, while people walk elsewhere, changes no score; `unlabelled` teaches it to the model."""
+    model = small_recogniser(task_file)
+    frame = np.arange(200)
+    fan = PointCloud(
+        frame=frame, x_m=np.full(200, 1.6), y_m=np.full(200, 4.1), z_m=np.zeros(200),
+        radial_velocity_mps=np.full(200, 0.712), snr_db=np.full(200, np.nan),
+    )  # fmt: skip
+    people = [
+        replace(one, cloud=replace(one.cloud, y_m=2 + 3 * (one.cloud.y_m - 2)) if one.label != "rest" else one.cloud)
+        for one in drawn_sequences(model.settings, 6, first=50)
+    ]
+    scores = score_recordings(model, [_in_front(one, fan) for one in people])
+    (line,) = scores["left_out"]
+    assert "4.1 m ahead and 1.6 m to the right" in line
+    assert scores["window"] == score_recordings(model, people)["window"]
+    assert score_recordings(model, people)["left_out"] == []
+    write_recordings(tmp_path / "some", [_in_front(one, fan) for one in people])
+    task_file.write_text(TASK.format(more='unlabelled = "some"'))
+    taught = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    assert taught.meta["left_out"] == [line]
+    assert len(load_recogniser(tmp_path / "model").points.busy) == 9
+
+
 def _in_front(recording: PointRecording, cloud: PointCloud) -> PointRecording:
     """The recording with other points behind those of the person."""
     other = cloud.select(cloud.frame < recording.num_frames)
@@ -199,6 +224,24 @@ def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_fil
         found += live.push(points)
     assert found + live.finish() == model.recognise(recording)
     assert len(found) >= 2
+
+
+@pytest.mark.usefixtures("drawn")
+@pytest.mark.parametrize("gap_frames", [4, 30])
+def test_gaps_are_windows_of_an_empty_place_where_a_label_is_one(gap_frames: int, task_file: Path):
+    model = small_recogniser(task_file)
+    model = replace(model, settings=replace(model.settings, gap_frames=gap_frames, empty_label="rest"))
+    recording = replace(drawn_sequences(model.settings, 1, first=9)[1], label="", num_frames=125)
+    length = model.settings.window_frames
+    kept = ~np.isin(recording.cloud.frame, [*range(2), *range(20, 20 + 2 * length + 3)])
+    recording = replace(recording, cloud=recording.cloud.select(kept))
+    live, found = LiveRecogniser(model), []
+    for points in frames(recording):
+        found += live.push(points)
+    assert found + live.finish() == model.recognise(recording)
+    assert sum(one.first_frame in (20, 20 + length) for one in model.recognise(recording)) == 2
+    nothing = replace(recording, cloud=recording.cloud.select(np.zeros(len(kept[kept]), bool)), num_frames=2 * length)
+    assert [one.first_frame for one in model.recognise(nothing)] == [0, length]
 
 
 def frames(recording: PointRecording) -> list[np.ndarray]:

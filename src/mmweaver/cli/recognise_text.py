@@ -28,7 +28,7 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         done = meta.get("self_training", {})
         why = "" if done.get("used") else f", without self-training: {done.get('why', 'it is off')}"
         text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
-    return text + contradiction_lines(meta.get("contradictions", []))
+    return text + contradiction_lines(meta.get("contradictions", [])) + [f"  {one}" for one in meta.get("left_out", [])]
 
 
 def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[str]:
@@ -62,6 +62,7 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     if count["generated"] is not None:
         text.append(f"  moving points a frame: {count['recorded']:g} recorded, {count['generated']:g} generated")
     text += [f"  {line}" for line in scores["hardly_distinct"]] + contradiction_lines(scores["contradictions"])
+    text += [f"  {one}; name `background` or `unlabelled`, so that run does so, too" for one in scores["left_out"]]
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 

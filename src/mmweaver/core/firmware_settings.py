@@ -7,6 +7,7 @@ from mmweaver.core.errors import InputError
 AVERAGE_MODES = ("ca", "cago", "caso")  # 0, 1, 2 of cfarCfg
 DEVICES = ("xwr14xx", "xwr16xx")
 MOST_OBJECTS, MOST_OBJECTS_3D = 100, 64  # the demo's lists; an elevated row leaves memory for fewer
+SDK3_MOST_OBJECTS = 500  # of both of its detection chains, with the hardware accelerator and on the DSP
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +55,7 @@ class FirmwareSettings:
     last_range_bin: int = 229
     static_removal: bool = False
     second_peak: float | None = 0.5
-    most_objects: int | None = None  # None = the demo's own limit
+    most_objects: int | None = None  # None = the limit of the demo of SDK 1 and 2
 
     def __post_init__(self) -> None:
         if self.device not in DEVICES:
@@ -81,6 +82,7 @@ SDK3 = FirmwareSettings(
     device="xwr16xx",
     range_cfar=FirmwareCfar(average="caso", window=8, guard=4, noise_shift=4, threshold=SDK3_COUNTS),
     doppler_cfar=FirmwareCfar(average="ca", window=4, guard=2, noise_shift=3, cyclic=True, threshold=SDK3_COUNTS),
+    most_objects=SDK3_MOST_OBJECTS,
 )
 
 # By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal

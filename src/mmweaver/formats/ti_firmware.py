@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.firmware_settings import AVERAGE_MODES, FirmwareCfar, FirmwareSettings
+from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MOST_OBJECTS, FirmwareCfar, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.ti_cfg import Line, read_ti_cfg, ti_cfg_lines, whole
 
@@ -23,8 +23,8 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
     """The settings of the point cloud; those that the file does not hold are the demo's defaults.
 
     The device follows from adcbufCfg: the IWR1443's demo uses interleaved channels (0), those of other devices do
-    not (1); without the line it is the IWR1443. SDK 3 has thresholds in dB and grouping in each cfarCfg. Raises
-    InputError where the file cannot be read, has no cfarCfg, or a number is out of range.
+    not (1); without the line it is the IWR1443. SDK 3 has thresholds in dB, grouping in each cfarCfg and a longer list
+    of points. Raises InputError where the file cannot be read, has no cfarCfg, or a number is out of range.
     """
     path = Path(path)
     lines = ti_cfg_lines(path, PLAIN_LENGTH)
@@ -50,6 +50,7 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
             last_range_bin=grouping.last_bin,
             static_removal=_is_on(lines, "clutterRemoval"),
             second_peak=_second_peak(lines),
+            most_objects=SDK3_MOST_OBJECTS if any(map(_is_of_sdk3, cfars.values())) else None,
         )
     except InputError as error:
         text = str(error)
@@ -76,7 +77,7 @@ def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar |
     average, window, guard, shift, cyclic = (whole(line, "cfarCfg", start + at) for at in range(1, 6))
     if not 0 <= average < len(AVERAGE_MODES):
         raise InputError(f"line {line.number}: cfarCfg has average mode {average}; known are 0, 1 and 2")
-    in_db = len(line.values) >= SDK3_CFAR_LENGTH
+    in_db = _is_of_sdk3(line)
     if in_db and average != 0:
         shift += 1  # SDK 3 divides the one side that CASO and CAGO take by 2^shift, older ones by half of that
     return FirmwareCfar(
@@ -89,9 +90,13 @@ def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar |
     )
 
 
+def _is_of_sdk3(line: Line) -> bool:
+    return len(line.values) >= SDK3_CFAR_LENGTH
+
+
 def _own_grouping(line: Line | None) -> bool | None:
     """Whether an SDK 3 line groups peaks in its direction; None for older ones."""
-    if line is None or len(line.values) < SDK3_CFAR_LENGTH:
+    if line is None or not _is_of_sdk3(line):
         return None
     return whole(line, "cfarCfg", SDK3_CFAR_LENGTH - 1) == 1
 

@@ -25,18 +25,23 @@ def busy_cells(empty_place: Sequence[PointRecording]) -> Cells:
     found = [NO_CELLS]
     for recording in empty_place:
         cloud = recording.cloud
-        visits = np.unique(np.column_stack([cloud.frame, _cells(cloud)])[is_moving(cloud)], axis=0)  # once a frame
+        visits = np.unique(np.column_stack([cloud.frame, cells_of(cloud)])[is_moving(cloud)], axis=0)  # once a frame
         cells, frames = np.unique(visits[:, 1:], axis=0, return_counts=True)
         busy = cells[frames >= max(LEAST_FRAMES, LEAST_SHARE * recording.num_frames)]
-        found.append((busy[:, None] + AROUND).reshape(-1, 2))
+        found.append(with_neighbours(busy))
     return np.unique(np.concatenate(found), axis=0)
+
+
+def with_neighbours(cells: Int[np.ndarray, "own 2"]) -> Cells:
+    """Cells and those next to them."""
+    return np.unique((cells[:, None] + AROUND).reshape(-1, 2), axis=0)
 
 
 def without_busy(window: PointRecording, cells: Cells) -> PointRecording:
     """The window without the moving points in these cells."""
     if not len(cells):
         return window
-    own, width = _cells(window.cloud) - cells.min(axis=0), np.ptp(cells, axis=0) + 1
+    own, width = cells_of(window.cloud) - cells.min(axis=0), np.ptp(cells, axis=0) + 1
     is_busy = np.zeros(width, bool)
     is_busy[tuple((cells - cells.min(axis=0)).T)] = True
     inside = ((own >= 0) & (own < width)).all(axis=1)
@@ -44,5 +49,6 @@ def without_busy(window: PointRecording, cells: Cells) -> PointRecording:
     return replace(window, cloud=window.cloud.select(~hidden))
 
 
-def _cells(cloud: PointCloud) -> Int[np.ndarray, "point 2"]:
+def cells_of(cloud: PointCloud) -> Int[np.ndarray, "point 2"]:
+    """The cell of each point."""
     return np.floor(np.stack([cloud.x_m, cloud.y_m], axis=1) / CELL_M).astype(int)

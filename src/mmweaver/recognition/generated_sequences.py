@@ -36,7 +36,7 @@ WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2
 REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
 SKIN_POINTS = 1000
-VERSION = 7  # of how sequences are made; part of what a folder of them must agree in
+VERSION = 8  # of how sequences are made; part of what a folder of them must agree in
 NAME = re.compile(r"(\d{3})_(\d{5,})")  # of the file of a sequence: number of the label, and of the person
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 

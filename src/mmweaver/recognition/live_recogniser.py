@@ -30,6 +30,7 @@ class LiveRecogniser:
         self._start: int | None = 0 if model.settings.gap_frames is None else None  # of the sample
         self._last = -1  # frame with points
         self._given = 0  # windows of the sample
+        self._silent = 0  # first frame of the gap that no window has yet, where there is no sample
         self._points: deque[tuple[int, FramePoints]] = deque()
 
     def push(self, points: FramePoints) -> list[Recognition]:
@@ -40,18 +41,34 @@ class LiveRecogniser:
             self._points.append((now, np.asarray(points, float)))
             self._start = now if self._start is None else self._start
             self._last = now
-        elif gap is not None and self._start is not None and now - self._last > gap:
-            return self.finish()
+        elif gap is not None and (self._start is None or now - self._last > gap):
+            return [*self._end_sample(), *self._silence()]
         return self._complete(now + 1 if gap is None else self._last + 1)
 
     def finish(self) -> list[Recognition]:
         """Ends the sample: a single performance that is shorter than a window is one, too."""
+        return [*self._end_sample(), *self._silence()]
+
+    def _end_sample(self) -> list[Recognition]:
         settings = self.model.settings
         found: list[Recognition] = []
         if settings.has_single_performances and self._start is not None and not self._given:
             found = [self._window(self._start)]
+        if self._start is not None:
+            self._silent = self._last + 1
         self._start, self._given = None if settings.gap_frames is not None else self._frame, 0
         self._points.clear()
+        return found
+
+    def _silence(self) -> list[Recognition]:
+        """Windows of a gap, where one of the labels is an empty place."""
+        found: list[Recognition] = []
+        settings = self.model.settings
+        if settings.gap_frames is None or settings.empty_label is None:
+            return found
+        while self._frame - self._silent >= settings.window_frames:
+            found.append(self._window(self._silent))
+            self._silent += settings.window_frames
         return found
 
     def _complete(self, end: int) -> list[Recognition]:

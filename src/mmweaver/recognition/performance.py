@@ -15,8 +15,9 @@ from mmweaver.core.shapes import Joints
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.profiles import rise
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.timing import natural_s, repeated, schedule
+from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
 from mmweaver.motion.people import MOST_SUBJECTS, person_of
 from mmweaver.recognition.generated_windows import (
     SLOWEST_MPS,
@@ -37,6 +38,7 @@ HIGH_SHARE = 0.25  # of radars of whose mount nothing is known
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
 REST_S = (0.2, 0.8)  # before and after a single performance
+LATEST_EVENT = 0.7  # of the time that a sequence has more than what happens in it takes
 CLOSE_M, FAR_APART_M = 0.2, 0.5  # between the ankles of who stands, and of who stands with the legs apart
 LIFTED_M, LEAST_MOVED_M = 0.06, 0.03
 
@@ -142,9 +144,11 @@ def perform(
 ) -> Performance:
     """The person carries out a sentence: `once`, with a short rest before and after, or for this many seconds.
 
-    Raises InputError where the sentence cannot be carried out there.
+    What ends by itself and cannot be repeated (a fall) happens somewhere in these seconds. Raises InputError where the
+    sentence cannot be carried out there.
     """
-    plan = parse(sentence)
+    plan = parse(sentence) if once else lasting(parse(sentence))
+    is_event = not once and happens_once(plan)
     moves = any(step.moves for step in plan.steps)
     now, person = who.surroundings, person_of(who.subject, plan.person)
     tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
@@ -152,9 +156,10 @@ def perform(
     tempo = who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own)
     usual_amplitude = prior.single_amplitude if once else prior.usual_amplitude
     amplitude = usual_amplitude * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
-    lead_s = 0.0 if once else LEAD_S + float(rng.uniform(0.0, LATEST_S))
-    needed_s = natural_s(plan) if once else lead_s + (seconds + 0.3) * tempo * 1.1
-    scheduled = schedule(plan if once else repeated(plan, needed_s), needed_s)
+    late_s = 0.0 if once else float(rng.uniform(0.0, LATEST_S))
+    lead_s = 0.0 if once or is_event else LEAD_S + late_s
+    needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
+    scheduled = schedule(plan if once or is_event else repeated(plan, needed_s), needed_s)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
     x, y = now.start_m
     distance = float(np.hypot(x, y))
@@ -165,19 +170,23 @@ def perform(
         start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person, may_touch=False,
         heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
     ).pose  # fmt: skip
-    if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
+    if is_event:
+        spare_s = max(seconds * tempo - needed_s, 0.0)
+        before_s = max(late_s / LATEST_S * LATEST_EVENT * spare_s, REST_S[0])
+        pose = _rested(pose, before_s, (seconds + 0.3) * tempo * 1.1)
+    if moves and not is_event and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, float(amplitude))
     if not moves and who.wider_m:
         joints_m = with_feet_apart(joints_m, who.wider_m)
     is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
-    usual_sway = prior.calm_sway_mps if once else prior.held_sway_mps if is_held else prior.sway_mps
+    usual_sway = prior.calm_sway_mps if once or is_event else prior.held_sway_mps if is_held else prior.sway_mps
     sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
     even_s = pose.time_s
-    if moves:
+    if moves and not is_event:
         even_s = slow_at_turns(pose.time_s, joints_m, who.at_turns)
-    elif not once:
+    elif not (once or is_event):
         even_s = lingering(pose.time_s, joints_m, who.linger)
     time_s = time_warped(
         even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
@@ -190,6 +199,16 @@ def perform(
         pose=_rested(pose, float(before_s), float(after_s)),
         lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
     )  # fmt: skip
+
+
+def lasting(plan: MotionPlan) -> MotionPlan:
+    """The plan as something that goes on: what is done in place is done as often as time allows, not three times."""
+    return replace(plan, steps=tuple(step if step.moves else replace(step, count=0) for step in plan.steps))
+
+
+def happens_once(plan: MotionPlan) -> bool:
+    """Whether a plan ends by itself and cannot be repeated, as its end does not lead to its beginning."""
+    return repeated(plan, LONGEST_S) is plan and not all(is_elastic(step) for step in plan.steps)
 
 
 def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:

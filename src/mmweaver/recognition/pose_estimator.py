@@ -41,8 +41,10 @@ class PoseEstimator:
     def estimate(self, cloud: PointCloud, num_frames: int) -> PoseSequence:
         """Poses of frames 0 to num_frames - 1 of a cloud, recorded or generated, in the radar's level axes.
 
-        Raises InputError for fewer frames than a window has.
+        Raises InputError for fewer frames than a window has, and where none has a point.
         """
+        if not len(cloud.frame):
+            raise InputError("no frame has a point, so there is nobody to give poses of")
         joints_m = self.joints_m(point_frames(cloud, num_frames))
         height_m = float(np.median(np.ptp(joints_m[..., 2], axis=1))) + CROWN_OVER_HEAD_M
         return PoseSequence(

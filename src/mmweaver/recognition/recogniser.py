@@ -200,12 +200,13 @@ def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
         if not isinstance(found, dict):
             raise TypeError
         labels, gap, columns = found["labels"], found["gap_frames"], found["columns"]
-        if not labels or not all(isinstance(label, str) for label in labels):
+        empty = found.get("empty_label")  # models of before do not say
+        if not labels or not all(isinstance(label, str) for label in labels) or empty not in (None, *labels):
             raise TypeError
         return RecordingSettings(
             labels=tuple(labels), window_s=float(found["window_s"]), frame_rate_hz=float(found["frame_rate_hz"]),
             gap_frames=None if gap is None else int(gap),
-            columns=None if columns is None else RecordedColumns.of(columns, str(file)),
+            columns=None if columns is None else RecordedColumns.of(columns, str(file)), empty_label=empty,
         )  # fmt: skip
     except (TypeError, KeyError, ValueError) as error:
         if isinstance(error, InputError):

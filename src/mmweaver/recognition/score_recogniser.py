@@ -1,11 +1,14 @@
 """Scores of a recogniser on labelled recordings, and how far these lie from what was generated."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
 from mmweaver.recognition.feature_matching import FAR, MOST_FAR, MOST_OUTSIDE, feature_distances, outside_per_feature
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
@@ -22,8 +25,8 @@ def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any
 
     With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
     against generated ones, without labels), `warning` where the recordings lie outside, `contradictions`: what they
-    show that cannot be if the task is right, and `hardly_distinct`: labels that the radar hardly tells apart. Raises
-    InputError where the recordings give no window.
+    show that cannot be if the task is right, `left_out`: what moves all the time in one place and was left out, and
+    `hardly_distinct`: labels that the radar hardly tells apart. Raises InputError where the recordings give no window.
     """
     found = read_task_recordings(recordings, model.settings)
     return score_recordings(model, found)
@@ -35,6 +38,7 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     windows = [window for own in cut for window in own]
     if not windows:
         raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
+    model, left_out = without_constant_movers(model, recordings)
     features = model.features(windows)
     votes, outside = model.votes(features), model.is_outside(features)
     evaluation = Evaluation(
@@ -53,8 +57,18 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     return {
         **report(evaluation), "chance": round(1 / len(model.labels), 4),
         "generated_on_generated": model.meta.get("generated_on_generated"), "distance": far, "warning": warning(far),
-        "contradictions": model.contradictions(recordings), "hardly_distinct": hardly_distinct(model),
+        "contradictions": model.contradictions(recordings), "left_out": left_out,
+        "hardly_distinct": hardly_distinct(model),
     }  # fmt: skip
+
+
+def without_constant_movers(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
+    """The recogniser without what moves all the time in one place of these recordings, and what to say of it."""
+    cells = constant_movers(recordings, model.points.facts)
+    points = model.points.without(cells)
+    if len(points.busy) == len(model.points.busy):
+        return model, []
+    return replace(model, points=points), [left_out_line(place) for place in places_m(cells)]
 
 
 def hardly_distinct(model: Recogniser) -> list[str]:

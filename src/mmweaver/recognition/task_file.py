@@ -30,7 +30,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.radar_options import split_radar
-from mmweaver.motion.worded_activities import activities_of
+from mmweaver.motion.worded_activities import NOBODY, activities_of
 from mmweaver.recognition.recorded_columns import RecordedColumns
 
 TABLES = {
@@ -60,6 +60,7 @@ class RecordingSettings:
     frame_rate_hz: float
     gap_frames: int | None = None  # more frames without points end a sample; None: recordings are never cut
     columns: RecordedColumns | None = None  # of pts in .npz recordings; None: as `read_points` finds
+    empty_label: str | None = None  # of an empty place, the sentence `nobody`; None: no label is
 
     @property
     def window_frames(self) -> int:
@@ -112,6 +113,7 @@ def read_task(file: Path | str) -> RecognitionTask:
             frame_rate_hz=rate_hz,
             gap_frames=None if gap is None else int(gap),
             columns=None if columns is None else RecordedColumns.of(columns, str(file)),
+            empty_label=next((label for label, said in activities.items() if said == (NOBODY,)), None),
         ),
         mount=Mount(
             height_m=_number(mount, "height_m", HEIGHT_M, file), tilt_deg=_number(mount, "tilt_deg", TILT_DEG, file),

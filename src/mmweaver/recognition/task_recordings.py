@@ -16,6 +16,9 @@ from mmweaver.recognition.recorded_columns import RecordedColumns
 from mmweaver.recognition.task_file import RecordingSettings
 
 SUFFIXES = (".npz", ".dat", ".csv", ".txt", ".bin")
+POINTS_FILE, SIGNAL_FILE = "points.npz", "radar.npz"  # of a result folder of mmweaver generate
+RESULT_FILES = (SIGNAL_FILE, "pose.npz")
+SAME_RATE = 0.02
 MOST_FRAMES = 10_000_000
 BREAK_FRAMES = 100  # between the takes of one file
 
@@ -32,7 +35,10 @@ def read_task_recordings(
     check_exists(place, "a folder of recordings")
     files = [place]
     if place.is_dir():
-        files = sorted(path for path in place.rglob("*") if path.suffix.lower() in SUFFIXES and path.is_file())
+        files = sorted(
+            path for path in place.rglob("*")
+            if path.suffix.lower() in SUFFIXES and path.is_file() and not _is_beside_points(path)
+        )  # fmt: skip
     if not files:
         raise InputError(f"{place} holds no recordings; {', '.join(SUFFIXES)} are read")
     folder = place if place.is_dir() else place.parent
@@ -44,10 +50,11 @@ def read_task_recordings(
 
 def read_task_recording(file: Path, settings: RecordingSettings, label: str = "") -> PointRecording:
     """One recording; frames without points count. Raises InputError for a file that cannot be read."""
-    cloud, frames = _cloud(file, settings.columns)
-    return PointRecording(
-        name=file.stem, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label
-    )
+    if file.is_dir() and (file / POINTS_FILE).is_file():
+        file = file / POINTS_FILE
+    cloud, frames = _cloud(file, settings)
+    name = file.parent.name if file.name == POINTS_FILE else file.stem
+    return PointRecording(name=name, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label)
 
 
 def label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
@@ -61,24 +68,57 @@ def label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
     return found[0]
 
 
-def _cloud(file: Path, columns: RecordedColumns | None) -> tuple[PointCloud, int]:
+def _is_beside_points(file: Path) -> bool:
+    """Whether a file is another one of a result folder that has points."""
+    return file.name in RESULT_FILES and (file.parent / POINTS_FILE).is_file()
+
+
+def _cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int]:
+    columns = settings.columns
+    if file.is_dir() and not any(file.glob("*.bin")):
+        raise InputError(
+            f"{file} holds no {POINTS_FILE}; give a result folder of mmweaver generate, or one recording"
+            f" ({', '.join(SUFFIXES)})"
+        )
     if file.suffix.lower() == ".npz" and columns is not None:
         held = read_npz(file, only=("frame", "pts", "num_frames", "x_m"))
         if "pts" in held or "x_m" not in held:  # else it names its columns itself, as `mmweaver points` writes them
-            return _from_columns(held, file, columns)
+            return _from_columns(held, file, columns, settings.window_frames)
     if file.suffix.lower() == ".dat":
         log = read_ti_uart(file)
         return log.points, max(len(log.frame_number), 1)
     cloud = read_points(file)
-    return cloud, _num_frames(cloud.frame)
+    frames = max(_num_frames(cloud.frame), _frames_beside(file, settings))
+    return cloud, frames or settings.window_frames  # without any frame it lasts a window, for all that is known
+
+
+def _frames_beside(file: Path, settings: RecordingSettings) -> int:
+    """The number of frames of the signal in the same result folder; 0 where there is none.
+
+    Raises InputError where it has another frame rate than the recogniser's recordings.
+    """
+    signal = file.with_name(SIGNAL_FILE)
+    if file.name != POINTS_FILE or not signal.is_file():
+        return 0
+    time_s = read_npz(signal, only=("frame_time_s",)).numbers("frame_time_s", ("frame",))
+    rate_hz = (len(time_s) - 1) / (time_s[-1] - time_s[0]) if len(time_s) > 1 else settings.frame_rate_hz
+    if abs(rate_hz / settings.frame_rate_hz - 1) > SAME_RATE:
+        raise InputError(
+            f"{file.parent} has {rate_hz:.3g} frames a second, the recogniser's recordings"
+            f" {settings.frame_rate_hz:.3g}; generate it at that rate (--fps)"
+        )
+    return len(time_s)
 
 
 def _num_frames(frame: np.ndarray) -> int:
     return int(frame[-1]) + 1 if len(frame) else 0
 
 
-def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tuple[PointCloud, int]:
-    """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points."""
+def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns, window_frames: int) -> tuple[PointCloud, int]:
+    """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points.
+
+    Without points and `num_frames` it lasts a window, for all that is known.
+    """
     frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
     pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
     frame = _takes_in_turn(frame)
@@ -88,7 +128,7 @@ def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tupl
     frame = frame - frame[0] if len(frame) else frame
     if _num_frames(frame) > MOST_FRAMES:
         raise InputError(f"{file} has frame numbers up to {frame[-1]}; leave it out")
-    return columns.cloud(frame, pts, str(file)), _num_frames(frame)
+    return columns.cloud(frame, pts, str(file)), _num_frames(frame) or window_frames
 
 
 def _takes_in_turn(frame: np.ndarray) -> np.ndarray:
@@ -115,16 +155,27 @@ def windows_of(
 ) -> list[PointRecording]:
     """Consecutive windows of each sample; one that is shorter than a window is a window with empty frames at its end.
 
-    Where recordings are never cut, what is left over at the end is dropped. A recording without any point, of an empty
-    place, is one sample, unless samples are single performances. `step_s`: every so often a window begins.
+    Where recordings are never cut, what is left over at the end is dropped. Where one of the labels is an empty place,
+    gaps are samples of it, but for those of recordings of other labels; else a recording without any point is one
+    sample, unless samples are single performances. `step_s`: every so often a window begins.
     """
     windows: list[PointRecording] = []
     samples = samples_of(recording, settings.gap_frames)
-    if not samples and not settings.has_single_performances:
-        samples = [recording]
     for sample in samples:
         whole = sample.windows(settings.window_s, step_s)
         if not whole and settings.has_single_performances:
             whole = [sample.part(0, settings.window_frames)]
         windows += whole
-    return windows
+    if settings.empty_label is not None and recording.label in ("", settings.empty_label):
+        silent = _silences(recording, samples)
+    else:
+        silent = [] if samples or settings.has_single_performances else [recording]
+    windows += [window for one in silent for window in one.windows(settings.window_s, step_s)]
+    return sorted(windows, key=lambda window: window.first_frame)
+
+
+def _silences(recording: PointRecording, samples: list[PointRecording]) -> list[PointRecording]:
+    """What lies between samples, before the first and after the last, without points."""
+    begins = [0, *(one.first_frame - recording.first_frame + one.num_frames for one in samples)]
+    ends = [*(one.first_frame - recording.first_frame for one in samples), recording.num_frames]
+    return [recording.part(begin, end - begin) for begin, end in zip(begins, ends, strict=True) if end > begin]

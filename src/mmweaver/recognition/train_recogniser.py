@@ -13,7 +13,8 @@ from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
-from mmweaver.recognition.busy_places import busy_cells
+from mmweaver.recognition.busy_places import NO_CELLS, Cells, busy_cells
+from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
 from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
@@ -73,19 +74,22 @@ def train_recogniser(
     began_s = time.process_time()
     tell = listener or (lambda *_: None)
     background = [] if task.background is None else [read_task_recording(task.background, task.recordings)]
-    unlabelled = unlabelled_windows(task)
+    unlabelled = unlabelled_recordings(task)
+    constant = constant_movers(unlabelled, RadarFacts.of(task))
     taught = [] if labelled is None else labelled_windows(labelled, task)
     sequences = generate_sequences(
         recipe, options.sequences, out / SEQUENCE_FOLDER, lambda done, of: tell("sequences", done, of)
     )
-    made = generated_windows(sequences, task, options, background)
+    made = generated_windows(sequences, task, options, background, constant)
     tell("trees", 0, 1)
-    model = fitted(made, unlabelled, task, options, taught)
+    seen = [window for recording in unlabelled for window in windows_of(recording, task.recordings)]
+    model = fitted(made, seen, task, options, taught)
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
         "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
         "moving_points_a_frame": moving_points_of(sequences),
         "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
+        "left_out": [left_out_line(place) for place in places_m(constant)],
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
     model = replace(model, meta={**note, **model.meta})
@@ -117,12 +121,9 @@ def task_values(task: RecognitionTask) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def unlabelled_windows(task: RecognitionTask) -> list[PointRecording]:
-    """The windows of the task's unlabelled recordings; none where it names none."""
-    if task.unlabelled is None:
-        return []
-    recordings = read_task_recordings(task.unlabelled, task.recordings, labelled=False)
-    return [window for recording in recordings for window in windows_of(recording, task.recordings)]
+def unlabelled_recordings(task: RecognitionTask) -> list[PointRecording]:
+    """The task's unlabelled recordings; none where it names none."""
+    return [] if task.unlabelled is None else read_task_recordings(task.unlabelled, task.recordings, labelled=False)
 
 
 def labelled_windows(folder: Path | str, task: RecognitionTask) -> list[PointRecording]:
@@ -136,11 +137,12 @@ def labelled_windows(folder: Path | str, task: RecognitionTask) -> list[PointRec
 
 def generated_windows(
     sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
-    background: Sequence[PointRecording] = (),
+    background: Sequence[PointRecording] = (), constant: Cells = NO_CELLS,
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
-    Points that do not count are left out. Raises InputError where an activity gave no window.
+    Points that do not count are left out, also those that move in the cells `constant`. Raises InputError where an
+    activity gave no window.
     """
     shows_room = not (task.firmware.static_removal or background)
     how = WindowAugmentation(
@@ -170,7 +172,7 @@ def generated_windows(
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
-    points = WindowFilter(busy=busy_cells(background), facts=RadarFacts.of(task))
+    points = WindowFilter(busy=busy_cells(background), facts=RadarFacts.of(task)).without(constant)
     everything = [points(window) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(

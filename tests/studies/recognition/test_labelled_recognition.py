@@ -43,7 +43,8 @@ def test_only_what_may_train_does_and_the_others_are_tested(monkeypatch: pytest.
         features=np.array([[0.0], [1.0]] * 9), label=np.array([0, 1] * 9), person=np.arange(18),
         is_copy=np.zeros(18, bool), names=("one",),
     )  # fmt: skip
-    rows = curve(made, features, labels, owner, kinds, may_train)
+    rows = curve(made, features, labels, owner, kinds, may_train, seeds=(3, 4))
+    assert [row["seeds"] for row in rows][:2] == [[3], [3, 4]]
     assert [(row["real_recordings_each"], row["generated"]) for row in rows][-2:] == [(5, False), (5, True)]
     assert np.mean(rows[0]["scores"]) == 1.0
     assert [np.mean(row["scores"]) for row in rows if not row["generated"]] == [0.0, 0.0]
