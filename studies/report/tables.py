@@ -449,6 +449,8 @@ ROOMS_WITHIN = MetricTable(
     columns=(
         ("row", "{label}"), ("physics", "{method}"), ("median of rooms", "{metric:number}"),
         ("rooms within what was recorded", "{metric.within} of {metric.of}"),
+        ("perfect simulator, range of 2 / 3 recordings",
+         "{metric.oracle.of_2_recordings:.1f} / {metric.oracle.of_3_recordings:.1f} of {metric.of}"),
     ),
     lines=HALO_ROWS,
 )  # fmt: skip
