@@ -7,11 +7,13 @@ The recogniser (`mmweaver train activity`) was trained in other rooms. For each 
 fine-tuned, once on recordings of the other rooms alone and once with generated ones of this room added, and evaluated
 on the simulated ground truth of the room. All methods generate the same motions, placed in the room as its photo shows
 it; they differ in the surroundings. `true_room`, the simulator in the true room, is the oracle. Convolutions are
-frozen, and every head is trained for the same number of steps, with one seed per room.
+frozen, and every head is trained for the same number of steps, with one seed per room. Recordings are the data set's,
+with all paths, clutter and a typical board for each room; generated ones have another typical board, as `generate`
+makes them, with a background recording what it shows of the room's own, and in `true_room` that one.
 
-With `--recordings N` the head is initialised anew and has N recordings of other rooms, as somebody has who recorded
-few. Finished rooms are cached in `--runs`, and the same command continues. Maps of the other rooms are read from the
-folder of the recogniser, where its training left them.
+A second head begins anew and has `--recordings` recordings of other rooms, as somebody has who recorded few (results
+`recordings_N`). Finished rooms are cached in `--runs`, and the same command continues. Maps of the other rooms are read
+from the folder of the recogniser, where its training left them.
 """
 
 import argparse
@@ -26,10 +28,12 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD, typical_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.seeding import stream
-from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
+from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, DatasetPlan, RoomSpec, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
@@ -40,12 +44,13 @@ from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
+from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.activity_examples import activity_examples, compute_log_maps
 from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
 from studies.manifest import StudyRun
-from studies.network.learned_scores import OTHER, empty_room, interval
+from studies.network.learned_scores import OTHER, board_seen_in, empty_room, interval
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import load_paper, paper_field
 from studies.result_rows import complete_rows, dataset_of
@@ -64,7 +69,7 @@ class UnseenRoom:
     room: StoredRoom
     other: StoredRoom
     generic: StoredRoom
-    plan_seed: int
+    plan: dict[str, Any]  # of the data set
 
     @property
     def name(self) -> str:
@@ -76,7 +81,25 @@ class UnseenRoom:
 
     def true_scene(self, room: StoredRoom) -> Scene:
         """The ground truth scene of a stored room."""
-        return make_room(room.kind, room.layout, self.plan_seed).scene(room.lighting)
+        return make_room(room.kind, room.layout, self.plan["seed"]).scene(room.lighting)
+
+    @cached_property
+    def own_board(self) -> Board:
+        """The board that recorded in the room."""
+        room, plan = self.room, self.plan
+        spec = RoomSpec(kind=room.kind, layout=room.layout, seed=plan["seed"], lighting=room.lighting, sequences=())
+        whole = DatasetPlan(
+            kinds=(room.kind,), lightings=(room.lighting,), seed=plan["seed"], board=plan.get("board", "ideal")
+        )
+        return whole.board_of(spec, room.config)
+
+    @cached_property
+    def other_board(self) -> Board:
+        """A board sampled by a seed, as signals are generated; ideal where recordings are."""
+        if self.own_board.is_ideal:
+            return IDEAL_BOARD
+        number = int(stream(self.plan["seed"], "activity gain board", self.name).integers(2**31))
+        return typical_board(self.room.config, number)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,11 +133,17 @@ def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSe
     return motions
 
 
-def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) -> Method:
-    """The simulator in some room."""
+def simulated_in(
+    scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int, board_of: Callable[[UnseenRoom], Board]
+) -> Method:
+    """The simulator in some room, with some board."""
 
     def method(room: UnseenRoom) -> Maker:
-        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed, propagation=ALL_PATHS)
+        scene = scene_of(room)
+        simulator = Simulator(
+            scene, room.room.config, micro_seed=seed_of_room(scene) + micro_seed, propagation=ALL_PATHS,
+            board=board_of(room),
+        )  # fmt: skip
         num_frames = room.room.joints_m.shape[1]
 
         def make(pose: PoseSequence, seed: int) -> RadarCube:
@@ -135,8 +164,11 @@ def with_generated(
 
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
-        empty = empty_room(room.true_scene(room.room), config, num_frames, OTHER) if recorded else None
-        learned = LearnedRoom(network, scene_of(room), config, room_seed=1, background=empty)
+        empty, board = None, room.other_board
+        if recorded:
+            empty = empty_room(room.true_scene(room.room), config, num_frames, OTHER, room.own_board)
+            board = board_seen_in(empty, room.own_board)
+        learned = LearnedRoom(network, scene_of(room), config, room_seed=1, background=empty, board=board)
         return lambda pose, seed: learned.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
 
     return method
@@ -169,7 +201,7 @@ def unseen_rooms(
     found = []
     for room in chosen[:most]:
         others = [other for other in chosen if other.kind != room.kind] or [generic]
-        found.append(UnseenRoom(room, others[room.layout % len(others)], generic, plan["seed"]))
+        found.append(UnseenRoom(room, others[room.layout % len(others)], generic, plan))
     return found
 
 
@@ -230,46 +262,58 @@ def _sampled(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[
     return examples.frames[chosen], examples.label[chosen]
 
 
-Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
+Found = dict[str, dict[str, Any]]  # {study: {method: accuracy and log loss, of a room or of each room (room, 2)}}
 
 
 def gained(
-    study: GainStudy, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
-) -> Found:
-    """What the data of each method are worth in one room, and the head fine-tuned without generated data."""
-    network = study.network
+    studies: dict[str, GainStudy], room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int,
+    split: str = "test_room",
+) -> Found:  # fmt: skip
+    """What the data of each method are worth in one room, and the head fine-tuned without generated data.
+
+    The studies share their convolutions, so that signals are made and seen once.
+    """
+    network = next(iter(studies.values())).network
     indices = [index for index, name in enumerate(room.room.split) if name == split]
     names = [room.room.activity[index] for index in indices]
     test = labelled(network, (room.room.cube(index) for index in indices), names)
     motions = motions_in(room, each, seed=0)
-    found = {ALONE: list(evaluated(study, None, test, seed))}
+    found: Found = {key: {ALONE: list(evaluated(study, None, test, seed))} for key, study in studies.items()}
     for name, method in methods.items():
         make = method(room)
         cubes = (make(pose, number) for number, (_, pose) in enumerate(motions))
         own = labelled(network, cubes, [activity for activity, _ in motions])
-        found[name] = list(evaluated(study, own, test, seed))
+        for key, study in studies.items():
+            found[key][name] = list(evaluated(study, own, test, seed))
     return found
 
 
 def gains(
-    study: GainStudy,
+    studies: dict[str, GainStudy],
     rooms: list[UnseenRoom],
     methods: dict[str, Method],
     *,
     each: int,
     cache: RoomCache,
     split: str = "test_room",
-    after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
-) -> dict[str, np.ndarray]:
-    """{method: accuracy and log loss in each room, (room, 2)}; `after` is called with the results so far after each
-    room."""
-    found: dict[str, list[list[float]]] = {}
+    after: Callable[[Found], object] = lambda found: None,
+) -> Found:
+    """Accuracy and log loss in each room; `after` is called with the results so far after each room."""
+    rows: list[Found] = []
     for seed, room in enumerate(rooms):
-        one: Found = cache.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
-        for name, values in one.items():
-            found.setdefault(name, []).append(values)
-        after({name: np.array(values) for name, values in found.items()})
-    return {name: np.array(values) for name, values in found.items()}
+        rows.append(
+            cache.figures(room.name, partial(gained, studies, room, methods, each=each, seed=seed, split=split))
+        )
+        after(_together(rows))
+    return _together(rows)
+
+
+def _together(rooms: list[Found]) -> Found:
+    """Values of all rooms, (room, 2)."""
+    return {
+        key: {name: np.array([room[key][name] for room in rooms]) for name in methods}
+        for key, methods in rooms[0].items()
+    }
 
 
 def rows_of(found: dict[str, np.ndarray], rooms: list[str]) -> list[dict[str, Any]]:
@@ -290,15 +334,19 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[str]) -> list[dict[str, An
     return rows
 
 
-def gain_study(recogniser_file: Path, data: Path, recordings: int | None) -> GainStudy:
-    """The recogniser and its data of other rooms: all that it was trained on, or so many recordings."""
-    if recordings is None:
-        examples = activity_examples(data, TRAIN_SPLITS, recogniser_file.parent / TRAIN_MAPS, keep=False)
-    else:
-        examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
+def gain_studies(recogniser_file: Path, data: Path, recordings: int) -> dict[str, GainStudy]:
+    """By the name of its result: the recogniser with all recordings of other rooms that it was trained on, and with so
+    many and a head that begins anew.
+    """
+    examples = activity_examples(data, TRAIN_SPLITS, recogniser_file.parent / TRAIN_MAPS, keep=False)
     recogniser = load_activity(recogniser_file, examples.config)
-    base = Labelled(frames=seen(recogniser, examples.doppler, examples.angle), label=examples.label)
-    return GainStudy(recogniser, base, begins_anew=recordings is not None)
+    whole = Labelled(frames=seen(recogniser, examples.doppler, examples.angle), label=examples.label)
+    few = torch.from_numpy(few_of(examples.label.numpy(), recordings))
+    part = Labelled(frames=whole.frames[few], label=whole.label[few])
+    return {
+        "test_room": GainStudy(recogniser, whole),
+        f"recordings_{recordings}": GainStudy(recogniser, part, begins_anew=True),
+    }
 
 
 def few_of(label: np.ndarray, count: int) -> np.ndarray:
@@ -314,13 +362,16 @@ def few_of(label: np.ndarray, count: int) -> np.ndarray:
 
 def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
     """The methods whose data is compared."""
+    physics = partial(simulated_in, board_of=lambda room: room.other_board)
     methods: dict[str, Method] = {
         "weaver": with_generated(weaver, lambda room: room.photographed),
         "weaver_with_background": with_generated(weaver, lambda room: room.photographed, recorded=True),
         "wrong_photo": with_generated(weaver, lambda room: reconstruct(room.other.photo)),
-        "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
-        "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
-        "true_room": simulated_in(lambda room: room.true_scene(room.room), micro_seed=0),
+        "generic_room_physics": physics(lambda room: room.true_scene(room.generic), micro_seed=1),
+        "physics_in_photographed_room": physics(lambda room: room.photographed, micro_seed=1),
+        "true_room": simulated_in(
+            lambda room: room.true_scene(room.room), micro_seed=0, board_of=lambda room: room.own_board
+        ),
     }
     return methods if paper is None else {**methods, "paper": paper_in(paper)}
 
@@ -332,7 +383,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--rooms", type=int, default=40)
     parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
-    parser.add_argument("--recordings", type=int, help="of other rooms, for a head that begins anew")
+    parser.add_argument("--recordings", type=int, default=60, help="of other rooms, for a head that begins anew")
     parser.add_argument("--only", nargs="*", help="methods (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
 
@@ -342,28 +393,29 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan, weights = read_plan(options.data), options.weights or shipped_weights()
     rooms = unseen_rooms(read_rooms(options.data), plan, options.rooms)
     weaver, card = load_weights(weights)
-    study = gain_study(options.recogniser, options.data, options.recordings)
+    studies = gain_studies(options.recogniser, options.data, options.recordings)
     methods = methods_of(weaver, options.paper)
     methods = {name: methods[name] for name in options.only or methods}
-    about = {
-        "weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS,
-        "recordings": options.recordings,
-    }  # fmt: skip
+    about = {"weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS}
     files = [digest(file) for file in (weights, options.recogniser, options.paper) if file is not None]
-    cache = RoomCache(options.runs, {**about, "files": files, "methods": list(methods)})
-    name = "test_room" if options.recordings is None else f"recordings_{options.recordings}"
     names = [room.name for room in rooms]
+    cache = RoomCache(
+        options.runs, {**about, "recordings": options.recordings, "files": files, "methods": list(methods)}
+    )
 
-    def write(found: dict[str, np.ndarray]) -> None:
-        rows = complete_rows(
-            rows_of(found, names), dataset={**dataset_of(options.data), "split": "test_room"}, baselines=(ALONE,),
-            oracles=("true_room",), seeds=list(range(len(found[ALONE]))),
-            unknown={"seconds": "see the manifest: all rows together"},
-        )  # fmt: skip
-        run.write("activity_gain", name, config=about, rows=rows)
-        room = names[len(found[ALONE]) - 1]
-        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)
+    def write(found: Found) -> None:
+        for key, values in found.items():
+            rows = complete_rows(
+                rows_of(values, names), dataset={**dataset_of(options.data), "split": "test_room"}, baselines=(ALONE,),
+                oracles=("true_room",), seeds=list(range(len(values[ALONE]))),
+                unknown={"seconds": "see the manifest: all rows together"},
+            )  # fmt: skip
+            recordings = len(studies[key].base.label)
+            run.write("activity_gain", key, config={**about, "recordings": recordings}, rows=rows)
+            room = names[len(values[ALONE]) - 1]
+            print(f"{key} {room:18}", *(f"{name} {one[-1, 0]:.2f}" for name, one in values.items()), flush=True)
 
-    for row in rows_of(gains(study, rooms, methods, each=options.each, cache=cache, after=write), names):
-        values = (f"{name} {m['value']:.3f} {m['interval_95']}" for name, m in row["metrics"].items())
-        print(f"{row['method']:30}", *values)
+    for key, found in gains(studies, rooms, methods, each=options.each, cache=cache, after=write).items():
+        for row in rows_of(found, names):
+            values = (f"{name} {m['value']:.3f} {m['interval_95']}" for name, m in row["metrics"].items())
+            print(f"{key} {row['method']:30}", *values)

@@ -25,6 +25,9 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.calibration.background_board import BackgroundBoard
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube, Scene
@@ -104,24 +107,32 @@ class Case:
 
 
 Method = Callable[[Case], RadarCube]
+BoardOf = Callable[[Case], Board]
 
 
-def true_cube(room: StoredRoom, index: int, seed_of_plan: int) -> RadarCube:
+def ideal_board(case: Case) -> Board:
+    """The board of all scores: errors of an unknown one would add to what is asked of the paths."""
+    return IDEAL_BOARD
+
+
+def true_cube(room: StoredRoom, index: int, seed_of_plan: int, board: Board = IDEAL_BOARD) -> RadarCube:
     """One sequence simulated anew, with all paths: what the data set keeps may be geometry of first order."""
     case = Case(room, index, room, seed_of_plan, room.lighting)
-    return _simulated(case, case.true_scene, 0, ALL_PATHS, subject=None, noise_seed=None).cube
+    return _simulated(case, case.true_scene, 0, ALL_PATHS, board, subject=None, noise_seed=None).cube
 
 
 def simulated(
-    scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0, propagation: Propagation = ALL_PATHS
-) -> Method:
+    scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0, propagation: Propagation = ALL_PATHS,
+    board_of: BoardOf = ideal_board,
+) -> Method:  # fmt: skip
     """The simulator in some room, always with another noise seed than the ground truth."""
 
     def method(case: Case) -> RadarCube:
         spec = case.spec
         made = _simulated(
-            case, scene_of(case), micro_seed, propagation, subject=spec.person + skin, noise_seed=spec.seed + OTHER
-        )
+            case, scene_of(case), micro_seed, propagation, board_of(case), subject=spec.person + skin,
+            noise_seed=spec.seed + OTHER,
+        )  # fmt: skip
         if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube
@@ -130,31 +141,45 @@ def simulated(
 
 
 def _simulated(
-    case: Case, scene: Scene, micro_seed: int, propagation: Propagation, *, subject: int | None, noise_seed: int | None
-) -> GeneratedSequence:
+    case: Case, scene: Scene, micro_seed: int, propagation: Propagation, board: Board, *, subject: int | None,
+    noise_seed: int | None,
+) -> GeneratedSequence:  # fmt: skip
     config, frames = case.room.config, len(case.joints[0])
-    simulator = Simulator(scene, config, micro_seed=seed_of_room(scene) + micro_seed, propagation=propagation)
+    seed = seed_of_room(scene) + micro_seed
+    simulator = Simulator(scene, config, micro_seed=seed, propagation=propagation, board=board)
     return generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
 
 
-def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
-    """The network with a photo, and with `recorded` as many frames of background recording as the sequence has."""
+def learned(
+    network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False,
+    board_of: BoardOf = ideal_board,
+) -> Method:  # fmt: skip
+    """The network with a photo, and with `recorded` as many frames of background recording as the sequence has.
+
+    `board_of`: the board whose errors the signal has; with `recorded` that of the recording, as far as it shows it.
+    """
 
     def method(case: Case) -> RadarCube:
-        config = case.room.config
-        empty = None
+        config, board, empty = case.room.config, board_of(case), None
         if recorded:
-            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
-        learned_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, background=empty)
+            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER, board)
+            board = board_seen_in(empty, board)
+        room = reconstruct(room_of(case).photo)
+        learned_room = LearnedRoom(network, room, config, room_seed=1, background=empty, board=board)
         return learned_room.cube([case.motion], seed=case.index)
 
     return method
 
 
-def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
+def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int, board: Board = IDEAL_BOARD) -> RadarCube:
     """The radar's recording of a room with nobody in it, with noise."""
-    simulator = Simulator(scene, config, micro_seed=seed_of_room(scene), propagation=ALL_PATHS)
+    simulator = Simulator(scene, config, micro_seed=seed_of_room(scene), propagation=ALL_PATHS, board=board)
     return radar_cube(simulator.run((), num_frames=num_frames, seed=seed).adc)
+
+
+def board_seen_in(background: RadarCube, recorded_by: Board) -> Board:
+    """What `generate` takes for the board of a background recording; an ideal one is taken to be known."""
+    return recorded_by if recorded_by.is_ideal else BackgroundBoard().of(background)
 
 
 def nearest(train: list[StoredRoom], seed_of_plan: int) -> Method:

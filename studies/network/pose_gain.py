@@ -80,7 +80,7 @@ def generated(data: RoomSequences, rooms: Sequence[int], runs: Path) -> list[Pos
     plan, found = read_plan(data.folder), []
     for number in rooms:
         stored = data.rooms[number]
-        room = UnseenRoom(stored, stored, stored, int(plan["seed"]))
+        room = UnseenRoom(stored, stored, stored, plan)
         files = sorted(runs.glob(f"generated_{room.name}_*.npz"))
         if (runs / f"generated_{room.name}.done").is_file():
             found += [read_kept(file) for file in files]

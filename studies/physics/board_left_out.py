@@ -32,6 +32,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.stats import betabinom
 
 from mmweaver.comparison.compare_signals import FEATURES
 from mmweaver.comparison.measured_feature import CannotSeeError
@@ -77,6 +78,7 @@ RANGES = {
     "behind_body_near": (-25.0, -17.6), "behind_body_far": (-30.0, -26.0), "clutter_peak_over_median": (11.0, 16.0),
     "plane_wave_share": (0.50, 0.81), "antenna_spread": (2.3, 4.5),
 }  # fmt: skip
+RECORDED_TIMES = (2, 3)  # so many recordings a range spans: of the first row three are known, of others the ends alone
 Units = np.ndarray  # (unit, feature), nan where a unit does not show one
 
 
@@ -261,8 +263,25 @@ def room_rows(each_room: dict[str, Units]) -> dict[str, Any]:
             "value": _middle(values), "unit": FEATURES[names.index(name)].unit, "rooms": each, "within": within,
             "of": int(np.isfinite(values).sum()), "definition": FEATURES[names.index(name)].definition,
             "recorded": [low, high], "baseline": {"recorded_middle": (low + high) / 2},
+            "oracle": expected_within(int(np.isfinite(values).sum())),
         }  # fmt: skip
     return metrics
+
+
+def perfectly_within(recordings: int, rooms: int) -> np.ndarray:
+    """Probability of 0 to `rooms` rooms within the range of so many recordings, all drawn from one distribution.
+
+    The range covers a share of it that is Beta(recordings - 1, 2); all rooms share the range.
+    """
+    return betabinom.pmf(np.arange(rooms + 1), rooms, recordings - 1, 2)
+
+
+def expected_within(rooms: int) -> dict[str, float]:
+    """How many rooms of a simulator that nobody could tell from recordings would be within, in the mean."""
+    return {
+        f"of_{times}_recordings": round(float(perfectly_within(times, rooms) @ np.arange(rooms + 1)), 2)
+        for times in RECORDED_TIMES
+    }
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -343,6 +343,7 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
         "baseline_random_on_body": partial(surface_baseline, pieces, setup, mean),
         "baseline_random_real_frame": partial(random_frame_baseline, pieces, validate),
         "oracle_neighbouring_frame": partial(neighbour_oracle, pieces),
+        "oracle_same_pose_again": partial(same_pose_oracle, pieces, test),
     }
     for name, variant in VARIANTS.items():
         methods[name] = partial(_simulated, pieces, setup, variant)

@@ -222,12 +222,11 @@ def _gain(source: str) -> RowTable:
     )  # fmt: skip
 
 
-REAL_OR_SIMULATED = RowTable(
-    sources=("real_or_simulated/test_room",),
-    columns=(
-        ("method", "{method}"), ("accuracy of the classifier", "{metrics.accuracy:percent_interval.1}"),
-        ("indistinguishable", "{metrics.accuracy.oracle.indistinguishable:percent.0}"),
-    ),
+REAL_OR_SIMULATED = PivotTable(
+    sources=("real_or_simulated/*",),
+    rows=(("method", "{method}"), ("indistinguishable", "{metrics.accuracy.oracle.indistinguishable:percent.0}")),
+    across="{boards}", cell_template="{metrics.accuracy:percent_interval.1}",
+    head_template="accuracy of the classifier, {across} boards",
 )  # fmt: skip
 COST = MatrixTable(
     sources=("benchmark/weaver",), corner="what", prefixes=(("measured", ""),),

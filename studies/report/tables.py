@@ -211,10 +211,11 @@ MARS_COLUMNS = (
 )  # fmt: skip
 MARS_ROWS = (
     "baseline_centroid", "baseline_random_on_body", "baseline_random_real_frame", "oracle_neighbouring_frame",
-    "simulator", "arms_and_legs_like_the_trunk", "body_6_db_brighter", "body_6_db_fainter", "joint_noise_1_cm",
-    "joints_not_smoothed", "no_floor_bounce", "no_micro_motion", "no_phase_noise", "no_thermal_noise", "our_cfar",
-    "peak_grouping", "points_at_the_joints", "skin_of_200_points", "skin_of_3200_points", "skin_of_lambert",
-    "skin_slope_0_20", "skin_without_diffuse_part", "wall_at_3_m_behind", "wall_at_3_m_behind_no_ghosts",
+    "oracle_same_pose_again", "simulator", "arms_and_legs_like_the_trunk", "body_6_db_brighter", "body_6_db_fainter",
+    "joint_noise_1_cm", "joints_not_smoothed", "no_floor_bounce", "no_micro_motion", "no_phase_noise",
+    "no_thermal_noise", "our_cfar", "peak_grouping", "points_at_the_joints", "skin_of_200_points",
+    "skin_of_3200_points", "skin_of_lambert", "skin_slope_0_20", "skin_without_diffuse_part", "wall_at_3_m_behind",
+    "wall_at_3_m_behind_no_ghosts",
 )  # fmt: skip
 MARS = RowTable(
     sources=("mars/*",), key="record.method", labels={name: name.replace("_", " ") for name in MARS_ROWS},
@@ -448,6 +449,8 @@ ROOMS_WITHIN = MetricTable(
     columns=(
         ("row", "{label}"), ("physics", "{method}"), ("median of rooms", "{metric:number}"),
         ("rooms within what was recorded", "{metric.within} of {metric.of}"),
+        ("perfect simulator, range of 2 / 3 recordings",
+         "{metric.oracle.of_2_recordings:.1f} / {metric.oracle.of_3_recordings:.1f} of {metric.of}"),
     ),
     lines=HALO_ROWS,
 )  # fmt: skip

@@ -1,5 +1,6 @@
 """The gain study on a tiny data set: motions in the photographed room, the same for all; a gain that is one."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -56,19 +57,40 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
     assert len(motions) >= 10
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843).eval()
-    methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
+    methods = {
+        "true_room": simulated_in(
+            lambda one: one.true_scene(one.room), micro_seed=0, board_of=lambda one: one.own_board
+        )
+    }
     reported: list[int] = []
-    study = GainStudy(network, _base(2, network.head.first.in_features))
+    base = _base(2, network.head.first.in_features)
+    studies = {"all": GainStudy(network, base), "few": GainStudy(network, base, begins_anew=True)}
     cache = RoomCache(tmp_path, {})
-    found = gains(study, [room], methods, each=1, cache=cache, after=lambda one: reported.append(len(one[ALONE])))
+    both = gains(
+        studies, [room], methods, each=1, cache=cache, after=lambda one: reported.append(len(one["few"][ALONE]))
+    )
     assert reported == [1]
-    again = gains(study, [room], {}, each=1, cache=cache)  # of what was cache
-    assert np.array_equal(again["true_room"], found["true_room"])
+    again = gains(studies, [room], {}, each=1, cache=cache)  # of what was cache
+    assert not np.array_equal(both["all"]["true_room"], both["few"]["true_room"])
+    found = both["all"]
+    assert np.array_equal(again["all"]["true_room"], found["true_room"])
     rows = rows_of(found, [room.name])
     assert [row["method"] for row in rows] == [ALONE, "true_room"]
     assert rows[0]["metrics"]["gain"]["value"] == 0
     gain = rows[1]["metrics"]["gain"]["value"]
     assert gain == pytest.approx(float(found["true_room"][0, 0] - found[ALONE][0, 0]))
+
+
+def test_a_room_has_the_board_of_its_data_set_and_generated_signals_another(data: Path):
+    (ideal,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
+    assert ideal.own_board.is_ideal
+    assert ideal.other_board.is_ideal
+    plan = {**read_plan(data), "board": "typical"}
+    typical = replace(ideal, plan=plan)
+    whole = DatasetPlan(kinds=("office", "living_room"), lightings=("day",), num_layouts=1, board="typical")
+    (spec,) = (room for room in whole.rooms() if room.kind == "living_room")
+    assert typical.own_board.to_json() == whole.board_of(spec, AWR1843).to_json()
+    assert typical.other_board.to_json() != typical.own_board.to_json()
 
 
 def test_rows_hold_the_gain_over_training_elsewhere():

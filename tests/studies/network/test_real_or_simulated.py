@@ -1,6 +1,7 @@
 """What is alike cannot be reported apart, what differs can; statistics see the differences that matter."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,11 +9,13 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.recognition.activity_classifier import ClassifierSettings
 from studies.network import real_or_simulated
 from studies.network.cube_statistics import cube_statistics
-from studies.network.real_or_simulated import folds_of, real_or_simulated_scores
+from studies.network.learned_scores import Case
+from studies.network.real_or_simulated import board_by, folds_of, real_or_simulated_scores
 from tests.cubes import point_cube
 
 ROOMS = [f"room_{index // 3}" for index in range(60)]
@@ -61,3 +64,13 @@ def test_statistics_see_loudness_places_and_antennas():
         cube.values[::-1].copy(),
     ):
         assert not np.allclose(own, cube_statistics(replace(cube, values=other), network), atol=1e-3)
+
+
+def test_boards_are_typical_ones_of_each_side_and_case(tiny_signals: Path):
+    room = read_rooms(tiny_signals)[0]
+    case, other = (Case(room, index, room, 0, "day") for index in (0, 1))
+    recorded, generated = (board_by("typical", whose) for whose in ("true", "generated"))
+    boards = [recorded(case), generated(case), recorded(other)]
+    assert len({board.to_json() for board in boards}) == 3
+    assert recorded(case).to_json() == boards[0].to_json()
+    assert board_by("ideal", "true")(case).is_ideal

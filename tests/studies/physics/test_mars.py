@@ -118,7 +118,7 @@ def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     written = {path.stem for path in (tmp_path / "mars").iterdir()}
     assert written == set(scores) == {
         "baseline_centroid", "baseline_random_on_body", "baseline_random_real_frame", "oracle_neighbouring_frame",
-        "simulator", "grouped",
+        "oracle_same_pose_again", "simulator", "grouped",
     }  # fmt: skip
     record = json.loads((tmp_path / "mars" / "simulator.json").read_text())
     assert set(record["config"]["estimated_on_validate"]) == set(Setup.__dataclass_fields__)
