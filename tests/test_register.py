@@ -84,7 +84,7 @@ def test_plug_ins_on_the_command_line(plugged: dict[str, str], tmp_path: Path):
 
 
 def test_a_broken_plug_in_is_one_line_and_hurts_nobody_else(plugged: dict[str, str], tmp_path: Path):
-    argv = ["generate", "--demo", "--frames", "3", "--out", str(tmp_path / "out"), "--method"]
+    argv = ["generate", "--demo", "--out", str(tmp_path / "out"), "--method"]
     done = mmweaver(plugged, *argv, "broken")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

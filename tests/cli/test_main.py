@@ -70,6 +70,7 @@ sys.exit(main())
 INTERRUPTED_PYTORCH = """
 import signal, sys, time, types
 from mmweaver.cli import main
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background
 torch = sys.modules["torch"] = types.ModuleType("torch")
 torch.__spec__ = types.SimpleNamespace(_initializing=True)
 main._stop_cleanly()
