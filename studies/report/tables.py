@@ -297,6 +297,7 @@ UNREAD = {
         ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
         ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
         ("_strangers_fourth", True, False), ("_captions_fifth", True, False), ("_captions_sixth", True, False),
+        ("_captions_seventh", True, False),
     )
 }  # fmt: skip
 STRANGERS = MetricTable(
