@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Thirteen draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Fourteen draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -22,12 +22,15 @@ too); `strangers_fourth`: the 150 of strangers_fifth.txt, after the other three 
 after all draws above had been used to mend the grammar; ten that an earlier draw had judged, as they are or with left
 and right swapped, are left out; that none stands so in a stretch that was read to widen it was not checked.
 `captions_sixth`: 290 more (from 293,000, 752,000, 857,000 and 930,000), after `captions_fifth` had been used to mend
-it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Those from 420,000,
-516,000, 546,000 and 676,000 (16,000 characters each) were read to widen the checks since. Each prompt counts once,
-without those read to widen the grammar or in an earlier draw, or the same with left and right swapped.
+it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. `captions_seventh`:
+283 more (from 452,000, 873,000, 954,000 and 1,010,000; at most the first 75 of each), after `captions_sixth` had been
+used to mend the checks and those from 420,000, 516,000, 546,000 and 676,000 (16,000 characters each) had been read to
+widen them; twelve that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Each
+prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right
+swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419 and 1f1fe4eb before the last
-eight);
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb and a88c8ccf
+before the last nine);
 what was understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
 results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
@@ -53,6 +56,7 @@ DRAWS = {  # -> ending of the names of their files
     "strangers": "_strangers", "strangers_second": "_strangers_second",
     "strangers_third": "_strangers_third", "strangers_fourth": "_strangers_fourth",
     "captions_fifth": "_captions_fifth", "captions_sixth": "_captions_sixth",
+    "captions_seventh": "_captions_seventh",
 }  # fmt: skip
 
 

@@ -298,8 +298,19 @@ UNREAD = {
         ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
         ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
         ("_strangers_fourth", True, False), ("_captions_fifth", True, False), ("_captions_sixth", True, False),
+        ("_captions_seventh", True, False),
     )
 }  # fmt: skip
+CAPTIONS_DRAWS = RowTable(
+    sources=tuple(f"unread_prompts/reading_captions_{draw}" for draw in ("fifth", "sixth", "seventh")),
+    columns=(
+        ("draw", "{label}"), ("captions", "{n}"), ("understood", "{metrics.understood:percent_interval.1}"),
+        ("of these wrong without a word", "{metrics.wrong:percent_interval.1}"),
+        ("of these shown otherwise, which is said", "{metrics.said:percent_interval.1}"),
+    ),
+    labels={f"prompts of other projects, captions_{draw} draw": draw for draw in ("fifth", "sixth", "seventh")},
+    key="dataset.name",
+)  # fmt: skip
 STRANGERS = MetricTable(
     sources=("strangers/default",),
     columns=(("200 sentences", "{label}"), ("share", "{metric:percent.1}")),
@@ -474,7 +485,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     **{name: table.render for name, table in UNREAD.items()},
-    "activities": activities_table, "motiongpt": MOTIONGPT.render,
+    "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,
