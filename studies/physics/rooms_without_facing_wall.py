@@ -6,18 +6,22 @@ Fixed before any figure was computed, by geometry alone: no flat surface of 0.5 
 beam faces it, within 10 degrees, nearer than 3.5 m or than 2 m behind the walkers. The generator's kinds have the wall
 ahead at 2.9 to 3.45 m (a corridor's up to 5.2), so here all have it at 5.1 to 6.1 m (a recorded one is at 5.2 m), and
 all else as it is. Of each kind the first draw that qualifies is taken, from layout and seed 700 on. Walkers, moments,
-boards and features are those of `board_left_out`.
+boards and features are those of `board_left_out`. Added after the rows were seen, to name what makes them: the same
+rooms with some walls as rough surfaces alone, no mirrors (`walls_left_out`, not in the table of rows).
 """
 
 import argparse
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import Scene
+from mmweaver.core.records import Plane, Scene
+from mmweaver.core.seeding import stream
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.procedural.procedural_room import make_room_of
 from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
@@ -33,6 +37,10 @@ NEAR_M, BEHIND_WALKERS_M = 3.5, 2.0
 FLAT_M2, FACES_DEG = 0.5, 10.0
 BEAM_DEG = (62, 50)  # azimuth and elevation at which the rays of static paths end
 SAME_PLANE_DEG, SAME_PLANE_M = 1.0, 0.02
+WALLS: dict[str, Callable[[Plane], bool]] = {  # the normal points into the room, and the radar looks along +y
+    "side walls are no mirrors": lambda wall: abs(wall.normal[0]) > abs(wall.normal[1]),
+    "the wall ahead is no mirror": lambda wall: -wall.normal[1] > abs(wall.normal[0]),
+}
 
 
 def is_free_of_facing_walls(scene: Scene) -> bool:
@@ -81,21 +89,39 @@ def rooms() -> dict[str, tuple[int, Scene]]:
     return {name: first_free(kind) for name, kind in KINDS.items()}
 
 
+def without_mirrors(scene: Scene, is_left_out: Callable[[Plane], bool]) -> Scene:
+    """The room with some walls by their mesh alone, which scatters and hides but does not reflect."""
+    return replace(scene, planes=tuple(one for one in scene.planes if one.kind != "wall" or not is_left_out(one)))
+
+
+def rows_of(scenes: list[Scene], config: RadarConfig) -> dict[str, Any]:
+    """The rows of `board_left_out` in these rooms, each with the interval of its median over rooms."""
+    rows = room_rows({str(seed): walked_through(scene, config, "after", seed) for seed, scene in enumerate(scenes)})
+    return {name: {**row, "interval_95": median_interval(row["rooms"])} for name, row in rows.items()}
+
+
+def median_interval(values: list[float | None]) -> list[float]:
+    """95 % interval of the median, by bootstrap over rooms that show the row."""
+    shown = np.array([one for one in values if one is not None])
+    drawn = stream(0, "bootstrap").choice(shown, (2000, len(shown)))
+    return np.percentile(np.median(drawn, axis=1), [2.5, 97.5]).round(2).tolist()
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="folder with radar/ in it")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    config: RadarConfig = recorded_people(options.data).config
+    config = recorded_people(options.data).config
     chosen = rooms()
-    units = {
-        kind: walked_through(scene, config, "after", seed) for seed, (kind, (_, scene)) in enumerate(chosen.items())
-    }
-    rows = [{"method": METHOD, "n": len(chosen), "metrics": room_rows(units)}]
     draws = {kind: draw for kind, (draw, _) in chosen.items()}
+    scenes = [scene for _, scene in chosen.values()]
+    left_out = {name: [without_mirrors(scene, walls) for scene in scenes] for name, walls in WALLS.items()}
     unknown = {
         "seconds": "see the manifest",
         "dataset.sha256": "rooms are drawn; recordings are hashed in the manifest",
     }
-    rows = complete_rows(rows, dataset={"name": "one room a kind"}, seeds=list(range(len(chosen))), unknown=unknown)
-    run.write("rooms_without_facing_wall", "physics_rooms", config={"draws": draws}, rows=rows)
+    for name, each in (("physics_rooms", {METHOD: scenes}), ("walls_left_out", left_out)):
+        rows = [{"method": method, "n": len(of), "metrics": rows_of(of, config)} for method, of in each.items()]
+        rows = complete_rows(rows, dataset={"name": "one room a kind"}, seeds=list(range(len(scenes))), unknown=unknown)
+        run.write("rooms_without_facing_wall", name, config={"draws": draws}, rows=rows)

@@ -9,7 +9,14 @@ from mmweaver.core.records import Plane
 from mmweaver.scene.procedural.procedural_room import make_room_of
 from mmweaver.scene.procedural.room_kinds import KINDS
 from studies.physics import rooms_without_facing_wall
-from studies.physics.rooms_without_facing_wall import first_free, is_free_of_facing_walls, nearest_facing_m
+from studies.physics.rooms_without_facing_wall import (
+    WALLS,
+    first_free,
+    is_free_of_facing_walls,
+    median_interval,
+    nearest_facing_m,
+    without_mirrors,
+)
 from tests.rooms import back_wall, floor, plane, scene_of, side_wall
 
 
@@ -56,3 +63,18 @@ def test_a_deeper_room_has_its_wall_where_the_recipe_says():
     room = make_room_of(replace(KINDS["office"], wall_distance_m=(5.5, 5.6)), 0, 0)
     ahead = max((one for one in room.planes if one.kind == "wall"), key=lambda one: -one.normal[1])
     assert 5.5 <= -float(ahead.centre_m @ ahead.normal) <= 5.6
+
+
+def test_walls_of_one_side_cease_to_be_mirrors_and_stay_in_the_mesh():
+    scene = scene_of((floor(), back_wall(5.2), side_wall(0.95), panel(2.0)))
+    no_sides, not_ahead = (without_mirrors(scene, walls) for walls in WALLS.values())
+    assert [one.centre_m[1] for one in no_sides.planes if one.kind == "wall"] == [5.2]
+    assert [one.centre_m[0] for one in not_ahead.planes if one.kind == "wall"] == [0.95]
+    assert {one.kind for one in no_sides.planes} == {"floor", "wall", "panel"}
+    assert len(no_sides.faces) == len(scene.faces)
+
+
+def test_the_interval_of_a_median_holds_it_and_leaves_out_rooms_without_the_row():
+    low, high = median_interval([float(value) for value in range(21)])
+    assert 4.0 < low < 10.0 < high < 16.0
+    assert median_interval([2.0, None, 2.0]) == [2.0, 2.0]
