@@ -125,9 +125,8 @@ def walkers(scene: Scene, seed: int, moment_s: float = 0.0) -> tuple[PoseSequenc
     `moment_s`: so much before or after the middle of the walk is the moment at which they are there.
     """
     people = []
-    directions = [np.array([np.sin(azimuth), np.cos(azimuth)]) for azimuth in WALKERS_RAD]
-    distance_m = min(_seen_m(scene, towards) for towards in directions)  # of both, or one is the other's echo behind
-    for index, towards in enumerate(directions):
+    distance_m = walkers_m(scene)
+    for index, towards in enumerate(_directions()):
         pose = pose_of("walking", seconds=2.0, seed=seed + 10 * index)
         middle = int(np.abs(pose.time_s - pose.time_s[len(pose.time_s) // 2] - moment_s).argmin())
         joints_m = pose.joints_m - pose.joints_m[middle, 0] * np.array([1.0, 1.0, 0.0])
@@ -138,6 +137,16 @@ def walkers(scene: Scene, seed: int, moment_s: float = 0.0) -> tuple[PoseSequenc
         moved = joints_m + np.array([*place, up])
         people.append(replace(pose, time_s=pose.time_s - pose.time_s[middle], joints_m=moved, subject=seed + index))
     return tuple(people)
+
+
+def walkers_m(scene: Scene) -> float:
+    """How far from the radar both walkers are: equally far, or one is the other's echo behind."""
+    return min(_seen_m(scene, towards) for towards in _directions())
+
+
+def _directions() -> list[np.ndarray]:
+    """Unit vectors (2,) on the floor towards the walkers."""
+    return [np.array([np.sin(azimuth), np.cos(azimuth)]) for azimuth in WALKERS_RAD]
 
 
 def _seen_m(scene: Scene, towards: np.ndarray) -> float:

@@ -456,7 +456,7 @@ HALO_ROWS = (
     ("antenna_spread", "spread over antennas, dB"),
 )  # fmt: skip
 ROOMS_WITHIN = MetricTable(
-    sources=("board_left_out/physics_rooms",),
+    sources=("board_left_out/physics_rooms", "rooms_without_facing_wall/physics_rooms"),
     columns=(
         ("row", "{label}"), ("physics", "{method}"), ("median of rooms", "{metric:number}"),
         ("rooms within what was recorded", "{metric.within} of {metric.of}"),

@@ -152,7 +152,12 @@ def make_room(kind: str, layout: int = 0, seed: int = 0) -> ProceduralRoom:
     The seed determines the room (size, door, windows, colours, furniture), the layout its arrangement and the position
     of the radar. Raises InputError for an unknown kind, a layout outside 0 to 999, or a negative seed.
     """
-    room_kind = KINDS[kind]
+    return make_room_of(KINDS[kind], layout, seed)
+
+
+def make_room_of(room_kind: RoomKind, layout: int, seed: int) -> ProceduralRoom:
+    """`make_room` by a recipe of one's own, which may be one of KINDS with other sizes."""
+    kind = room_kind.name
     if not 0 <= layout < MAX_LAYOUTS:
         raise InputError(f"the layout must be 0 to {MAX_LAYOUTS - 1}, not {layout}")
     if seed < 0:
