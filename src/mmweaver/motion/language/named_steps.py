@@ -36,7 +36,7 @@ def doing(step: Step) -> str:
     way = f" to the {step.target}" if step.moves and step.target else way
     if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
         way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
-    upper = BY_KEY[step.upper].name if step.upper else ""
+    upper = _PLAINLY.get(step.upper, BY_KEY[step.upper].name) if step.upper else ""
     if step.upper == "raise":
         upper, limb = (
             {"": "raising a hand", "both": "raising both hands"}.get(step.hand, f"raising the {step.hand} hand"),

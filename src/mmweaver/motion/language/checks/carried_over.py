@@ -30,7 +30,7 @@ _HEIGHTS = re.compile(
 )
 _POSTURE = re.compile(
     r"\b(?P<said>(?:leaning|bending|bent|hunching|hunched|crouching|crouched|squatting|stooping)(?: over| down"
-    r"| forwards?)?)\b(?:(?!\bthen\b|\bbefore\b|\bafter\b|[.;]).)*?\b(?:while|as|when)\b[^.;]*?"
+    r"| forwards?)?)\b(?:(?!\bthen\b|\bbefore\b|\bafter\b|[.;]).)*?\b(?:while|as(?! if| though)|when)\b[^.;]*?"
     r"\b(?:walk|run|jog|step|mov|go)(?:s|es|n?ing|ging)?\b"
 )
 _LOW = words_in("bend lean squat crouch bow")
@@ -143,7 +143,8 @@ def _held_up(given: Given) -> Iterator[tuple[int, str]]:
 
 def _places(given: Given) -> Iterator[tuple[int, str]]:
     found = _PLACES.search(given.text)
-    if found and found["one"] != found["other"] and any(step.lower == "put_down" for step in given.steps):
+    stays = not any(step.moves or step.lower == "turn" for step in given.steps[1:-1])
+    if found and found["one"] != found["other"] and stays and any(step.lower == "put_down" for step in given.steps):
         yield _at(given, found, "other"), "it is put down where it was picked up"
 
 

@@ -21,12 +21,13 @@ def _is_one_gait_step(step: Step) -> bool:
 _SENSES: tuple[tuple[re.Pattern[str], Callable[[Step], bool], str], ...] = (
     (
         re.compile(
-            rf"\b(?P<said>sweep\w*|swept)\b(?: (?!floor\b|and\b|then\b)[a-z]+){{0,3}}? {_FOOT}\b"
+            rf"\b(?P<said>sweep\w*|swept)\b(?: (?!floor\b|broom\b|and\b|then\b)[a-z]+){{0,5}}? {_FOOT}\b"
             rf"|\b{_FOOT} (?P<noun>sweep\w*)\b"
         ),
         _is("sweep"),
         "sweeping the floor with both hands",
     ),
+    (re.compile(rf"\b{_FOOT} (?P<said>ris(?:e|es|ing))\b"), _is("stand_up"), "standing up"),
     (
         re.compile(r"\buntil (?:he|she|they|it|the [a-z]+) (?P<said>reach(?:es|ed)?|arrives?)\b"),
         _is("reach"),
