@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
+from mmweaver.motion.language.checks.carried_over import carried_over_not_shown
 from mmweaver.motion.language.checks.counts import counts_not_shown
 from mmweaver.motion.language.checks.endings import endings_not_shown
 from mmweaver.motion.language.checks.extents import extents_not_shown
 from mmweaver.motion.language.checks.given import given
 from mmweaver.motion.language.checks.movements import movements_not_shown
 from mmweaver.motion.language.checks.nouns import nouns_not_shown
+from mmweaver.motion.language.checks.senses import senses_not_shown
 from mmweaver.motion.language.checks.surroundings import special_ways_not_shown
 from mmweaver.motion.language.checks.ways import ways_not_shown
 from mmweaver.motion.language.parsed_clause import ParsedClause
@@ -15,7 +17,7 @@ from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
 
 _CHECKS = (
     movements_not_shown, ways_not_shown, special_ways_not_shown, counts_not_shown, endings_not_shown,
-    extents_not_shown, nouns_not_shown,
+    extents_not_shown, senses_not_shown, carried_over_not_shown, nouns_not_shown,
 )  # fmt: skip
 
 

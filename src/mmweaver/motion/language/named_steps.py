@@ -7,6 +7,8 @@ from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import Step
 
 _ONE = ("left", "right")
+# Words with other senses: "picking up speed", "sweeping with a foot".
+_PLAINLY = {"pick_up": "picking something up from the floor", "sweep": "sweeping the floor"}
 _AIMED = ("turn", "stumble", "lean", "leap")
 _WAYS = {
     **{way: f" {way}" for way in ("forwards", "backwards", "away", "back", "around")},
@@ -34,11 +36,11 @@ def doing(step: Step) -> str:
     way = f" to the {step.target}" if step.moves and step.target else way
     if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
         way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
-    upper = BY_KEY[step.upper].name if step.upper else ""
+    upper = _PLAINLY.get(step.upper, BY_KEY[step.upper].name) if step.upper else ""
     if step.upper == "raise":
         upper, limb = (
             {"": "raising a hand", "both": "raising both hands"}.get(step.hand, f"raising the {step.hand} hand"),
             "",
         )
-    lower = "" if step.lower == "stand" and upper else f"{BY_KEY[step.lower].name}{way}"
+    lower = "" if step.lower == "stand" and upper else f"{_PLAINLY.get(step.lower, BY_KEY[step.lower].name)}{way}"
     return " and ".join(filter(None, (lower, upper))) + limb

@@ -40,6 +40,14 @@ def _whole_turns(found: re.Match[str]) -> str:
     return f"turns {360 * _TURNS.index(found['times'].lower())} degrees"
 
 
+def _turns_around(found: re.Match[str]) -> str:
+    return "turns around" + (f" to the {found['side']}" if found["side"] else "") + found["then"]
+
+
+def _starts_with(found: re.Match[str]) -> str:
+    return f"takes {found['steps']} starting with the {found['side']} foot"
+
+
 def _limb_after_limb(found: re.Match[str]) -> str:
     verb, limb = found["verb"], found["limb"]
     one = f"{verb} " if verb.startswith(("rais", "lift")) else f"{verb} with "
@@ -56,6 +64,18 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(crawl(?:s|ing)?(?: [a-z]+){0,2}?) on (?:(?:his|her|their|the|both) )*(?:hands and (?:knees|feet)|knees and hands|all fours)\b", r"\1"),
     (r"\bstill,? like an? (?:statue|stone|rock|log|tree)\b", "still"),
     (r"(?<!\bof )(?<!\bafter )(?<!\bduring )(?<!\bin )(?<!\bwith )(?<!\bfor )(?<!\bbetween )(?<!\bto )\bthe (?=(?:goes|walks|runs|sits|stands|comes|picks|bends|raises|lowers)\b)", "then "),
+    # speed
+    (r"\bspeed[- ]walk(s|ing|ed)?\b", r"walk\1 quickly"),
+    (r"\bat pace\b(?! with\b)", "quickly"),
+    (r"\b(pick(?:s|ing|ed)? up) in (?=(?:speed|pace)\b)", r"\1 "),
+    # one movement with what another clause says of it
+    (r"\b(?:is|are) still(?=,? (?:and |then )*(?:then|walks|does|steps|jumps|turns|takes|runs|raises)\b)", "stands still"),
+    (r"\b((?:does|performs|makes|takes) )to (?=(?:[a-z]+ ){0,2}?(?:jumps|hops|kicks|squats|steps|lunges|punches|turns)\b)", r"\1two "),
+    (r"\bma(?:kes|king) an? u[- ]?turn(?: (?:on|to) (?:the|his|her|their) (?P<side>left|right)(?: side)?)?(?P<then>(?:,| and| then)+ (?:goes|walks|comes|returns|runs|jogs|heads|moves) back)\b", _turns_around),
+    (r"\b(limping(?: (?!and\b|then\b|before\b)[a-z]+){0,5}?),?(?: and| while) (?:going|walking|moving)(?: around)? in an? circle\b", r"\1 in a circle"),
+    (r"\b(limps) and goes(?: around)? in an? circle\b", r"\1 in a circle"),
+    (r"\b(?:starts|begins) (?:walking|to walk) with (?:the|his|her|their) (?P<side>left|right) foot(?: first)?,? and (?:then )?takes (?P<steps>[a-z]+ steps(?: (?:forwards?|backwards?))?)", _starts_with),
+    (r"(?<=[a-z]) until (?:he|she|they|it) (?:reach(?:es)?|gets? to|arrives? at) (?=(?:the|an?) (?:table|chair|wall|door|bed|couch|sofa|window|shelf|desk|radar)\b)", " to "),
     # ways
     (r"(?<!the )(?<!turns )(?<!turn )(?<!turning )(?<!his )(?<!her )(?<!their )\bright (?=(?:across|through|past|up to)\b)", ""),
     (rf"\b({_GAIT}) straight back(?:wards?)?{_ENDS}", r"\1 back"),

@@ -108,6 +108,7 @@ def _keys(step: Step) -> list[str]:
     """What a step shows, as often as it shows it."""
     keys = [key for key in (step.lower, step.upper) if key and not (key == "stand" and step.upper)]
     keys += ["turn"] if step.arc_deg and step.lower != "turn" else []
+    keys += ["walk"] if step.lower == "limp" and step.direction == "circle" else []  # "limping and going in a circle"
     return keys * max(step.count, 1) if step.lower not in ("walk", "sidestep", "jog") else keys
 
 
