@@ -141,14 +141,23 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
 
 @pytest.mark.slow  # tests/paths/test_background.py and test_generate.py: the room of a recording in a generated signal
 def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
-    """The network that was given the empty room has the truth's own resting echoes."""
+    """The network that was given the empty room has the truth's own resting echoes, behind the person.
+
+    Over all ranges the body's own resting echoes count, of an untrained network 1.4 times the room's.
+    """
     (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
     torch.manual_seed(0)
-    make = with_generated(WeaverNetwork().eval(), lambda one: one.photographed, recorded=True)(room)
+    network = WeaverNetwork().eval()
     (_, pose), *_ = motions_in(room, 1, seed=0)
     rest = AWR1843.num_loops // 2
-    cubes = [make(pose, seed) for seed in (1, 2)]
-    still = [cube.values[:, :, rest].mean(axis=0) for cube in cubes]
-    truth = room.room.static
-    for one in still:
-        assert np.abs(np.vdot(one, truth)) > 0.5 * np.linalg.norm(one) * np.linalg.norm(truth)
+    behind = AWR1843.range_m > np.linalg.norm(pose.joints_m, axis=-1).max() + 0.5
+    truth = room.room.static[behind]
+
+    def agreement(recorded: bool, seed: int) -> float:
+        cube = with_generated(network, lambda one: one.photographed, recorded=recorded)(room)(pose, seed)
+        still = cube.values[:, behind, rest].mean(axis=0)
+        return float(np.abs(np.vdot(still, truth)) / (np.linalg.norm(still) * np.linalg.norm(truth)))
+
+    for seed in (1, 2):
+        assert agreement(True, seed) > 0.85
+    assert agreement(False, 1) < 0.5
