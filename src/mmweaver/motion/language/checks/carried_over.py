@@ -66,10 +66,6 @@ def _at(given: Given, found: re.Match[str], group: str | int = 0) -> int:
     return given.token_at(found.start(group)).clause
 
 
-def _of(given: Given, clause: int) -> list[Step]:
-    return [step for step in given.steps if clause in step.clauses]
-
-
 def _number(words: str) -> int:
     first = words.split()[0]
     return 2 if first == "twice" else int(first) if first.isdigit() else NUMBERS.get(first, 0)
@@ -84,9 +80,9 @@ def _sided_before(given: Given, step: Step) -> str:
 
 def _same_hand(given: Given) -> Iterator[tuple[int, str]]:
     """ "Picks it up with the left hand and shakes their hand": it is still the left one."""
-    for found in _SAME_HAND.finditer(given.text):
-        clause = _at(given, found)
-        for step in _of(given, clause):
+    for _found, token in given.matches(_SAME_HAND):
+        clause = token.clause
+        for step in given.of_clause(clause):
             side = _sided_before(given, step) if step.upper and not step.hand else ""
             if side:
                 yield clause, f"that it is the {side} hand is not shown"
@@ -96,7 +92,7 @@ def _used_for(given: Given) -> Iterator[tuple[int, str]]:
     """ "Uses the left hand to reach over and grab": it grabs, too."""
     for found in _USED_FOR.finditer(given.text):
         clause = given.token_at(found.end() - 1).clause
-        if any(step.upper and not step.hand for step in _of(given, clause)):
+        if any(step.upper and not step.hand for step in given.of_clause(clause)):
             yield clause, f"that it is the {found[1]} hand is not shown"
 
 
@@ -112,24 +108,24 @@ def _counted_elsewhere(given: Given) -> Iterator[tuple[int, str]]:
 def _cycles(given: Given) -> Iterator[tuple[int, str]]:
     """ "Bends down and jumps up three times": both are repeated."""
     for found in _CYCLE.finditer(given.text):
-        first, last = _of(given, _at(given, found)), _of(given, given.token_at(found.end() - 1).clause)
+        first, last = given.of_clause(_at(given, found)), given.of_clause(given.token_at(found.end() - 1).clause)
         if first and last and first[0].count < 2 <= last[-1].count:
             yield _at(given, found), f"{found['first']!r} is shown once only"
 
 
 def _heights(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _HEIGHTS.finditer(given.text):
-        count, own = _number(found["n"]), _of(given, _at(given, found))
+    for found, token in given.matches(_HEIGHTS):
+        count, own = _number(found["n"]), given.of_clause(token.clause)
         if count and own and max(step.count for step in own) < count:
-            yield _at(given, found), f"{found['n']!r} is not shown"
+            yield token.clause, f"{found['n']!r} is not shown"
 
 
 def _postures(given: Given) -> Iterator[tuple[int, str]]:
     """ "Leaning over while walking": the posture is left before the walk."""
-    for found in _POSTURE.finditer(given.text):
+    for found, token in given.matches(_POSTURE):
         low = [i for i, step in enumerate(given.steps) if step.lower in _LOW]
         if low and any(step.lower in _ON_FEET for step in given.steps[low[0] + 1 :]):
-            yield _at(given, found), f"{found['said']!r} is shown before walking, not during it"
+            yield token.clause, f"{found['said']!r} is shown before walking, not during it"
 
 
 def _held_up(given: Given) -> Iterator[tuple[int, str]]:
@@ -149,23 +145,23 @@ def _places(given: Given) -> Iterator[tuple[int, str]]:
 
 
 def _to_and_fro(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _TO_AND_FRO.finditer(given.text):
-        own = [step for step in _of(given, _at(given, found)) if step.moves]
+    for _found, token in given.matches(_TO_AND_FRO):
+        own = [step for step in given.of_clause(token.clause) if step.moves]
         if own and all(step.direction not in ("pacing", "back") for step in own):
-            yield _at(given, found), "'up and down' is shown as one way"
+            yield token.clause, "'up and down' is shown as one way"
 
 
 def _returned(given: Given) -> Iterator[tuple[int, str]]:
     """A hand that is raised and stays up does not return."""
-    for found in _RETURNED.finditer(given.text):
-        clause = _at(given, found)
+    for found, token in given.matches(_RETURNED):
+        clause = token.clause
         if any(step.upper == "raise_hold" for step in given.steps):
             yield clause, f"{found[0]!r} is not shown"
 
 
 def _more_steps(given: Given) -> Iterator[tuple[int, str]]:
     """ "Starts walking and takes eleven steps": eleven in all."""
-    for found in _MORE_STEPS.finditer(given.text):
+    for found, token in given.matches(_MORE_STEPS):
         gaits = [step for step in given.steps if step.lower == "walk"]
         if len(gaits) > 1 and gaits[0].count == 0 and any(step.count == _number(found["n"]) for step in gaits[1:]):
-            yield _at(given, found), f"steps before the {found['n']} are shown, too"
+            yield token.clause, f"steps before the {found['n']} are shown, too"

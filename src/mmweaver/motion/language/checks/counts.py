@@ -1,14 +1,13 @@
 """How often and how variously: words of repetition, turns and angles, against what the steps repeat."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.checks.given import Given
-from mmweaver.motion.language.lexicon import ARMS, NUMBERS
+from mmweaver.motion.language.lexicon import NUMBERS
 from mmweaver.motion.language.named_steps import doing
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in
 
 _WAYS_ABOUT = re.compile(
@@ -69,10 +68,6 @@ def repeats(step: Step) -> bool:
     return activity.natural_s >= extra_s + 1.7 * each_s
 
 
-def _own(given: Given, found: re.Match[str]) -> Sequence[Step]:
-    return given.own(given.token_at(found.start()))
-
-
 def _fills_its_time(step: Step) -> bool:
     """Whether it is an exercise of the whole body, which is repeated for as long as there is time."""
     activity = BY_KEY[step.lower]
@@ -80,8 +75,7 @@ def _fills_its_time(step: Step) -> bool:
 
 
 def _several(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _OFTEN.finditer(given.text):
-        token = given.token_at(found.start())
+    for found, token in given.matches(_OFTEN):
         own = given.own(token)
         each = re.search(r"\b(?:each|every)\b", found[0])
         sides = {step.direction for step in own} | {step.hand for step in own} | {step.foot for step in own}
@@ -97,33 +91,31 @@ def _several(given: Given) -> Iterator[tuple[int, str]]:
 
 
 def _various(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _WAYS_ABOUT.finditer(given.text):
-        ways = {step.direction for step in _own(given, found)} - {""}
+    for found, token in given.matches(_WAYS_ABOUT):
+        ways = {step.direction for step in given.own(token)} - {""}
         if len(ways) < 2 and not ways & {"pacing", "around"}:
-            yield given.token_at(found.start()).clause, f"{found[0].strip()!r} is not shown"
+            yield token.clause, f"{found[0].strip()!r} is not shown"
 
 
 def _in_turn(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _IN_TURN.finditer(given.text):
-        own = _own(given, found)
+    for found, token in given.matches(_IN_TURN):
+        own = given.own(token)
         limbs = {step.hand for step in own if step.upper} | {step.foot for step in own}
         if {"left", "right"} <= limbs or any({step.lower, step.upper} & _ALTERNATES for step in own):
             continue
-        if ARMS | LEGS & {token.text for token in given.tokens} or found[0].startswith("alternat"):
-            yield given.token_at(found.start()).clause, f"{found[0]!r} is not shown"
+        yield token.clause, f"{found[0]!r} is not shown"
 
 
 def _plural(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _PLURAL.finditer(given.text):
-        own = _own(given, found)
+    for found, token in given.matches(_PLURAL):
+        own = given.own(token)
         if len(own) < 2 and not any(repeats(step) or _fills_its_time(step) for step in own):
-            yield given.token_at(found.start()).clause, f"{found['noun']!r} is shown once"
+            yield token.clause, f"{found['noun']!r} is shown once"
 
 
 def _uncounted(given: Given) -> Iterator[tuple[int, str]]:
     """ "A step forward, to his left": a walk that goes on from one step, and has no number."""
-    for found in _ONE_STEP.finditer(given.text):
-        token = given.token_at(found.start())
+    for _found, token in given.matches(_ONE_STEP):
         for step in given.steps:
             later = (
                 step.lower in ("walk", "sidestep")
@@ -140,17 +132,16 @@ def _uncounted(given: Given) -> Iterator[tuple[int, str]]:
 
 
 def _more(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _MORE_ANGLE.finditer(given.text):
+    for found, token in given.matches(_MORE_ANGLE):
         turns = [step for step in given.steps if step.turn_deg or step.lower == "turn"]
         angles = len(_ANGLE.findall(given.text))
         if turns and len(turns) < max(angles, 2):
-            yield given.token_at(found.start()).clause, f"{found[0].strip()!r} is not shown"
+            yield token.clause, f"{found[0].strip()!r} is not shown"
 
 
 def _reversed(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _REVERSES.finditer(given.text):
-        token = given.token_at(found.start())
-        own = [step for step in given.steps if token.clause in step.clauses]
+    for found, token in given.matches(_REVERSES):
+        own = given.of_clause(token.clause)
         ways = {step.direction for step in given.steps} | {step.arc_deg > 0 for step in given.steps if step.arc_deg}
         turned = any(step.lower == "turn" or step.direction in ("back", "backwards") for step in own)
         backwards = [step for step in own if step.direction == "backwards"]
@@ -161,22 +152,22 @@ def _reversed(given: Given) -> Iterator[tuple[int, str]]:
 
 
 def _full_turns(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _FULL_TURNS.finditer(given.text):
+    for found, token in given.matches(_FULL_TURNS):
         times = NUMBERS.get(found[1], 0) or int(found[1]) if found[1] in NUMBERS or found[1].isdigit() else 3
-        own = _own(given, found)
+        own = given.own(token)
         turned_deg = sum(max(abs(step.turn_deg), abs(step.arc_deg)) for step in own)
         if turned_deg < times * FULL_TURN_DEG and not any(step.count >= times for step in own):
-            yield given.token_at(found.start()).clause, f"{found[0]!r} is not shown"
+            yield token.clause, f"{found[0]!r} is not shown"
 
 
 def _both(given: Given) -> Iterator[tuple[int, str]]:
     """ "Then both", and "left and right twice"."""
     for token in given.tokens:
         is_last = not given.texts(token.place + 1, token.place + 2) or given.tokens[token.place + 1].part != token.part
-        own = [step for step in given.steps if token.clause in step.clauses]
+        own = given.of_clause(token.clause)
         if token.text == "both" and is_last and own and not any(step.upper and step.hand == "both" for step in own):
             yield token.clause, "'both' is not shown"
-    for found in _SIDES_OFTEN.finditer(given.text):
+    for found, token in given.matches(_SIDES_OFTEN):
         counts = {step.count for step in given.steps if step.direction in ("left", "right")}
         if len(counts) > 1:
-            yield given.token_at(found.start()).clause, f"{found[1]!r} is shown for one side"
+            yield token.clause, f"{found[1]!r} is shown for one side"

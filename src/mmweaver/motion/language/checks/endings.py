@@ -52,8 +52,8 @@ def _undone(given: Given) -> Iterator[tuple[int, str]]:
 
 def _returned(given: Given) -> Iterator[tuple[int, str]]:
     """The way back to where somebody was: by a walk back, or by whoever has not left the place."""
-    for found in _RETURN.finditer(given.text):
-        clause = given.token_at(found.start()).clause
+    for found, token in given.matches(_RETURN):
+        clause = token.clause
         if _POSE.search(found[0]):
             continue
         if any(clause < min(step.clauses, default=0) for step in given.steps if _goes_back(step)):
@@ -97,8 +97,7 @@ def _stopped(given: Given) -> Iterator[tuple[int, str]]:
 
 def _put_back(given: Given) -> Iterator[tuple[int, str]]:
     """ "Lifts the hand, then places it back down": no thing is put down."""
-    for found in _PUT_BACK.finditer(given.text):
-        token = given.token_at(found.start())
+    for _found, token in given.matches(_PUT_BACK):
         before = given.tokens[: token.place]
         objects = [
             one.text for one in before if one.text in _THINGS or (one.text in ARMS | LEGS and _is_object(given, one))
@@ -117,8 +116,7 @@ _THINGS = words_in("something object objects box cup glass bottle bag item ball 
 
 def _kept(given: Given) -> Iterator[tuple[int, str]]:
     """Somebody in a squat or on one leg does what follows there, unless a word says that it is left."""
-    for found in _LOW_STATES.finditer(given.text):
-        token = given.token_at(found.start())
+    for found, token in given.matches(_LOW_STATES):
         for before, after in pairwise(given.steps):
             low = token.clause in before.clauses and before.lower in _KEPT and not before.upper
             rises = after.lower in _RISES or _UP.search(given.text[found.end() :])

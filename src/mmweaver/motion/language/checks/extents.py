@@ -34,23 +34,17 @@ def extents_not_shown(given: Given) -> Iterator[tuple[int, str]]:
         yield from check(given)
 
 
-def _own(given: Given, token: Token) -> list[Step]:
-    return [step for step in given.steps if token.clause in step.clauses]
-
-
 def _slightly(given: Given) -> Iterator[tuple[int, str]]:
     """ "Bends slightly": shown as far as any other bend."""
-    for found in _SLIGHTLY.finditer(given.text):
-        token = given.token_at(found.start())
-        own = [] if token.clause in given.otherwise else _own(given, token)
+    for found, token in given.matches(_SLIGHTLY):
+        own = [] if token.clause in given.otherwise else given.of_clause(token.clause)
         if own and all((step.upper or step.lower) in _OF_ONE_SIZE and not step.arc_deg for step in own):
             yield token.clause, f"{found[0]!r} is not shown"
 
 
 def _side_to_side(given: Given) -> Iterator[tuple[int, str]]:
     """ "Waves while stepping side to side": it is the movement named last that goes to both sides."""
-    for found in _SIDE_TO_SIDE.finditer(given.text):
-        token = given.token_at(found.start())
+    for found, token in given.matches(_SIDE_TO_SIDE):
         meant = [(key, step) for key, step in _of_the_verb_before(given, token) if key in (step.lower, step.upper)]
         alone = [goes_to_and_fro(step, key) for key, step in meant]
         if alone and not any(alone):
@@ -60,9 +54,8 @@ def _side_to_side(given: Given) -> Iterator[tuple[int, str]]:
 def _heights(given: Given) -> Iterator[tuple[int, str]]:
     """A reach is at the height of a table, or up where the clause says so."""
     for pattern, is_low in ((_TO_THE_GROUND, True), (_INTO_THE_AIR, False)):
-        for found in pattern.finditer(given.text):
-            token = given.token_at(found.start())
-            own = _own(given, token)
+        for found, token in given.matches(pattern):
+            own = given.of_clause(token.clause)
             reaches = [step for step in own if step.upper == "reach"]
             low = any(step.lower in _NEAR_THE_GROUND or step.posture != "feet" for step in own)
             high = any(step.style == "high" for step in own)
@@ -84,8 +77,7 @@ def _around(given: Given) -> Iterator[tuple[int, str]]:
 
 def _whole_body(given: Given) -> Iterator[tuple[int, str]]:
     """ "Moves the arms and then the whole body": a movement of the hands alone is none of the body."""
-    for found in _WHOLE_BODY.finditer(given.text):
-        token = given.token_at(found.start())
+    for found, token in given.matches(_WHOLE_BODY):
         own = given.own(token)
         if own and all(step.upper and step.lower in ("stand", "sit") for step in own):
             yield token.clause, f"{found[0]!r} is not shown"
@@ -93,26 +85,23 @@ def _whole_body(given: Given) -> Iterator[tuple[int, str]]:
 
 def _one_arm(given: Given) -> Iterator[tuple[int, str]]:
     """ "With an arm out": arms that are held out are two where no side is named."""
-    for found in _ONE_ARM.finditer(given.text):
-        token = given.token_at(found.start())
-        if any(step.upper == "arms_out" and not step.hand for step in _own(given, token)):
+    for _found, token in given.matches(_ONE_ARM):
+        if any(step.upper == "arms_out" and not step.hand for step in given.of_clause(token.clause)):
             yield token.clause, "both arms are shown, not one"
 
 
 def _across(given: Given) -> Iterator[tuple[int, str]]:
     """ "Reaches across the body": arms go ahead, up or to their own side."""
-    for found in _ACROSS.finditer(given.text):
-        token = given.token_at(found.start())
-        own = _own(given, token)
+    for found, token in given.matches(_ACROSS):
+        own = given.of_clause(token.clause)
         if own and not any({step.lower, step.upper} & _CROSSING for step in own):
             yield token.clause, f"{found[0]!r} is not shown"
 
 
 def _behind(given: Given) -> Iterator[tuple[int, str]]:
     """ "Waves at someone behind him": hands move ahead of the body, unless it turns."""
-    for found in _BEHIND.finditer(given.text):
-        token = given.token_at(found.start())
-        own = _own(given, token)
+    for found, token in given.matches(_BEHIND):
+        own = given.of_clause(token.clause)
         aimed = any(
             step.facing or step.moves or step.lower in _TO_THE_BACK or step.upper in _TO_THE_BACK for step in own
         )
@@ -128,7 +117,7 @@ def _of_the_verb_before(given: Given, token: Token) -> Iterator[tuple[str, Step]
     for other in reversed(given.tokens[: token.place]):
         if other.word.is_activity and other.word.form != "base":
             lower, upper = ACTIVITY_OF_LEMMA[other.word.lemma]
-            for step in _own(given, other):
+            for step in given.of_clause(other.clause):
                 yield from ((key, step) for key in (step.lower, step.upper) if key and alike(upper or lower, key, step))
             return
         if other.part != token.part:

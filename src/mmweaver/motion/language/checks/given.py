@@ -1,7 +1,7 @@
 """The sentence as it was given, word by word, with the clause and the steps that each word belongs to."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,9 +49,18 @@ class Given:
         place = len(TOKEN.findall(self.text[:position]))
         return self.tokens[min(place, len(self.tokens) - 1)]
 
+    def matches(self, pattern: re.Pattern[str]) -> Iterator[tuple[re.Match[str], Token]]:
+        """(match, its first word) for each place where the sentence has a pattern."""
+        for found in pattern.finditer(self.text):
+            yield found, self.token_at(found.start())
+
+    def of_clause(self, number: int) -> list[Step]:
+        """The steps of a clause."""
+        return [step for step in self.steps if number in step.clauses]
+
     def own(self, token: Token) -> Sequence[Step]:
         """The steps of a word's clause, or all where it has none."""
-        return [step for step in self.steps if token.clause in step.clauses] or self.steps
+        return self.of_clause(token.clause) or self.steps
 
     @cached_property
     def compared(self) -> frozenset[int]:

@@ -63,7 +63,7 @@ def _is_shown(given: Given, token: Token) -> bool:
     text = token.text
     if text in _SILENT or not _is_noun(given, token):
         return True
-    own = [step for step in given.steps if token.clause in step.clauses] or given.steps
+    own = given.own(token)
     return any(_has_to_do_with(step, text) for step in own)
 
 

@@ -55,8 +55,7 @@ _SENSES: tuple[tuple[re.Pattern[str], Callable[[Step], bool], str], ...] = (
 def senses_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for words that a step shows in another sense."""
     for pattern, is_other, shown in _SENSES:
-        for found in pattern.finditer(given.text):
-            token = given.token_at(found.start())
+        for found, token in given.matches(pattern):
             here = {token.clause, given.token_at(found.end() - 1).clause}
             own = [step for step in given.steps if here & {*step.clauses}]
             if any(map(is_other, own)):

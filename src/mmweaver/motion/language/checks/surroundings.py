@@ -46,8 +46,8 @@ def _two_arms(given: Given) -> Iterator[tuple[int, str]]:
 
 def _turned_arms(given: Given) -> Iterator[tuple[int, str]]:
     """ "Spins the arms" turns no body."""
-    for found in _TURNED_ARMS.finditer(given.text):
-        clause = given.token_at(found.start()).clause
+    for found, token in given.matches(_TURNED_ARMS):
+        clause = token.clause
         own = [step for step in given.steps if clause in step.clauses]
         if any(step.lower == "turn" for step in own) and not any(step.upper for step in own):
             yield clause, f"{found[0]!r} is shown as turning the body"
@@ -55,8 +55,8 @@ def _turned_arms(given: Given) -> Iterator[tuple[int, str]]:
 
 def _over_something(given: Given) -> Iterator[tuple[int, str]]:
     """ "Jumps off something", "steps over a log": the movement is shown on level ground."""
-    for found in _OVER.finditer(given.text):
-        clause = given.token_at(found.start()).clause
+    for found, token in given.matches(_OVER):
+        clause = token.clause
         own = [step for step in given.steps if clause in step.clauses]
         on_ground = [step for step in own if step.lower in _ON_GROUND and not _goes_somewhere(step)]
         if on_ground:
@@ -69,16 +69,16 @@ def _goes_somewhere(step: Step) -> bool:
 
 def _up_or_down(given: Given) -> Iterator[tuple[int, str]]:
     """ "Steps up, then steps down": a walk goes neither up nor down."""
-    for found in _STEPS_UP.finditer(given.text):
-        clause = given.token_at(found.start()).clause
+    for found, token in given.matches(_STEPS_UP):
+        clause = token.clause
         own = [step for step in given.steps if clause in step.clauses]
         if own and all(step.lower in ("walk", "sidestep") for step in own):
             yield clause, f"{found[0]!r} is shown on level ground"
 
 
 def _around_something(given: Given) -> Iterator[tuple[int, str]]:
-    for found in _AROUND.finditer(given.text):
-        clause = given.token_at(found.start()).clause
+    for found, token in given.matches(_AROUND):
+        clause = token.clause
         own = [step for step in given.steps if clause in step.clauses and step.moves]
         if own and all(step.direction in ("pacing", "") and step.place is None and not step.arc_deg for step in own):
             yield clause, f"{found[0]!r} is shown as {doing(own[0])}"
@@ -86,7 +86,7 @@ def _around_something(given: Given) -> Iterator[tuple[int, str]]:
 
 def _arms_ahead(given: Given) -> Iterator[tuple[int, str]]:
     """Arms that are held ahead of a body that goes are held to the sides."""
-    for found in _ARMS_AHEAD.finditer(given.text):
+    for found, token in given.matches(_ARMS_AHEAD):
         own = [step for step in given.steps if step.upper == "arms_out"]
         if own and not any(step.arms_ahead for step in own):
-            yield given.token_at(found.start()).clause, f"{found[0]!r} is shown as arms to the sides"
+            yield token.clause, f"{found[0]!r} is shown as arms to the sides"
