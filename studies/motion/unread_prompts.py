@@ -19,13 +19,13 @@ language model that had not seen it either, in the style of captions of motion c
 strangers_fourth.txt, likewise, after the other two had been used to mend the grammar (one was in strangers_third.txt,
 too); `strangers_fourth`: the 150 of strangers_fifth.txt, after the other three had (two were in earlier files).
 `captions_fifth`: 283 captions of people again (from 112,000, 275,000, 735,000 and 840,000, 16,000 characters each),
-after all draws above had been used to mend the grammar; ten that an earlier draw had judged, as they are or with left
+after all draws above had been used to mend the grammar; ten that an earlier draw holds, as they are or with left
 and right swapped, are left out; that none stands so in a stretch that was read to widen it was not checked.
 `captions_sixth`: 290 more (from 293,000, 752,000, 857,000 and 930,000), after `captions_fifth` had been used to mend
-it; six that an earlier draw had judged, so or swapped, are left out, and the same was not checked. `captions_seventh`:
+it; six that an earlier draw holds, so or swapped, are left out, and the same was not checked. `captions_seventh`:
 283 more (from 452,000, 873,000, 954,000 and 1,010,000; at most the first 75 of each), after `captions_sixth` had been
 used to mend the checks and those from 420,000, 516,000, 546,000 and 676,000 (16,000 characters each) had been read to
-widen them; twelve that an earlier draw had judged, so or swapped, are left out, and the same was not checked. Each
+widen them; twelve that an earlier draw holds, so or swapped, are left out, and the same was not checked. Each
 prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right
 swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,

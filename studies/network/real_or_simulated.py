@@ -163,7 +163,7 @@ def true_by(board_of: BoardOf) -> Method:
 
 
 def methods_of(network: EchoNetwork, generic: Scene, recorded_by: BoardOf, generated_by: BoardOf) -> dict[str, Method]:
-    """What is to be told from the ground truth."""
+    """What is to be distinguished from the ground truth."""
     physics = partial(simulated, skin=OTHER, micro_seed=1, board_of=generated_by)
     return {
         "weaver": learned(network, _own_room, board_of=generated_by),

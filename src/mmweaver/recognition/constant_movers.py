@@ -1,6 +1,6 @@
-"""Places that never rest: something moves there in nearly all recordings, also while somebody walks elsewhere.
+"""Places of constant movement: something moves there in nearly all recordings, also while somebody walks elsewhere.
 
-A fan, say, of which no recording of the empty place tells. Whoever exercises at one place in all recordings moves there
+A fan, say, where there is no recording of the empty place. Whoever exercises at one place in all recordings moves there
 as well; so a place counts only where people walk in some recordings, 1.2 m or more from it, and it goes on moving.
 Labels are not asked.
 """

@@ -17,7 +17,7 @@ from mmweaver.recognition.task_recordings import read_task_recordings, windows_o
 from mmweaver.recognition.window_features import moving_points
 
 LISTED = 10  # features that differ most
-MISTAKEN = 0.3  # of generated windows of a label, from which it is hardly told from another
+MISTAKEN = 0.3  # of generated windows of a label, that are taken for another label
 
 
 def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any]:

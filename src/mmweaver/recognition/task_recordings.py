@@ -37,7 +37,7 @@ def read_task_recordings(
     if place.is_dir():
         files = sorted(
             path for path in place.rglob("*")
-            if path.suffix.lower() in SUFFIXES and path.is_file() and not _is_beside_points(path)
+            if path.suffix.lower() in SUFFIXES and path.is_file() and not _belongs_to_points_file(path)
         )  # fmt: skip
     if not files:
         raise InputError(f"{place} holds no recordings; {', '.join(SUFFIXES)} are read")
@@ -68,7 +68,7 @@ def label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
     return found[0]
 
 
-def _is_beside_points(file: Path) -> bool:
+def _belongs_to_points_file(file: Path) -> bool:
     """Whether a file is another one of a result folder that has points."""
     return file.name in RESULT_FILES and (file.parent / POINTS_FILE).is_file()
 
@@ -88,11 +88,11 @@ def _cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int]:
         log = read_ti_uart(file)
         return log.points, max(len(log.frame_number), 1)
     cloud = read_points(file)
-    frames = max(_num_frames(cloud.frame), _frames_beside(file, settings))
+    frames = max(_num_frames(cloud.frame), _frames_of_signal(file, settings))
     return cloud, frames or settings.window_frames  # without any frame it lasts a window, for all that is known
 
 
-def _frames_beside(file: Path, settings: RecordingSettings) -> int:
+def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:
     """The number of frames of the signal in the same result folder; 0 where there is none.
 
     Raises InputError where it has another frame rate than the recogniser's recordings.

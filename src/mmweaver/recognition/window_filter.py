@@ -15,7 +15,7 @@ from mmweaver.recognition.radar_facts import RadarFacts
 class WindowFilter:
     """What is left out of all windows, generated and recorded, before anything is measured of them."""
 
-    busy: Cells = field(default_factory=NO_CELLS.copy)  # where nobody is what moves: moving points there are left out
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # in which no person moves: moving points there are left out
     facts: RadarFacts | None = None  # of the task; None: a model of before, which saw neighbours and echoes
 
     def without(self, cells: Cells) -> "WindowFilter":
