@@ -213,15 +213,20 @@ def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
             top = 10 * np.log10(maps[0].max())
             both = [10 * np.log10(power) - top for power in maps]
             for axes, values, title in zip(line, both, (name, "plain sum"), strict=False):
-                axes.imshow(fan.lay(values), origin="lower", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0, extent=fan.extent)
+                power = axes.imshow(
+                    fan.lay(values), origin="lower", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0, extent=fan.extent
+                )
                 axes.set_title(title)
+            figure.colorbar(power, ax=line[1], shrink=0.8, label="dB of the peak")
             clipped = [np.maximum(values, -SPAN_DB) for values in both]
             image = line[2].imshow(
                 fan.lay(clipped[1] - clipped[0]), origin="lower", cmap="coolwarm", vmin=-15, vmax=15, extent=fan.extent
             )
-            line[2].set_title("plain sum over mutual occlusion, dB")
-            figure.colorbar(image, ax=line[2], shrink=0.8)
+            line[2].set_title("plain sum over mutual occlusion")
+            figure.colorbar(image, ax=line[2], shrink=0.8, label="dB")
+            line[0].set_ylabel("ahead (m)")
             for axes in line:
+                axes.set_xlabel("right (m)")
                 for index, pose in enumerate(pair.poses):
                     x_m, y_m = pose.joints_m[:, joint("pelvis"), :2].mean(axis=0)
                     colour = person_colour(index, 2, on_white=axes is line[2])
