@@ -300,7 +300,7 @@ def test_live_runs_on_and_takes_sentences(page: Any):
 
 @pytest.mark.slow  # test_live_runs_on_and_takes_sentences and tests/studio/test_live.py hold the parts
 def test_twenty_seconds_live(page: Any, address: Running):
-    """Five times faster than real time, without jumps, in memory that does not grow."""
+    """Without jumps, in memory that does not grow; how fast: `make bench` (benchmarks/studio.py)."""
     ask(page, "a person walks to the left")
     page.get_by_role("button", name="Live").click()
     heap, resident = [], []
@@ -312,11 +312,9 @@ def test_twenty_seconds_live(page: Any, address: Running):
         page.locator(".sentence").first.fill(text)
         page.locator(".sentence").first.press("Enter")
     page.wait_for_function("() => studio.live.frames > 220", timeout=120_000)
-    speed = page.evaluate("studio.live.times_real_time")
     page.get_by_role("button", name="Stop").click()
     assert heap[-1] - heap[0] < 30, heap
     assert resident[-1] - resident[0] < 60, resident
-    assert speed > 5
 
 
 def test_a_room_without_a_floor_offers_ways_on(page: Any, tmp_path: Path):
@@ -326,8 +324,10 @@ def test_a_room_without_a_floor_offers_ways_on(page: Any, tmp_path: Path):
     drop(page, [tmp_path / "rgb.png", tmp_path / "depth.png"])
     page.wait_for_selector(".status.error button", timeout=60_000)
     assert "\n" not in page.inner_text(".status.error")
+    assert page.locator(".player.stale").count() == 1  # what is shown is the sequence before
     page.get_by_role("button", name="in the bundled room").click()
     page.wait_for_selector(IDLE, timeout=60_000)
+    assert page.locator(".player.stale").count() == 0
     assert "s of radar in" in page.inner_text(".status")
 
 

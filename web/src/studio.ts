@@ -116,12 +116,13 @@ export class Studio {
       history.replaceState(null, "", `#${this.state()}`);
       this.tell(`${(sequence.frames * sequence.periodS).toFixed(1)} s of radar in ${this.lastSeconds.toFixed(2)} s, ${sequence.arrays.point_frame.data.length} points${this.note ? "; " + this.note : ""}`);
       return true;
-    } catch (error) { if ((error as Error).name !== "AbortError") this.fail(error); return false; }
+    } catch (error) { if ((error as Error).name !== "AbortError") this.failMaking(error); return false; }
     finally { if (this.running === asked) this.running = null; this.note = ""; }
   }
 
   private take(sequence: Sequence): void {
     this.result = sequence;
+    this.player.root.classList.remove("stale");
     if (this.kept) this.player.show(this.kept, sequence); else this.player.show(sequence);
     if (!this.kept) this.player.seek(this.player.frame);
   }
@@ -159,11 +160,11 @@ export class Studio {
   }
   private async changeRoom(): Promise<void> {
     this.at = this.path = null; this.player.scene.clearPath();
-    try { await this.loadRoom(); await this.generate(); } catch (error) { this.fail(error); }
+    try { await this.loadRoom(); await this.generate(); } catch (error) { this.failMaking(error); }
   }
 
   private async changeRadar(): Promise<void> { // another range window lets people stand elsewhere
-    try { await this.loadRoom(); await this.generate(); } catch (error) { this.fail(error); }
+    try { await this.loadRoom(); await this.generate(); } catch (error) { this.failMaking(error); }
   }
 
   private startAt(place: [number, number]): void {
@@ -334,6 +335,11 @@ export class Studio {
 
   // said ------------------------------------------------------------------------------------------------------------
   private tell(text: string): void { this.root.dataset.busy = String(text.endsWith("…")); this.status.className = "status"; this.status.replaceChildren(text); }
+  /** The sequence that is still shown is not of what was asked: it is dimmed until the next one. */
+  private failMaking(error: unknown): void {
+    if (this.result) this.player.root.classList.add("stale");
+    this.fail(error);
+  }
   private fail(error: unknown): void {
     this.root.dataset.busy = "false";
     this.status.className = "status error";
