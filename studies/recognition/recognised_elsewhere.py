@@ -42,7 +42,7 @@ HABITS = PerformancePrior(
 
 
 def strangers_recipe(task: RecognitionTask) -> SequenceRecipe:
-    """Other people in other rooms before a board that stands elsewhere, with other settings of its firmware."""
+    """Other people in other rooms in front of a board that stands elsewhere, with other settings of its firmware."""
     firmware = replace(task.firmware, second_peak=None)
     if firmware.range_cfar is not None:
         firmware = firmware.with_threshold(LOWER_THRESHOLD * firmware.range_cfar.threshold)

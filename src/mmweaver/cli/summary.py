@@ -59,5 +59,5 @@ def _person_line(person: dict[str, Any]) -> str:
     start, end = (f"({x:.2f}, {y:.2f})" for x, y in (person["starts_at_m"], person["ends_at_m"]))
     return (
         f"person:  {person['height_m']:.2f} m tall, from {start} to {end} m (right, ahead),"
-        f" {person['path_length_m']:.2f} m along the path"
+        f" the pelvis moves {person['path_length_m']:.2f} m over the floor"
     )

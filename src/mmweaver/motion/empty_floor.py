@@ -14,7 +14,7 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 def empty_floor() -> Scene:
-    """A free floor of 8 x 8 metres before a radar 1.1 m high, with a camera that sees all of it."""
+    """A free floor of 8 x 8 metres in front of a radar 1.1 m high, with a camera that sees all of it."""
     half = FLOOR_M / 2
     x, y = np.arange(-half, half + 1e-9, CELL_M), np.arange(0.0, FLOOR_M + 1e-9, CELL_M)
     free = np.ones((len(y), len(x)), dtype=bool)

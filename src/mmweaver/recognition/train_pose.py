@@ -1,4 +1,4 @@
-"""From a task file to a pose network: people perform its sentences before its radar; their joints are known."""
+"""From a task file to a pose network: people perform its sentences in front of its radar; their joints are known."""
 
 import hashlib
 from collections.abc import Callable, Sequence
