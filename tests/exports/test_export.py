@@ -136,6 +136,8 @@ def test_the_command_exports_many(result_folder: Path, tmp_path: Path, capsys: p
     assert "points as RadHAR's text" in capsys.readouterr().out
     assert main(["export", "--list"]) == 0
     assert "hupr" in capsys.readouterr().out
+    assert main(["export", "--list", "--json"]) == 0
+    assert {one["format"]: one["needs_samples"] for one in json.loads(capsys.readouterr().out)}["hupr"] is True
 
 
 @pytest.mark.parametrize(

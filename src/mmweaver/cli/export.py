@@ -27,7 +27,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files, or one file: walk.mp4")
     parser.add_argument("--overwrite", action="store_true", help="replace files in --out")
     parser.add_argument("--list", action="store_true", help="list the formats")
-    parser.add_argument("--json", action="store_true", help="print what was written for machines")
+    parser.add_argument("--json", action="store_true", help="print what was written, or --list, for machines")
     parser.set_defaults(run=run)
     return parser
 
@@ -39,9 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.exports.export import FORMATS, export_result, export_set, is_of_two_radars
 
     if arguments.list:
-        for name, one in FORMATS.items():
-            print(f"{name:11s} {one.what}{' (needs samples: --bin)' if one.needs_samples else ''}")
-        return 0
+        return _list(arguments)
     if arguments.folder is None or arguments.to is None or arguments.out is None:
         raise InputError("give a result folder, --to FORMAT and --out DIR; mmweaver export --list names the formats")
     if arguments.to not in FORMATS:
@@ -56,6 +54,22 @@ def run(arguments: argparse.Namespace) -> int:
         out = arguments.out / place
         written[str(out)] = export_result(folder, arguments.to, out, overwrite=arguments.overwrite)
     return _say(written, arguments)
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    import json
+
+    from mmweaver.exports.export import FORMATS
+
+    if arguments.json:
+        listed = [
+            {"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()
+        ]
+        print(json.dumps(listed, indent=2))
+    else:
+        for name, one in FORMATS.items():
+            print(f"{name:11s} {one.what}{' (needs samples: --bin)' if one.needs_samples else ''}")
+    return 0
 
 
 def _say(written: dict[str, str], arguments: argparse.Namespace) -> int:
