@@ -20,8 +20,11 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.checksums import sha256_of_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
@@ -68,6 +71,22 @@ def write_photo(folder: Path, photo: RgbdPhoto) -> None:
     (folder / "camera.json").write_text(
         json.dumps({name: camera[name] for name in ("fx", "fy", "cx", "cy")}), encoding="utf-8"
     )
+
+
+def scores_of(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) -> dict[str, list[dict[str, float]]]:
+    """`one_room`, or what an earlier run of the same settings has kept of it in the work folder."""
+    settings = {
+        "weights": sha256_of_file(arguments.weights), "captures": arguments.captures,
+        "each": arguments.each, "steps": arguments.steps, "plan_seed": plan_seed,
+    }  # fmt: skip
+    file = arguments.work / room.folder.name / "scores.json"
+    kept = read_json(file) if file.is_file() else {}
+    if kept.get("settings") == settings:
+        return kept["scores"]
+    scores = one_room(room, arguments, plan_seed)
+    with atomic_file(file) as staged:
+        staged.write_text(json.dumps({"settings": settings, "scores": scores}), encoding="utf-8")
+    return scores
 
 
 def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) -> dict[str, list[dict[str, float]]]:
@@ -185,7 +204,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan = read_plan(options.data)
     rooms = [room for room in read_rooms(options.data) if "test_room" in room.split]
     order = stream(0, "capture tuning").permutation(len(rooms))[: options.rooms]
-    scores = [one_room(rooms[int(which)], options, plan["seed"]) for which in order]
+    scores = [scores_of(rooms[int(which)], options, plan["seed"]) for which in order]
     rows = rows_of(scores)
     card: WeightsCard = load_weights(options.weights)[1]
     complete = complete_rows(
