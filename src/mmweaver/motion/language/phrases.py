@@ -52,7 +52,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
      r"to the left and (?:to the )?right)\b", r" \1 "),
     (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her|their)? ?(?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass?|mug|bottle|"
-     r"book|pen|remote|fork|spoon|plate|knife|key|keys|newspaper|magazine|tablet|bag|telephone)\b(?: up)?(?! (?:from|off) the (?:floor|ground))",
+     r"book|pen|remote|fork|spoon|plate|knife|key|keys|newspaper|magazine|tablet|bag|telephone)\b(?!(?: up)? (?:from|off)(?: of)? the (?:floor|ground))(?: up)?",
      " reach "),
     (r"\bfrom (?:his|her|its|their) (left|right)(?:[- ]hand)?(?: side)?\b", r" from_own_\1 "),
     (r"\bfrom (?:the |his |her |its |their )?(behind|back|rear|front|left|right)(?:[- ]?hand)?(?: ?side)?\b", r" from_\1 "),
@@ -75,7 +75,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:on|onto) (?:his|her|its|their|the) (?:back)\b", " onback "),
     (r"\b(?:on|onto) (?:his|her|its|their|the) (?:belly|stomach|tummy|front|chest|face)\b|\bface down\b", " onbelly "),
     (r"\b(?:stands?|gets?|getting|standing|rises?|rising)(?: back)? up from (?:lying|laying|lie)\b([^,.;]*)", r" get_up \1 "),
-    (r"\b(?:stands?|gets?|getting|standing|rises?|rising)(?: back)? up from (?:the |lying on the )?(?:floor|ground)\b"
+    (r"\b(?:stands?|gets?|getting|standing|rises?|rising)(?: back)? up (?:from|off(?: of)?) (?:the |lying on the )?(?:floor|ground)\b"
      r"|\b(?:gets?|getting|stands?|standing|rises?)(?: back)? up (?:again )?(?:after|from) (?:lying|a fall)\b",
      " get_up "),
     (r"\b(?:falls?|falling|fell|collapses?|drops?) (?:down |over |backwards? |forwards? )*(?:on|onto|to) (?:the )?"
@@ -87,7 +87,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bbend(?:s|ed|ing)?(?: himself| herself| itself)? (?:down|over|forwards?|downwards?)(?: (?:over|down|forwards?))?\b",
      " bends "),
     (r"\b(?:leans?|leaning|leaned) (?:far )?(?:down|forwards?|over)\b(?! (?:to|on|against|left|right|sideways))", " bends "),
-    (r"\b(pick|lift|take|grab|get|raise|collect)(s|ing|ed)? (?!up (?:his|her|its|their|the|both|a|an|one|left|right)? ?"
+    (r"\b(pick|lift|take|grab|get(?!(?:s|ting)?(?: back)? up\b)|raise|collect)(s|ing|ed)? (?!up (?:his|her|its|their|the|both|a|an|one|left|right)? ?"
      r"(?:arms?|hands?|legs?|foot|feet|knees?))(?:up )?(?:(?!up\b|then\b|and\b|while\b)[a-z]+ ){0,4}(?:up )?(?:from|off|of) "
      r"(?:of )?(?:the )?(?:floor|ground)\b", " pick_up "),
     (r"\bpick(s|ing|ed)? up\b|\bpick(s|ing|ed)? (?:(?:an?|the|his|her|its|something|some|it|box|ball|object|thing|and)"

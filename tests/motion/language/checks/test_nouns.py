@@ -8,6 +8,7 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("sentence", "how"),
     [
+        ("a person stands on a box", "'box' is not shown"),
         ("a person walks with a cane", "'cane' is not shown"),
         ("someone is playing an air banjo", "'banjo' is not shown"),
         ("a person bends over the patient", "'patient' is not shown"),
@@ -30,6 +31,7 @@ def test_things_that_no_step_has_are_named(sentence: str, how: str) -> None:
         "a person pushes a chair aside",
         "he stirs a pot on the stove",
         "the person walks at a medium pace",
+        "a person walks and comes to a stop",
     ],
 )
 def test_things_of_a_step_need_no_word(sentence: str) -> None:

@@ -53,6 +53,7 @@ def nouns_not_shown(given: Given) -> Iterator[tuple[int, str]]:
 _OPENING = words_in(
     "a an the his her their its my in of on with like from off over under through onto across by without"
 )
+_ARTICLES = words_in("a an the")  # "stands on a box"
 _PEOPLE = words_in("person man woman he she it they someone somebody figure subject human guy girl boy who that which")
 _ENDING = re.compile(r"[^a-z']|ly$|ing$")
 _VERBS = words_in("is are was were does plays playing")
@@ -77,7 +78,8 @@ def _is_noun(given: Given, token: Token) -> bool:
     for other in reversed(before):
         text = other.text
         if text in _OPENING:
-            return not (token.word.is_verb or token.word.is_going) and _ENDING.search(token.text) is None
+            is_verb = (token.word.is_verb or token.word.is_going) and before[-1].text not in _ARTICLES
+            return not is_verb and _ENDING.search(token.text) is None
         if text in LINKS or text in _PEOPLE or other.word.is_verb or other.word.is_going or text in ("to", "is", "are"):
             return False
     return False
