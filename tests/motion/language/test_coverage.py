@@ -19,6 +19,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person walks from the door to the table", "from the door"),
         ("a person stands in front of the sofa facing the wall", "facing the wall"),
         ("a person walks with the hands behind the back", "behind the back"),
+        ("a person walks backwards away from the radar", "'backwards' is not shown"),
     ],
 )
 def test_what_no_step_shows_is_named(sentence: str, what: str) -> None:

@@ -150,6 +150,7 @@ MORE = {
     "gets something up off the floor": "pick_up",
     "gets up off the ground using both hands": "get_up back",
     "puts a box down on the floor": "put_down",
+    "drinks, then puts it down on the table": "drink | reach",
     "goes down on her knees, then stands up": "kneel_down | kneel_up",
     "a kneeling person waves": "kneel | kneel+wave",
     "lies down and then gets up": "lie_down back | get_up back",

@@ -57,7 +57,8 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
     if "sideways" in texts and not any(goes_aside(step) for step in steps):
         lost.append("the side is not shown")
     aimed_back = "back_to_start" in texts and not any(step.direction == "backwards" for step in steps)
-    if {"backwards", "backward"} & set(texts) and (aimed_back or not any(goes_back(step) for step in steps)):
+    turned = {"away", "backwards"} <= set(texts) and not any(step.direction == "backwards" for step in steps)
+    if {"backwards", "backward"} & set(texts) and (aimed_back or turned or not any(goes_back(step) for step in steps)):
         lost.append("'backwards' is not shown")
     goes = any(step.moves for step in steps)
     comes_back = any(step.lower in ("stand", "turn") for step in steps) and not _ON_FOOT & set(texts)

@@ -93,7 +93,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bpick(s|ing|ed)? up\b|\bpick(s|ing|ed)? (?:(?:an?|the|his|her|its|something|some|it|box|ball|object|thing|and)"
      r" ?){1,3}up\b|\bpicks? up and object\b", " pick_up "),
     (r"\b(?:puts?|putting|places?|placing|lays?|sets?|setting|drops?) (?:(?:an?|the|his|her|its|their|something|it|box|ball|"
-     r"object|thing|item|glass|cup|phone|bottle|book|some|back) ){1,4}(?:back )?(?:down|(?:on|onto|to) the (?:floor|ground))\b"
+     r"object|thing|item|glass|cup|phone|bottle|book|some|back) ){1,4}(?:back )?(?:down\b(?! (?:on|onto|in|into|under|next to) (?!(?:the )?(?:floor|ground)\b))"
+     r"|(?:on|onto|to) the (?:floor|ground)\b)"
      r"|\b(?:puts?|places?|sets?) down (?:an?|the|something|it)\b", " put_down "),
     (r"\b(?:takes?|grabs?|taking|grabbing) (?:(?:an?|the|his|her|something|cup|glass|book|bottle|it) ){1,3}(?:from|off) "
      r"(?:the |a )?(?:table|desk|shelf|counter|cupboard)\b", " reach "),
