@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 
@@ -140,7 +141,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             record(before, APPROXIMATED, f"only its beginning is shown in {duration_s:.1f} s")
     for step in wanted[len(kept) :]:
         record(step, NOT_DONE, f"the {duration_s:.1f} s are over before it")
-    return replace(plan, notes=tuple(notes), clauses=tuple(clauses))
+    return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
 
 
 def _limits(step: Step) -> tuple[float, float]:
