@@ -27,7 +27,7 @@ def how_often(step: Step, key: str) -> str:
         return " twice or more"
     if (activity.once or key in _ONCE) and step.style != "frontlunge":
         return " once"
-    return " over and over" if key in _RHYTHMIC else " as often as there is time"
+    return " repeatedly" if key in _RHYTHMIC else " as often as there is time"
 
 
 def times_said(count: int) -> str:

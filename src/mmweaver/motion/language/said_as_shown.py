@@ -125,7 +125,7 @@ def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
     if len(own) > 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
         return False
     numbers, counts = _numbers(record.clause), _numbers(record.shown)
-    return numbers <= counts and counts - {1.0} <= numbers
+    return numbers <= counts and counts - {1.0, 90.0} <= numbers  # "once", "one hand", a turn to a side
 
 
 def _numbers(text: str) -> set[float]:

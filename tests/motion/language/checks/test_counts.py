@@ -20,7 +20,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person turns in place for two full turns", "'two full turns' is not shown"),
         ("a person steps left and right twice", "'twice' is shown for one side"),
         ("a person kicks with the left leg, then the right leg, then both", "'both' is not shown"),
-        ("a person runs to the right and then reverses", "reverses"),
+        ("a person runs to the right and then reverses", "is shown as running backwards"),
         ("a person sits down and stands up repeatedly", "'repeatedly' is not shown"),
     ],
 )
