@@ -51,7 +51,10 @@ def test_records_notes_and_steps_quote_the_sentence_as_it_was_given():
 @pytest.mark.parametrize(
     ("text", "how"),
     [
-        ("she waves goodbye over her shoulder", "is shown as waving with one hand repeatedly; 'over' and 'shoulder' are not shown"),
+        (
+            "she waves goodbye over her shoulder",
+            "hand repeatedly; 'over' and 'shoulder' are not shown",
+        ),
         ("a person claps above the head", "is shown as clapping repeatedly; 'above the head' is not shown"),
         ("he scratches his head thinking", "'thinking' has no movement that is shown"),
         ("a person bows to the left and then to the right", "is shown as bowing once; the side is not shown"),

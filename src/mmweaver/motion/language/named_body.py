@@ -9,6 +9,7 @@ from mmweaver.motion.language.verbs import words_in
 _SIDES = ("left", "right")
 _BODY = {  # with the slots "leg" and "foot"; others by their names
     "pick_up": "picking something up from the floor", "put_down": "putting something down on the floor",
+    "jumping_jacks": "doing jumping jacks", "push_ups": "doing push-ups", "sit_ups": "doing sit-ups",
     "leap": "jumping", "stand_up": "standing up from a seat", "stomp": "stamping with {foot}",
     "kick": "kicking with {foot}", "raise_leg": "raising and lowering {leg}", "one_leg": "standing on {leg}",
     "hop_one_leg": "hopping on {leg}", "lunge": "lunging ahead with {leg}",

@@ -23,9 +23,10 @@ def how_often(step: Step, key: str) -> str:
         return ""
     if step.count:
         return f" {times_said(step.count)}"
-    if step.style == "several":
+    is_once = (activity.once or key in _ONCE) and step.style != "frontlunge"
+    if step.style == "several" and not activity.hands and not (is_once and step.upper):
         return " twice or more"
-    if (activity.once or key in _ONCE) and step.style != "frontlunge":
+    if is_once:
         return " once"
     return " repeatedly" if key in _RHYTHMIC else " as often as there is time"
 

@@ -14,7 +14,7 @@ _HANDS = {  # with the slots "hand", "arm", "forearm" of the side that acts
     "draw_circle": "drawing a circle in the air with {hand}", "draw_z": "drawing a Z in the air with {hand}",
     "hands_up": "holding the hands up before the face", "sweep": "sweeping the floor with both hands",
     "swipe": "swiping {hand} through the air", "cross_arms": "holding the arms crossed",
-    "golf": "a golf swing with both hands",
+    "golf": "a golf swing with both hands", "carry": "carrying something",
 }  # fmt: skip
 # Activities of one hand, and those of both unless the sentence names one.
 _ONE_HANDED = words_in(
@@ -72,6 +72,6 @@ def hand_of(part: Step, key: str) -> str:
     """The hand that acts: left, right, both, "one" where the seed chooses it, "" for what needs both anyway."""
     if key in _ONE_HANDED:
         return _OF_BOTH.get(key, "both") if part.hand == "both" else part.hand or "one"
-    if key == "punch":
-        return part.hand or "both"
+    if key in ("punch", "text"):  # a phone is in one hand or both where the sentence names none
+        return part.hand or ("both" if key == "punch" else "")
     return (part.hand or "both") if key in _BOTH else ""

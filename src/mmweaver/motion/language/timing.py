@@ -159,7 +159,7 @@ def _limits(step: Step) -> tuple[float, float]:
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
-    if step.style == "several" and not step.count:  # "is doing squats"
+    if step.style == "several" and not step.count:  # "does squats"
         least, natural = _limits(replace(step, count=2))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
     doing = BY_KEY[step.upper or step.lower]
