@@ -28,7 +28,7 @@ def how_often(step: Step, key: str) -> str:
         return " twice or more"
     if is_once:
         return " once"
-    return " repeatedly" if key in _RHYTHMIC else " as often as there is time"
+    return " repeatedly" if key in _RHYTHMIC else " once or more"
 
 
 def times_said(count: int) -> str:

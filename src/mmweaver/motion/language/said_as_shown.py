@@ -14,7 +14,9 @@ _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
 _STEM = 4
-_ALIKE = {"arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs"}  # one limb either way
+_ALIKE = {  # one limb either way; a knee is not kneeling
+    "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
+}  # fmt: skip
 _AT_ONCE = re.compile(
     r"\b(?:while|whilst|when|during|simultaneously|same time|as(?! if| though| well))\b", re.IGNORECASE
 )

@@ -20,6 +20,7 @@ SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
+_EXERCISES = ("squat", "lunge", "jump", "kick")
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
@@ -60,8 +61,8 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
 
 def _is_of_several(step: Step, words: list[Word], at: int) -> bool:
     """Whether an exercise is named in the plural without a number: "does squats"."""
-    activity, word = BY_KEY[step.lower], words[at]
-    can_be = activity.counted_s is not None and not (activity.moves or step.upper or step.style or step.count)
+    word = words[at]
+    can_be = step.lower in _EXERCISES and not (step.upper or step.style or step.count)
     return can_be and word.text == f"{word.lemma}s" and any(one.lemma in ("do", "perform") for one in words[:at])
 
 
