@@ -12,7 +12,11 @@ from mmweaver.motion.language.sentence import parse
     [
         ("a person is wiggling their arms", "wave", "is shown as waving with both hands"),
         ("a person puts both hands to his face", "hands_up", "is shown as holding the hands up before the face"),
-        ("a person holds their arms straight up", "raise", "is shown as raising and lowering both hands once"),
+        (
+            "a person holds their arms straight up",
+            "raise",
+            "is shown as raising both hands overhead",
+        ),
         ("the person is throwing a basketball", "throw", "'basketball' is not shown"),
         ("he kicks high in the air", "kick", "'mid-air' is not shown"),
         ("a person moves objects around", "reach", "is shown as reaching with one hand"),

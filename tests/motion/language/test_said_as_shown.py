@@ -53,7 +53,7 @@ def test_another_side_count_posture_limb_or_order_is_said(words: str, steps: lis
 
 def test_what_is_done_says_in_its_record_alone_what_is_shown() -> None:
     plan = parse("a person bows, then claps three times")
-    assert [record.shown for record in plan.clauses] == ["bowing once", "clapping three times"]
+    assert [record.shown for record in plan.clauses] == ["bowing once", "then clapping three times"]
     assert {record.status for record in plan.clauses} == {DONE}
     assert plan.notes == ()
 
@@ -73,15 +73,21 @@ def test_a_clause_within_the_movement_before_says_so() -> None:
     ]
 
 
-def test_a_sentence_that_is_not_simply_done_says_its_whole_order_once() -> None:
-    plan = parse("a person stops, then bows politely", in_part=True)
-    assert "shown in all: standing, then bowing once" in plan.notes
-    assert plan.clauses[0].status == DONE
-    alone = parse("a person walks, then bows politely", in_part=True)  # the first clause says just what is shown
-    assert not any("shown in all" in note for note in alone.notes)
+def test_in_a_sentence_that_is_not_simply_done_every_clause_says_what_it_is_shown_as() -> None:
+    stops, bows = parse("a person stops, then bows politely", in_part=True).clauses
+    assert (stops.status, stops.how) == (DONE, "is shown as standing")
+    assert bows.how == "is shown as bowing once; 'politely' is not shown"
+    assert parse("a person stops, then bows", in_part=True).notes == ()
+    walks, _ = parse("a person walks, then bows politely", in_part=True).clauses
+    assert walks.how == ""  # says just what is shown
+
+
+def test_the_order_of_all_is_said_where_the_clauses_leave_it_open() -> None:
     walk, wave = Step(lower="walk", clauses=(1,)), Step(upper="wave", clauses=(0,))
-    records = with_what_is_shown(
-        [ClauseRecord("waves"), ClauseRecord("walks", APPROXIMATED, "'so' is not shown")], [walk, wave]
-    )
-    assert order_of_all("", records, [walk, wave]) == ["shown in all: walking, then waving with one hand repeatedly"]
-    assert order_of_all("", [ClauseRecord("waves"), ClauseRecord("walks")], [walk, wave]) == []
+    records = [ClauseRecord("waves"), ClauseRecord("walks", APPROXIMATED, "'so' is not shown")]
+    whole = "shown in all: walking, then waving with one hand repeatedly"
+    assert order_of_all("", records, [walk, wave]) == [whole]
+    assert order_of_all("", records, [wave, walk]) == order_of_all("", records[:1] * 2, [walk, wave]) == []
+    in_order = [Step(lower="walk", clauses=(0,)), Step(upper="wave", clauses=(1,))]
+    assert order_of_all("walks while waving so", records, in_order) == [whole]
+    assert order_of_all("walks as if waving so", records, in_order) == []

@@ -7,10 +7,10 @@ from mmweaver.motion.language.verbs import words_in
 
 _SIDES = ("left", "right")
 _HANDS = {  # with the slots "hand", "arm", "forearm" of the side that acts
-    "raise": "raising and lowering {hand}", "raise_hold": "lifting {arm} above the head and keeping it up",
-    "lower_arm": "lowering {arm} from above the head", "push_hand": "pushing {hand} forward",
+    "raise": "raising {hand} overhead and lowering it", "raise_hold": "lifting {arm} overhead and keeping it up",
+    "lower_arm": "lowering {arm} from overhead", "push_hand": "pushing {hand} forward",
     "pull_hand": "pulling {hand} to the chest", "knock_elbow": "raising and lowering {forearm}",
-    "arm_extension": "extending {arm} upwards at the side", "arm_circles": "circling {arm}",
+    "arm_extension": "extending {arm} upwards at the side", "arm_circles": "circling {arm} at the sides",
     "draw_circle": "drawing a circle in the air with {hand}", "draw_z": "drawing a Z in the air with {hand}",
     "hands_up": "holding the hands up before the face", "sweep": "sweeping the floor with both hands",
     "swipe": "swiping {hand} through the air", "cross_arms": "holding the arms crossed",
@@ -57,7 +57,7 @@ def of_a_hand(step: Step, part: Step) -> str:
     if any(limb in name for limb in _LIMBS):
         which = "both" if hand == "both" else "one" if hand == "one" else f"the {hand}"
         name = name.format(**{limb: f"{which} {limb}{'s' * (hand == 'both')}" for limb in ("hand", "arm", "forearm")})
-        name = name.replace("keeping it", "keeping them") if hand == "both" else name
+        name = name.replace("ing it", "ing them") if hand == "both" else name
     elif hand and key not in ("arms_out", "hips"):
         name += with_hand(hand) + " in turn" * (hand == "both" and key in _IN_TURN)
     speed = (part.speed or step.speed) if step.lower == "stand" else 0

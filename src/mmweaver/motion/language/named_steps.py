@@ -16,9 +16,13 @@ _SIDES = ("left", "right")
 
 
 def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
-    """The records with what each clause is shown as."""
-    of_each = steps_of_each(len(records), steps)
-    return tuple(replace(record, shown=in_turn(own)) for record, own in zip(records, of_each, strict=True))
+    """The records with what each clause is shown as: 'then waving' where that begins after another step."""
+    shown, before = [], [id(step) for step in steps[:1]]
+    for own in steps_of_each(len(records), steps):
+        follows = bool(own) and id(own[0]) not in before
+        shown.append("then " * follows + in_turn(own))
+        before += map(id, own)
+    return tuple(replace(record, shown=words) for record, words in zip(records, shown, strict=True))
 
 
 def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:

@@ -31,32 +31,39 @@ _VAGUE = {  # a reason -> those that say no more where it is there
 def saying_what_is_shown(
     records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool
 ) -> list[ClauseRecord]:
-    """The records, each with all that it is shown as where it is not simply done and its words do not say just that.
+    """The records with what each is shown as, where its words do not say just that and not all clauses are simply done.
 
-    Of a sentence that is read `roughly` no clause is simply done whose words do not.
+    Words that are not known may have changed what was read of the clauses around them. Of a sentence that is read
+    `roughly` no clause is simply done whose words do not say what is shown.
     """
+    of_each = steps_of_each(len(records), steps)
+    records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
+    is_all_done = not roughly and all(record.status == DONE for record in records)
     said: list[ClauseRecord] = []
-    for record, own in zip(records, steps_of_each(len(records), steps), strict=True):
-        hows, status = [how for how in record.how.split("; ") if how], record.status
-        if status == NOT_DONE and own:  # a part of it that patterns have made a clause of
-            status = APPROXIMATED
-            hows = ["a part of it is not done" if how.startswith("no activity") else how for how in hows]
-        may_differ = bool(own) and (roughly or status != DONE)
-        plain = not (may_differ and not _says(record, own))
-        status = APPROXIMATED if status == DONE and not plain else status
-        if status == APPROXIMATED:
-            is_same = bool(said) and said[-1].shown == record.shown and "is shown as" in said[-1].how
-            whole = [] if plain else ["is shown as the same movement" if is_same else f"is shown as {record.shown}"]
-            hows = _without_repeats([*whole, *_more_than(record.shown, hows)] or hows)
+    for record, own in zip(records, of_each, strict=True):
+        if is_all_done or record.status == NOT_DONE or not own:
+            said.append(record)
+            continue
+        shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
+        is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown and "is shown as" in said[-1].how
+        whole = [] if is_plain else ["is shown as the same movement" if is_same else f"is shown as {shown}"]
+        hows = [how for how in record.how.split("; ") if how]
+        hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
+        status = APPROXIMATED if roughly and not is_plain else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
 
 
-def order_of_all(given_text: str, records: Sequence[ClauseRecord], steps: Sequence[Step]) -> list[str]:
-    """One line on all that is shown, in its order, of a sentence that is not simply done, if its records do not say it.
+def _of_a_part(record: ClauseRecord) -> ClauseRecord:
+    """The record of a clause that has steps; of one that is not done, a part is that patterns have made a clause of."""
+    if record.status != NOT_DONE:
+        return record
+    hows = ["a part of it is not done" if how.startswith("no activity") else how for how in record.how.split("; ")]
+    return replace(record, status=APPROXIMATED, how="; ".join(hows))
 
-    Words that are not known may have changed what was read of the others, and which of them belong together.
-    """
+
+def order_of_all(given_text: str, records: Sequence[ClauseRecord], steps: Sequence[Step]) -> list[str]:
+    """One line on the order of all that is shown, where a sentence is not simply done and its clauses leave it open."""
     if len(steps) < 2 or all(record.status == DONE for record in records):
         return []
     whole = in_turn(steps)
@@ -64,9 +71,7 @@ def order_of_all(given_text: str, records: Sequence[ClauseRecord], steps: Sequen
         return []
     numbers = [min(step.clauses) for step in steps if step.clauses]
     is_moved = any(after < before for before, after in pairwise(numbers)) or len(steps) > len(records)
-    of_each = zip(records, steps_of_each(len(records), steps), strict=True)
-    is_hidden = any(record.status == DONE and own and not _says(record, own) for record, own in of_each)
-    return [f"shown in all: {whole}"] if is_moved or is_hidden or _AT_ONCE.search(given_text) else []
+    return [f"shown in all: {whole}"] if is_moved or _AT_ONCE.search(given_text) else []
 
 
 def _more_than(shown: str, hows: list[str]) -> list[str]:
