@@ -11,6 +11,7 @@ from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRe
 from mmweaver.motion.language.words import word_of
 
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
 _STEM = 4
@@ -91,7 +92,7 @@ def _is_within(how: str, shown: str) -> bool:
 
 
 def _without_repeats(hows: list[str]) -> list[str]:
-    """Reasons without those that only say again which words are not shown; all such words in one reason."""
+    """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
     lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
     others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
     others = [how for how in others if not any(_names(how, words) for words in lost)]
@@ -102,9 +103,11 @@ def _without_repeats(hows: list[str]) -> list[str]:
         for words in dict.fromkeys(lost)
         if not any(words != more and f" {words} " in f" {more} " for more in lost) and not _stems(words) <= said
     ]
-    listed = [*map(repr, kept)]
+    generally = [found[1] for how in others if (found := _NOT_SHOWN.fullmatch(how))]
+    listed = [*generally, *map(repr, kept)]
     all_lost = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
-    return [*others, *([f"{all_lost} {'is' if len(kept) == 1 else 'are'} not shown"] if kept else [])]
+    others = [how for how in others if not _NOT_SHOWN.fullmatch(how)]
+    return [*others, *([f"{all_lost} {'is' if len(listed) == 1 else 'are'} not shown"] if listed else [])]
 
 
 def _names(how: str, words: str) -> bool:

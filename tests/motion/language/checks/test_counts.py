@@ -10,7 +10,7 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("sentence", "how"),
     [
-        ("a person walks in all directions", "'in all directions' is not shown"),
+        ("a person walks in all directions", "'in all directions' are not shown"),
         ("a person takes four steps and kicks with each step", "'with each step' is not shown"),
         ("a person raises their arms one at a time", "'one at a time' is not shown"),
         ("the person is doing arm lifts with his right arm", "'arm lifts' is shown once"),
