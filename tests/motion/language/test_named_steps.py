@@ -99,6 +99,8 @@ def test_what_is_cut_is_not_said_to_be_shown() -> None:
     records = plan_motion("a person waves ten times, then bows", duration_s=3.0).clauses
     assert records[0].shown == "waving with one hand six times"
     assert records[1].shown == ""
+    (waves,) = plan_motion("a person waves ten times politely", duration_s=2.0).clauses
+    assert waves.how.startswith(f"is shown as {waves.shown}; 'politely' is not shown")
 
 
 def test_every_activity_has_words() -> None:

@@ -16,13 +16,22 @@ _SIDES = ("left", "right")
 
 
 def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
-    """The records with what each clause is shown as: 'then waving' where that begins after another step."""
+    """The records with what each clause is shown as: 'then waving' where that begins after another step.
+
+    Records that said so of other steps, before these were cut or placed, say it of these.
+    """
     shown, before = [], [id(step) for step in steps[:1]]
     for own in steps_of_each(len(records), steps):
         follows = bool(own) and id(own[0]) not in before
         shown.append("then " * follows + in_turn(own))
         before += map(id, own)
-    return tuple(replace(record, shown=words) for record, words in zip(records, shown, strict=True))
+    return tuple(_shown_as(record, words) for record, words in zip(records, shown, strict=True))
+
+
+def _shown_as(record: ClauseRecord, shown: str) -> ClauseRecord:
+    before, now = (f"is shown as {words.removeprefix('then ')}" for words in (record.shown, shown))
+    how = record.how.replace(before, now) if record.shown and shown else record.how
+    return replace(record, shown=shown, how=how)
 
 
 def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:
