@@ -7,6 +7,7 @@ from mmweaver.motion.animation.assemble import assembled_controls, solved
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
@@ -36,7 +37,7 @@ class Motion:
     @property
     def clauses(self) -> tuple[ClauseRecord, ...]:
         """What became of every clause: the plan's records, and what the room made of them."""
-        records = self.plan.clauses
+        records = with_what_is_shown(self.plan.clauses, self.plan.steps)
         room = [note for note in self.assumptions if note not in self.plan.notes]
         for step in self.plan.steps:
             for note in room:

@@ -10,12 +10,16 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("text", "activity", "said"),
     [
-        ("a person is wiggling their arms", "wave", "only what the arms do is shown"),
-        ("a person puts both hands to his face", "hands_up", "only what the hands do is shown"),
-        ("a person holds their arms straight up", "raise", "only what the arms do is shown"),
+        ("a person is wiggling their arms", "wave", "is shown as waving with both hands"),
+        ("a person puts both hands to his face", "hands_up", "is shown as holding the hands up before the face"),
+        (
+            "a person holds their arms straight up",
+            "raise",
+            "is shown as raising both hands overhead",
+        ),
         ("the person is throwing a basketball", "throw", "'basketball' is not shown"),
         ("he kicks high in the air", "kick", "'mid-air' is not shown"),
-        ("a person moves objects around", "reach", "is shown as reaching out"),
+        ("a person moves objects around", "reach", "is shown as reaching with one hand"),
     ],
 )
 def test_a_limb_or_the_known_words_stand_for_a_clause_which_is_said(text, activity, said):

@@ -54,4 +54,4 @@ def test_a_cross_or_hook_that_nobody_throws_is_no_punch(text: str):
 def test_tennis_is_shown_as_its_strokes_and_said():
     plan = parse("a person plays tennis")
     assert [step.upper for step in plan.steps] == ["forehand", "backhand"]
-    assert "is shown as a forehand and a backhand" in plan.notes[0]
+    assert "is shown as a forehand with one hand once, then a backhand with one hand once" in plan.notes[0]

@@ -1,46 +1,74 @@
-"""What a step shows, in words."""
+"""What steps show, wholly, in words: limb and side, way, posture, speed, count, seconds, place, what is done at once.
 
-from collections.abc import Iterable
+They follow what `motion/animation/library` and `motion/planning` make of each field, not what a sentence said of it.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import groupby
 
-from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.named_body import of_the_body
+from mmweaver.motion.language.named_counts import times_said
+from mmweaver.motion.language.named_hands import of_a_hand
+from mmweaver.motion.language.plan import ClauseRecord, Step
 
-_ONE = ("left", "right")
-# Words with other senses: "picking up speed", "sweeping with a foot".
-_PLAINLY = {"pick_up": "picking something up from the floor", "sweep": "sweeping the floor"}
-_AIMED = ("turn", "stumble", "lean", "leap")
-_WAYS = {
-    **{way: f" {way}" for way in ("forwards", "backwards", "away", "back", "around")},
-    **{side: f" to the {side}" for side in _ONE}, "towards": " towards the radar", "pacing": " to and fro",
-    "circle": " in a circle", "spot": " on the spot",
-}  # fmt: skip
+_SIDES = ("left", "right")
+
+
+def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
+    """The records with what each clause is shown as: 'then waving' where that begins after another step.
+
+    Records that said so of other steps, before these were cut or placed, say it of these.
+    """
+    shown, before = [], [id(step) for step in steps[:1]]
+    for own in steps_of_each(len(records), steps):
+        follows = bool(own) and id(own[0]) not in before
+        shown.append("then " * follows + in_turn(own))
+        before += map(id, own)
+    return tuple(_shown_as(record, words) for record, words in zip(records, shown, strict=True))
+
+
+def _shown_as(record: ClauseRecord, shown: str) -> ClauseRecord:
+    before, now = (f"is shown as {words.removeprefix('then ')}" for words in (record.shown, shown))
+    how = record.how.replace(before, now) if record.shown and shown else record.how
+    return replace(record, shown=shown, how=how)
+
+
+def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:
+    """The steps of each of so many clauses; one that no clause names counts with the next one that a clause does."""
+    of_each: list[list[Step]] = [[] for _ in range(clauses)]
+    waiting: list[Step] = []
+    for step in steps:
+        own = dict.fromkeys(number for part in step.each for number in part.clauses)
+        waiting.append(step)
+        for place, number in enumerate(own):
+            of_each[number] += waiting if place == 0 else [step]
+        waiting = [] if own else waiting
+    return of_each
 
 
 def in_turn(steps: Iterable[Step]) -> str:
     """Steps in the order in which they are shown: 'walking backwards, then standing'."""
-    return ", then ".join(name for name, _ in groupby(map(doing, steps)))
+    names = [doing(step) for step in steps]
+    for length in range(1, len(names) // 2 + 1):
+        times, rest = divmod(len(names), length)
+        if not rest and names == names[:length] * times:
+            return f"{', then '.join(names[:length])}, {times_said(times)} in a row"
+    return ", then ".join(name if len([*same]) == 1 else f"{name}, and again" for name, same in groupby(names))
 
 
 def doing(step: Step) -> str:
-    """What a step shows, with its way or side: 'walking backwards', 'kicking with the left foot'."""
-    limb = (
-        f" with the {step.hand} hand"
-        if step.hand in _ONE
-        else f" with the {step.foot} foot"
-        if step.foot in _ONE
-        else ""
+    """All that a step shows: 'walking three steps backwards', 'sitting on the sofa while waving with one hand'."""
+    body = "" if step.lower == "stand" and step.upper else of_the_body(step)
+    parts = [body, *(of_a_hand(step, part) for part in step.each if part.upper)]
+    facing = {"towards": "the radar", "away": "away from the radar"}.get(step.facing) or (
+        f"{step.facing} in the photo" if step.facing in _SIDES else f"the {step.facing}"
     )
-    limb = " with both hands" if step.hand == "both" and step.upper else limb
-    way = _WAYS.get(step.direction, "") if step.moves or step.lower in _AIMED else ""
-    way = f" to the {step.target}" if step.moves and step.target else way
-    if step.lower == "turn" and (step.turn_deg or step.direction in _ONE):
-        way = f" {abs(step.turn_deg) or 90:g} degrees{way}"
-    upper = _PLAINLY.get(step.upper, BY_KEY[step.upper].name) if step.upper else ""
-    if step.upper == "raise":
-        upper, limb = (
-            {"": "raising a hand", "both": "raising both hands"}.get(step.hand, f"raising the {step.hand} hand"),
-            "",
-        )
-    lower = "" if step.lower == "stand" and upper else f"{_PLAINLY.get(step.lower, BY_KEY[step.lower].name)}{way}"
-    return " and ".join(filter(None, (lower, upper))) + limb
+    only_looks = step.upper in ("look_around", "point") and step.facing in _SIDES
+    faces = step.facing and not (step.facing == "down" or step.lower == "turn" or only_looks)
+    return (
+        " while ".join(filter(None, parts))
+        + (f", facing {facing}" if faces else "")
+        + ("" if step.place is None else f", {step.place.words}")
+        + (f" for {step.seconds:g} s" if step.seconds else "")
+    )

@@ -98,6 +98,7 @@ class ClauseRecord:
     clause: str
     status: str = DONE  # done | approximated | not done
     how: str = ""
+    shown: str = ""  # all that its steps show, in their order (`named_steps`); "" where it has none
 
     @property
     def sentence(self) -> str:

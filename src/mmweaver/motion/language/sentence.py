@@ -26,6 +26,7 @@ from mmweaver.motion.language.left_out import (
 )
 from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
@@ -107,10 +108,11 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
     number, first = len(plan.clauses), plan.steps[0]
     if len(plan.steps) == 1 and BY_KEY[first.upper or first.lower].counted_s and not first.count and not first.moves:
         first = replace(first, count=repeated.times, clauses=(*first.clauses, number))
-        return replace(plan, text=given_text, steps=(first,), clauses=(*plan.clauses, ClauseRecord(repeated.words)))
-    again = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-    steps = carried_over(with_postures([*plan.steps, *again]))
-    clauses = (*plan.clauses, ClauseRecord(repeated.words))
+        steps = [first]
+    else:
+        again = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
+        steps = carried_over(with_postures([*plan.steps, *again]))
+    clauses = with_what_is_shown((*plan.clauses, ClauseRecord(repeated.words)), steps)
     return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 
@@ -140,7 +141,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             record(before, APPROXIMATED, f"only its beginning is shown in {duration_s:.1f} s")
     for step in wanted[len(kept) :]:
         record(step, NOT_DONE, f"the {duration_s:.1f} s are over before it")
-    return replace(plan, notes=tuple(notes), clauses=tuple(clauses))
+    return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
 
 
 def _limits(step: Step) -> tuple[float, float]:
@@ -158,7 +159,7 @@ def _limits(step: Step) -> tuple[float, float]:
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
-    if step.style == "several" and not step.count:  # "is doing squats"
+    if step.style == "several" and not step.count:  # "does squats"
         least, natural = _limits(replace(step, count=2))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
     doing = BY_KEY[step.upper or step.lower]

@@ -20,6 +20,7 @@ SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
+_EXERCISES = ("squat", "lunge", "jump", "kick")
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
@@ -37,7 +38,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if step.upper == "raise" and _lifts_a_thing(words[at + 1 : at + 4]):
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     step = _times_of_a_walk(_arms_step(step, texts), texts)
-    if step.lower == "squat" and word.text == "squats" and any(w.lemma == "do" and w.form == "ing" for w in words[:at]):
+    if _is_of_several(step, words, at):
         step = replace(step, style="several")
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
@@ -56,6 +57,13 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         counted = BY_KEY[step.upper or step.lower].counted_s is not None
         step = replace(step, count=SEVERAL_TIMES if counted else 0)
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
+
+
+def _is_of_several(step: Step, words: list[Word], at: int) -> bool:
+    """Whether an exercise is named in the plural without a number: "does squats"."""
+    word = words[at]
+    can_be = step.lower in _EXERCISES and not (step.upper or step.style or step.count)
+    return can_be and word.text == f"{word.lemma}s" and any(one.lemma in ("do", "perform") for one in words[:at])
 
 
 def _lifts_a_thing(following: list[Word]) -> bool:

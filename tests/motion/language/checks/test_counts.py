@@ -10,7 +10,7 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("sentence", "how"),
     [
-        ("a person walks in all directions", "'in all directions' is not shown"),
+        ("a person walks in all directions", "'in all directions' are not shown"),
         ("a person takes four steps and kicks with each step", "'with each step' is not shown"),
         ("a person raises their arms one at a time", "'one at a time' is not shown"),
         ("the person is doing arm lifts with his right arm", "'arm lifts' is shown once"),
@@ -20,7 +20,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person turns in place for two full turns", "'two full turns' is not shown"),
         ("a person steps left and right twice", "'twice' is shown for one side"),
         ("a person kicks with the left leg, then the right leg, then both", "'both' is not shown"),
-        ("a person runs to the right and then reverses", "reverses"),
+        ("a person runs to the right and then reverses", "is shown as running backwards"),
         ("a person sits down and stands up repeatedly", "'repeatedly' is not shown"),
     ],
 )

@@ -10,7 +10,10 @@ from mmweaver.motion.language.sentence import parse
     [
         ("a person walks and does a U-turn on the spot", "'turn' is not shown"),
         ("the person waves and after doing a round kick kicks with the left leg", "the order shown is"),
-        ("a person sits down after waving and clapping", "the order shown is waving, then sitting down"),
+        (
+            "a person sits down after waving and clapping",
+            "the order shown is waving with one hand repeatedly, then sit",
+        ),
         ("a person is doing the running man dance", "'running' is shown as a movement of its own"),
         ("he takes three steps to the right and two steps back in a side step motion", "'side step' is shown as a mov"),
     ],

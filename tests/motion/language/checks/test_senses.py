@@ -8,8 +8,8 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("sentence", "how"),
     [
-        ("a person sweeps the left leg", "'sweeps' is shown as sweeping the floor with both hands"),
-        ("a person does a small sweep with the right foot", "'sweep' is shown as sweeping the floor"),
+        ("a person sweeps the left leg", "is shown as sweeping the floor with both hands"),
+        ("a person does a small sweep with the right foot", "is shown as sweeping the floor"),
         ("a person does a sweep kick with the right foot", "'sweep' is shown as sweeping the floor"),
         ("the man picks up the soap and washes his left arm", "is shown as picking something up from the floor"),
         ("a person does a foot rise", "'rise' is shown as standing up"),

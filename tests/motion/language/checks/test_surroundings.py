@@ -13,7 +13,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person steps up, then steps down", "'steps up' is shown on level ground"),
         (
             "a person gets up from the chair, walks around it and sits down",
-            "'around it' is shown as walking to and fro",
+            "is shown as walking to and fro",
         ),
         ("a person jogs with arms held forward", "'arms held forward' is shown as arms to the sides"),
     ],

@@ -44,8 +44,13 @@ def leg_side(context: StepContext) -> int:
 
 
 def repeats(context: StepContext, natural_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
-    """(start, duration) in seconds of each repetition: as many as the sentence asks for, else one."""
-    count = max(context.step.count, 1)
+    """(start, duration) in seconds of each repetition: as many as the sentence asks for, else one.
+
+    Several without a number are two, or more where the time allows it.
+    """
+    of_the_body = context.step.style == "several" and not context.step.upper
+    several = max(2, int(context.duration_s / natural_s)) if of_the_body else 1
+    count = context.step.count or several
     slower = (1.35, 1.0, 0.8)[context.step.speed + 1]
     wanted = natural_s / context.step.pace * slower * float(np.exp(context.rng.normal(0, 0.07)))
     each = float(np.clip(min(wanted, context.duration_s / count), least_s, most_s))

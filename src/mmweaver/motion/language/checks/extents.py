@@ -25,12 +25,14 @@ _ONE_ARM = re.compile(
 _ACROSS = re.compile(r"\bacross (?:the|his|her|their|its) (?:body|chest|torso|front)\b")
 _CROSSING = words_in("swipe cross_arms stretch hook forehand backhand golf")
 _BEHIND = re.compile(r"\bbehind (?:him|her|them|it)(?:self|selves)?\b")
+_BETWEEN = re.compile(r"\bin[- ]between\b")
+_IN_FRONT = re.compile(r"\bin front of (?:him|her|them|it|(?:his|her|their|the) (?:body|chest|face))(?:self|selves)?\b")
 _TO_THE_BACK = words_in("open_door sit sit_down lean fall")
 
 
 def extents_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for sizes, heights and ways about that the steps do not have."""
-    for check in (_slightly, _side_to_side, _heights, _around, _whole_body, _one_arm, _across, _behind):
+    for check in (_slightly, _side_to_side, _heights, _around, _whole_body, _one_arm, _across, _behind, _between):
         yield from check(given)
 
 
@@ -122,3 +124,13 @@ def _of_the_verb_before(given: Given, token: Token) -> Iterator[tuple[str, Step]
             return
         if other.part != token.part:
             return
+
+
+def _between(given: Given) -> Iterator[tuple[int, str]]:
+    """Pauses in between are shown at the end, arms that circle at the sides."""
+    for found, token in given.matches(_BETWEEN):
+        yield token.clause, f"{found[0]!r} is not shown"
+    for found, token in given.matches(_IN_FRONT):
+        own = given.of_clause(token.clause)
+        if own and all(step.upper == "arm_circles" for step in own):
+            yield token.clause, f"{found[0]!r} is not shown"

@@ -1,0 +1,157 @@
+"""What a clause is shown as, said in its record unless its own words say just that."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
+from mmweaver.motion.language.named_steps import in_turn, steps_of_each
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.words import word_of
+
+_LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
+_SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
+_ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
+_STEM = 4
+_ALIKE = {  # one limb either way; a knee is not kneeling
+    "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
+}  # fmt: skip
+_AT_ONCE = re.compile(
+    r"\b(?:while|whilst|when|during|simultaneously|same time|as(?! if| though| well))\b", re.IGNORECASE
+)
+_LEG = "what happens with 'leg' is not shown"
+_VAGUE = {  # a reason -> those that say no more where it is there
+    "which foot it is is not shown": ("which hand or foot it is is not shown", _LEG),
+    "which hand or foot it is is not shown": ("how the arms move is not shown", "what the arms do is not shown"),
+    "how the arms move is not shown": ("what the arms do is not shown",),
+}
+
+
+def saying_what_is_shown(
+    records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool
+) -> list[ClauseRecord]:
+    """The records with what each is shown as, where its words do not say just that and not all clauses are simply done.
+
+    Words that are not known may have changed what was read of the clauses around them. Of a sentence that is read
+    `roughly` no clause is simply done whose words do not say what is shown.
+    """
+    of_each = steps_of_each(len(records), steps)
+    records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
+    is_all_done = not roughly and all(record.status == DONE for record in records)
+    said: list[ClauseRecord] = []
+    for record, own in zip(records, of_each, strict=True):
+        if is_all_done or record.status == NOT_DONE or not own:
+            said.append(record)
+            continue
+        shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
+        is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown and "is shown as" in said[-1].how
+        whole = [] if is_plain else ["is shown as the same movement" if is_same else f"is shown as {shown}"]
+        hows = [how for how in record.how.split("; ") if how]
+        hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
+        status = APPROXIMATED if roughly and not is_plain else record.status
+        said.append(replace(record, status=status, how="; ".join(hows)))
+    return said
+
+
+def _of_a_part(record: ClauseRecord) -> ClauseRecord:
+    """The record of a clause that has steps; of one that is not done, a part is that patterns have made a clause of."""
+    if record.status != NOT_DONE:
+        return record
+    hows = ["a part of it is not done" if how.startswith("no activity") else how for how in record.how.split("; ")]
+    return replace(record, status=APPROXIMATED, how="; ".join(hows))
+
+
+def order_of_all(given_text: str, records: Sequence[ClauseRecord], steps: Sequence[Step]) -> list[str]:
+    """One line on the order of all that is shown, where a sentence is not simply done and its clauses leave it open."""
+    if len(steps) < 2 or all(record.status == DONE for record in records):
+        return []
+    whole = in_turn(steps)
+    if any("the order shown is" in record.how or whole in record.how for record in records):
+        return []
+    numbers = [min(step.clauses) for step in steps if step.clauses]
+    is_moved = any(after < before for before, after in pairwise(numbers)) or len(steps) > len(records)
+    return [f"shown in all: {whole}"] if is_moved or _AT_ONCE.search(given_text) else []
+
+
+def _more_than(shown: str, hows: list[str]) -> list[str]:
+    """Reasons without those that say in general what `shown` says wholly, and without vague ones that add nothing."""
+    more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
+    vague = {weaker for better in more for weaker in _VAGUE.get(better, ())}
+    return [how for how in more if how not in vague]
+
+
+def _is_within(how: str, shown: str) -> bool:
+    """Whether a reason is only what something is shown as, and that is what is shown."""
+    found = _SHOWN_AS.fullmatch(how)
+    if found is None:
+        return False
+    generally = not found["what"] or ("'" not in how and _stems(found["how"]) - _NO_WORDS <= _stems(shown))
+    return generally or found["how"] == shown
+
+
+def _without_repeats(hows: list[str]) -> list[str]:
+    """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
+    lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
+    others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
+    others = [how for how in others if not any(_names(how, words) for words in lost)]
+    others = [how for how in others if "the other " not in how or how.replace("the other ", "the ") not in others]
+    said = _stems(" ".join(others))
+    kept = [
+        words
+        for words in dict.fromkeys(lost)
+        if not any(words != more and f" {words} " in f" {more} " for more in lost) and not _stems(words) <= said
+    ]
+    generally = [found[1] for how in others if (found := _NOT_SHOWN.fullmatch(how))]
+    listed = [*generally, *map(repr, kept)]
+    all_lost = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
+    others = [how for how in others if not _NOT_SHOWN.fullmatch(how)]
+    return [*others, *([f"{all_lost} {'is' if len(listed) == 1 else 'are'} not shown"] if listed else [])]
+
+
+def _names(how: str, words: str) -> bool:
+    """Whether a reason says only what happens with a part of the body that the words name, too."""
+    found = re.fullmatch("what happens with '([^']+)' is not shown", how)
+    return found is not None and f" {found[1]} " in f" {words} "
+
+
+def _stems(text: str) -> set[str]:
+    lemmas = [word_of(word).lemma for word in re.findall("[a-z0-9]+", text.lower())]
+    return {_ALIKE.get(lemma, lemma)[:_STEM] for lemma in lemmas}
+
+
+def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
+    """Whether the words of a clause and what it is shown as say the same: 'she kneels down', 'kneeling down'.
+
+    Sides, ways, counts and postures are compared both ways; one movement has no order. The words for a seat or a
+    landmark are free.
+    """
+    said, seen = _stems(record.clause) - _NO_WORDS, _stems(record.shown)
+    if not said:
+        return True
+    kept = {word for word, kind in TARGETS.items() if any(kind in _where(step) for step in own)}
+    kept |= {word for word in SEATS if any(step.seat == word for step in own)}
+    if len(own) > 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
+        return False
+    numbers, counts = _numbers(record.clause), _numbers(record.shown)
+    return numbers <= counts and counts - {1.0, 90.0} <= numbers  # "once", "one hand", a turn to a side
+
+
+def _numbers(text: str) -> set[float]:
+    """The numbers of a text, in words or digits."""
+    words = re.findall(r"[a-z]+|\d+(?:\.\d+)?", text.lower())
+    values = [NUMBERS.get(word) if word.isalpha() else float(word) for word in words]
+    return {float(value) for value in values if value is not None}
+
+
+def _where(step: Step) -> tuple[str, ...]:
+    """The Landmark.kinds that a step goes to, is done at or faces."""
+    return step.target, step.facing, *(() if step.place is None else step.place.words.split())
+
+
+_NO_WORDS = _stems(
+    " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do still"))
+)
+_OF_NUMBERS = _stems(" ".join((*NUMBERS, *TIMES, "times seconds")))
+_TELLING = _stems("left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling")

@@ -1,0 +1,93 @@
+"""A clause that is not simply done says all that it is shown as, unless its own words say just that."""
+
+import pytest
+
+from mmweaver.motion.language.named_steps import with_what_is_shown
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Step
+from mmweaver.motion.language.said_as_shown import order_of_all, saying_what_is_shown
+from mmweaver.motion.language.sentence import parse
+
+
+def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' is not shown") -> ClauseRecord:
+    """The record of a sentence of one clause."""
+    own = [Step(**{**vars(step), "clauses": (0,)}) for step in steps]
+    return saying_what_is_shown(with_what_is_shown([ClauseRecord(words, status, how)], own), own, roughly=False)[0]
+
+
+@pytest.mark.parametrize(
+    ("words", "step"),
+    [
+        ("a person waves", Step(upper="wave")),
+        ("she kneels down", Step(lower="kneel_down")),
+        ("walks three steps forward", Step(lower="walk", direction="forwards", count=3)),
+        ("raises the left arm", Step(upper="raise", hand="left")),
+        ("walks to the couch", Step(lower="walk", seat="couch", direction="seat")),
+        ("turns left", Step(lower="turn", direction="left")),
+        ("claps twice", Step(upper="clap", count=2)),
+    ],
+)
+def test_words_that_say_just_what_is_shown_need_no_others(words: str, step: Step) -> None:
+    assert said(words, step).how == "'so' is not shown"
+
+
+@pytest.mark.parametrize(
+    ("words", "steps", "shown"),
+    [
+        ("waves", [Step(upper="wave", hand="both")], "waving with both hands repeatedly"),
+        ("waves twice", [Step(upper="wave")], "waving with one hand repeatedly"),
+        ("waves with the left hand", [Step(upper="wave", hand="right")], "waving with the right hand repeatedly"),
+        ("walks to his left", [Step(lower="walk", direction="right")], "walking to the right in the photo"),
+        ("walks", [Step(lower="walk", count=2)], "walking two steps"),
+        ("walks", [Step(lower="walk", speed=1)], "walking quickly"),
+        ("kneels", [Step(lower="kneel", style="knee")], "kneeling on one knee"),
+        ("kicks with both legs", [Step(lower="kick")], "kicking with one foot once"),
+        ("walks and waves", [Step(lower="walk"), Step(upper="wave")], "walking, then waving with one hand repeatedly"),
+        ("drinks", [Step(lower="sit", upper="drink")], "sitting while drinking with one hand once or more"),
+    ],
+)
+def test_another_side_count_posture_limb_or_order_is_said(words: str, steps: list[Step], shown: str) -> None:
+    record = said(words, *steps)
+    assert record.how == f"is shown as {shown}; 'so' is not shown"
+    assert record.shown == shown
+
+
+def test_what_is_done_says_in_its_record_alone_what_is_shown() -> None:
+    plan = parse("a person bows, then claps three times")
+    assert [record.shown for record in plan.clauses] == ["bowing once", "then clapping three times"]
+    assert {record.status for record in plan.clauses} == {DONE}
+    assert plan.notes == ()
+
+
+def test_reasons_that_only_say_what_is_shown_are_left_out() -> None:
+    record = said("moves the left arm", Step(upper="wave", hand="left"), how="a moving arm is shown as waving")
+    assert record.how == "is shown as waving with the left hand repeatedly"
+
+
+def test_a_clause_within_the_movement_before_says_so() -> None:
+    steps = [Step(upper="wave", hand="both", clauses=(0, 1))]
+    records = [ClauseRecord("flaps", APPROXIMATED, "'flaps' is not shown"), ClauseRecord("wings", APPROXIMATED, "it")]
+    hows = [record.how for record in saying_what_is_shown(with_what_is_shown(records, steps), steps, roughly=False)]
+    assert hows == [
+        "is shown as waving with both hands repeatedly; 'flaps' is not shown",
+        "is shown as the same movement; it",
+    ]
+
+
+def test_in_a_sentence_that_is_not_simply_done_every_clause_says_what_it_is_shown_as() -> None:
+    stops, bows = parse("a person stops, then bows politely", in_part=True).clauses
+    assert (stops.status, stops.how) == (DONE, "is shown as standing")
+    assert bows.how == "is shown as bowing once; 'politely' is not shown"
+    assert parse("a person stops, then bows", in_part=True).notes == ()
+    walks, _ = parse("a person walks, then bows politely", in_part=True).clauses
+    assert walks.how == ""  # says just what is shown
+
+
+def test_the_order_of_all_is_said_where_the_clauses_leave_it_open() -> None:
+    walk, wave = Step(lower="walk", clauses=(1,)), Step(upper="wave", clauses=(0,))
+    records = [ClauseRecord("waves"), ClauseRecord("walks", APPROXIMATED, "'so' is not shown")]
+    whole = "shown in all: walking, then waving with one hand repeatedly"
+    assert order_of_all("", records, [walk, wave]) == [whole]
+    assert order_of_all("", records, [wave, walk]) == order_of_all("", records[:1] * 2, [walk, wave]) == []
+    in_order = [Step(lower="walk", clauses=(0,)), Step(upper="wave", clauses=(1,))]
+    assert order_of_all("walks while waving so", records, in_order) == [whole]
+    assert order_of_all("walks as if waving so", records, in_order) == []
