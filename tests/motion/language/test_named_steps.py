@@ -12,7 +12,7 @@ from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.named_steps import doing, in_turn, steps_of_each, with_what_is_shown
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import ClauseRecord, Step
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.timing import plan_motion
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")
@@ -69,8 +69,12 @@ def test_a_step_that_no_clause_names_counts_with_the_next_one() -> None:
     rises = Step(lower="stand_up")
     steps = [replace(WALK, clauses=(0,)), rises, replace(WAVE, clauses=(1, 2))]
     assert steps_of_each(4, steps) == [steps[:1], steps[1:], steps[2:], []]
-    records = with_what_is_shown([ClauseRecord("walks"), ClauseRecord("waves")], steps[:1])
-    assert [record.shown for record in records] == ["walking", ""]
+
+
+def test_a_clause_that_shares_its_step_shows_that_and_one_that_is_not_done_nothing() -> None:
+    lost, shared = ClauseRecord("waves", NOT_DONE, "no activity in it is known"), ClauseRecord("at a walk")
+    records = with_what_is_shown([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
+    assert [record.shown for record in records] == ["walking", "walking", ""]
 
 
 def _acted(step: Step) -> np.ndarray:

@@ -11,7 +11,7 @@ _BODY = {  # with the slots "leg" and "foot"; others by their names
     "pick_up": "picking something up from the floor", "put_down": "putting something down on the floor",
     "jumping_jacks": "doing jumping jacks", "push_ups": "doing push-ups", "sit_ups": "doing sit-ups",
     "leap": "jumping", "stand_up": "standing up from a seat", "stomp": "stamping with {foot}",
-    "kick": "kicking with {foot}", "raise_leg": "raising and lowering {leg}", "one_leg": "standing on {leg}",
+    "kick": "kicking with {foot}", "raise_leg": "raising and lowering {leg}", "one_leg": "standing on {leg}", "limp": "limping on {leg}",
     "hop_one_leg": "hopping on {leg}", "lunge": "lunging ahead with {leg}",
     "side_lunge": "lunging to the side with {leg}, the arms out to the sides",
     "limb_extension": "extending {leg} and the arm of that side to the side",
