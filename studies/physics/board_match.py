@@ -2,8 +2,8 @@
 
 Each recording is halved: the board is calibrated on the first half (loops, or frames where there are several), and the
 features of `mmweaver compare` are taken from the second half and from an empty room, as `generate` simulates it, with
-the ideal board, with typical ones and with the calibrated one. A frame's first chirp is in the first half alone, so it is fitted and compared
-on the same frame.
+the ideal board, with typical ones and with the calibrated one. A frame's first chirp is in the first half alone, so it
+is fitted and compared on the same frame.
 
 python -m studies run board_match --data <recordings>
 """
