@@ -1,9 +1,9 @@
 """Does a simulation with a calibrated board show the features of the recording that an ideal and a typical one miss?
 
 Each recording is halved: the board is calibrated on the first half (loops, or frames where there are several), and the
-features of `mmweaver compare` are taken from the second half and from empty rooms simulated with the ideal board, with
-typical ones and with the calibrated one. A frame's first chirp is in the first half alone, so it is fitted and compared
-on the same frame.
+features of `mmweaver compare` are taken from the second half and from an empty room, as `generate` simulates it, with
+the ideal board, with typical ones and with the calibrated one. A frame's first chirp is in the first half alone, so it
+is fitted and compared on the same frame.
 
 python -m studies run board_match --data <recordings>
 """
@@ -27,6 +27,7 @@ from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import ALL_PATHS
 from studies.fields.field_signals import sample_scene
 from studies.manifest import StudyRun
 from studies.physics.signal_statistics import recorded_hall, recorded_people
@@ -81,7 +82,8 @@ def whole_band(config: RadarConfig) -> RadarConfig:
 def simulated(like: AdcCube, board: Board, seed: int) -> AdcCube:
     """The empty sample room, recorded by a radar and board of this kind."""
     frames = min(len(like.samples), MOST_FRAMES)
-    return Simulator(sample_scene(), whole_band(like.config), board=board).run((), num_frames=frames, seed=seed).adc
+    radar = Simulator(sample_scene(), whole_band(like.config), board=board, propagation=ALL_PATHS)
+    return radar.run((), num_frames=frames, seed=seed).adc
 
 
 def rows_of(name: str, adc: AdcCube) -> list[dict[str, Any]]:

@@ -450,6 +450,15 @@ BOARD_LEFT_OUT = RowTable(
         ("ranked right", "{metrics.ranking:number}"),
     ),
 )  # fmt: skip
+ECHO_GAIN = RowTable(
+    sources=("echo_gain/physics",),
+    columns=(
+        ("recording", "{dataset.name}"),
+        ("people over the noise of a cell, recorded, dB", "{metrics.echo_gain.recorded_over_noise_db:.1f}"),
+        ("simulated, dB", "{metrics.echo_gain.simulated_over_noise_db:.1f}"),
+        ("gain, dB", "{metrics.echo_gain:interval.1}"), ("simulated people", "{n}"),
+    ),
+)  # fmt: skip
 HALO_ROWS = (
     ("behind_body_near", "0.6 to 1 m behind a body, dB"), ("behind_body_far", "1 to 2 m behind, dB"),
     ("clutter_peak_over_median", "clutter's peak over its median, dB"), ("plane_wave_share", "best plane wave"),
@@ -473,7 +482,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "codec_unusual": codec_unusual_table,
     "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
     "codec_limits": CODEC_LIMITS.render,
-    "board_match": BOARD_MATCH.render,
+    "board_match": BOARD_MATCH.render, "echo_gain": ECHO_GAIN.render,
     "codec_seconds": CODEC_SECONDS.render,
     "board_left_out": BOARD_LEFT_OUT.render, "rooms_within": ROOMS_WITHIN.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,

@@ -52,6 +52,10 @@ def test_typical_boards_lie_within_the_recorded_spread():
     assert all(0 <= board.range_bias_m <= 0.1 for board in boards)
     spread_db = np.median([np.ptp(board.leakage_level_db[0]) for board in boards])
     assert 10 < spread_db < 20
+    gains_db = [board.gain_db for board in boards]
+    assert -8 <= min(gains_db) < -7.5
+    assert -4.5 < max(gains_db) <= -4
+    assert typical_board(BGT60, 0).gain_db == 0  # the one recording of real samples shows none beyond its error
 
 
 def test_what_a_radar_compensates_is_no_error():

@@ -74,6 +74,15 @@ def one_target(board: Board | None, config: RadarConfig = AWR1843, frames: int =
     return cube_of_target(board, config, frames)[:, :, config.num_loops // 2]
 
 
+def test_a_gain_is_of_what_is_resolved_and_of_people_not_of_clutter():
+    """Clutter's level was recorded over the noise of boards that have a gain."""
+    effects = BoardEffects(Board(gain_db=-8.0), AWR1843)
+    place_m, one = np.array([[0.0, 2.0, 0.0], [1.0, 3.0, 0.5]]), np.ones(2, complex)
+    for kind, wanted_db in ((Interaction.DIFFUSE, -8.0), (Interaction.SPECULAR, -8.0), (Interaction.CLUTTER, 0.0)):
+        amplitude = effects.on_static(scattered_paths(place_m, one, kind, AWR1843)).amplitude
+        np.testing.assert_allclose(20 * np.log10(np.abs(amplitude.numpy())), wanted_db, atol=1e-4)
+
+
 def cube_of_target(board: Board | None, config: RadarConfig, frames: int) -> np.ndarray:
     effects = None if board is None else BoardEffects(board, config)
     radar = config if effects is None else effects.radar

@@ -22,6 +22,7 @@ WIDEST_BAND_HZ = 10e9  # of one board
 IF_END_DB, IF_NEAR_DB = (-9.0, -4.5), (-5.0, -1.0)  # of power: last 5 % of the band, range bins 2 to 6
 NEAR_SHAPE = ((0, 1.0), (2, 1.0), (6, 0.95), (10, 0.6), (16, 0.35), (30, 0.0))  # range bin, share of IF_NEAR_DB
 END_SHAPE = ((0.89, 0.0), (0.905, -1.0), (0.92, -3.0), (0.935, -6.0), (0.955, -9.3))  # share of the band, dB
+GAIN_DB = (-8.0, -4.0)  # of echoes over noise, less than transmit power, antennas and noise figure promise: losses
 CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations of each transmitter's and each receiver's
 LEAKAGE_OVER_NOISE_DB = (33.0, 41.0)  # of a chirp's range bin; with the skirt 2 dB more
 LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
@@ -84,7 +85,7 @@ def typical_board(config: RadarConfig, number: int) -> Board:
     gain_db = rng.normal(0, CHANNEL_GAIN_DB, (tx, 1)) + rng.normal(0, CHANNEL_GAIN_DB, (1, rx))
     phase_deg = between(CHANNEL_PHASE_DEG) * (rng.normal(size=(tx, 1)) + rng.normal(size=(1, rx)))
     sign = 1 if rng.random() < 0.5 else -1
-    starts = float(config.complex_samples)  # a recording of real samples (one board) shows no first chirp apart
+    starts = float(config.complex_samples)  # real samples (one board) show no first chirp apart, and no loss
     level_db, end_m = LEAKAGE_OVER_NOISE_DB, SKIRT_END_M
     if not config.complex_samples:
         level_db, end_m = REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M
@@ -97,6 +98,7 @@ def typical_board(config: RadarConfig, number: int) -> Board:
         elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG), range_bias_m=between(RANGE_BIAS_M),
         first_chirp_amplitude_percent=starts * between(FIRST_CHIRP_PERCENT),
         first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
+        gain_db=starts * float(stream(number, "typical board", "gain").uniform(*GAIN_DB)),
         element_spacing_m=_spacing_m(config),
     )  # fmt: skip
 

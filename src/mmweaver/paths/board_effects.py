@@ -15,7 +15,7 @@ from mmweaver.core.board import Board
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import Position, RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.paths.paths import Paths, StaticPaths
+from mmweaver.paths.paths import Interaction, Paths, StaticPaths
 
 DRIFT_PERIODS_S = (3.0, 7.0, 17.0, 41.0)  # of the waves that a drift is made of, equally strong
 SAME_ROW_M = 1e-6
@@ -36,8 +36,12 @@ class BoardEffects:
 
     # paths ----------------------------------------------------------------------------------------------------------
     def on_static(self, paths: StaticPaths) -> StaticPaths:
-        """Static paths (path,) as strong as the receiver's IF leaves them."""
-        factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * self.gain
+        """Static paths (path,) as strong as the receiver's IF leaves them.
+
+        Clutter is as strong as recorded over the noise of boards, whose gains are in it.
+        """
+        gain = torch.where(paths.interaction == int(Interaction.CLUTTER), 1.0, self.gain)
+        factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * gain
         return replace(paths, amplitude=paths.amplitude * factor)
 
     def on_moving(self, paths: Paths, frames: np.ndarray, seed: int) -> Paths:
