@@ -356,3 +356,14 @@ def test_the_person_has_the_errors_of_the_background_recording(room: Room):
     found = board.channel_phase_deg.mean(axis=0)
     assert found[1] - found[2] == pytest.approx(110, abs=25)
     assert weaver.board_of(weaver.request(TEXT, frames=2, board="ideal"), known)[0].is_ideal
+
+
+def test_a_background_that_came_with_its_board_is_by_that_board(weaver: Weaver, room: Room, tmp_path: Path):
+    """Its gain, which no empty room shows, is the person's, too."""
+    empty = weaver.generate(room, "nobody", frames=2, board="typical:3")
+    empty.save(tmp_path / "empty")
+    known = room.with_background(tmp_path / "empty")
+    board, _ = weaver.board_of(weaver.request(TEXT, frames=2), known)
+    assert board.gain_db == empty.board.gain_db < 0
+    assert np.array_equal(board.channel_phase_deg, empty.board.channel_phase_deg)
+    assert not board.leakage_range_m.size  # it is in the recording

@@ -309,7 +309,11 @@ class Weaver(RoomReader):
         boards, where one was asked for.
         """
         is_of_background = request.board is None and room.background is not None
-        board = self._background_board.of(room.background) if is_of_background else request.board_without_background
+        board = (
+            self._background_board.of(room.background, room.background_board)
+            if is_of_background
+            else request.board_without_background
+        )
         if request.board is None and self.calibration is not None:
             board = compensated(board)
         if board.is_ideal:

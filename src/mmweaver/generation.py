@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mmweaver.core.atomic_files import staged_folder
-from mmweaver.core.board import Board
+from mmweaver.core.board import Board, read_board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.record_display import ShownByFacts
@@ -36,6 +36,7 @@ class Room(ShownByFacts):
     inputs: dict[str, Any]
     seconds: dict[str, float]
     background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
+    background_board: Board | None = None  # the board.json that came with it
     views: tuple[PosedPhoto, ...] = ()  # further photos that the scene was made of
 
     def facts(self) -> dict[str, str]:
@@ -58,8 +59,9 @@ class Room(ShownByFacts):
     def with_background(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
         """The room with a background recording by your radar, nobody present: its static clutter is used as it is.
 
-        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube (`came_from`: its file or
-        folder, for meta.json). Raises InputError for what is no recording.
+        `source`: a folder of `mmweaver process` or `generate`, its radar.npz, a capture folder, or the cube
+        (`came_from`: its file or folder). A board.json in that folder is the board that recorded it; else its errors
+        are estimated. Raises InputError for what is no recording.
         """
         if not isinstance(source, RadarCube):
             from mmweaver.recordings.read_recording import read_recording
@@ -67,7 +69,9 @@ class Room(ShownByFacts):
             came_from = Path(source)
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
-        return replace(self, background=source, inputs=inputs)
+        board_file = None if came_from is None else came_from / BOARD_FILE
+        board = read_board(board_file) if board_file is not None and board_file.is_file() else None
+        return replace(self, background=source, background_board=board, inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -14,19 +14,19 @@ class BackgroundBoard:
     def __init__(self) -> None:
         self._latest: tuple[RadarCube, Board] | None = None
 
-    def of(self, recording: RadarCube) -> Board:
-        """The board, as far as the recording shows it; fitted once for a recording. Raises InputError."""
+    def of(self, recording: RadarCube, known: Board | None = None) -> Board:
+        """The board that is `known`, or as far as the recording shows it, fitted once for each. Raises InputError."""
+        if known is not None:
+            return _without_its_noise(known)
         latest = self._latest
         if latest is None or latest[0] is not recording:
             from mmweaver.calibration.calibrate import calibrate
 
             found = calibrate(recording, name="of the background recording").board
-            none = np.zeros(0)
-            latest = (
-                recording,
-                replace(
-                    found, noise_figure_db=None, leakage_range_m=none, leakage_level_db=none, leakage_phase_deg=none
-                ),
-            )
-            self._latest = latest
+            latest = self._latest = recording, _without_its_noise(found)
         return latest[1]
+
+
+def _without_its_noise(board: Board) -> Board:
+    none = np.zeros(0)
+    return replace(board, noise_figure_db=None, leakage_range_m=none, leakage_level_db=none, leakage_phase_deg=none)
