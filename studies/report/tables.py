@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from studies.report.board_tables import BOARDS
 from studies.report.computed_tables import (
     ablation_table,
     activities_table,
@@ -78,16 +79,6 @@ CODEC_CUTS_SECONDS = PivotTable(
 CODEC_LIMITS = PivotTable(
     sources=("codec_limits/*",), rows=(("signal", "{dataset.name}"), ("bytes", "{size.bytes_allowed:,}")),
     across="{record.method}", cell_template="{metrics.nmse_active_db:number} / {metrics.nmse_db:number}",
-)  # fmt: skip
-BOARD_MATCH = RowTable(
-    sources=("board_match/openradar_two_people", "board_match/iwr6843_dca1000", "board_match/bgt60_breathing"),
-    columns=(
-        ("recording", "{dataset.name}"), ("feature", "{title}"),
-        ("recorded", "{metrics.feature.oracle.recorded:number}"),
-        ("ideal board (baseline)", "{metrics.feature.baseline.ideal:number}"),
-        ("typical boards (baseline)", "{metrics.feature.baseline.typical:number}"),
-        ("calibrated board", "{metrics.feature:number}"),
-    ),
 )  # fmt: skip
 LOSSLESS = RowTable(
     sources=("lossless_codecs/*",),
@@ -439,41 +430,6 @@ DAMAGED_SETS = RowTable(
              ("refused in one line", "{metrics.refused:.0f}"), ("accepted", "{metrics.accepted:.0f}")),
 )  # fmt: skip
 
-BOARD_LEFT_OUT = RowTable(
-    sources=("board_left_out/physics",),
-    labels={
-        f"{condition}, {board} left out": f"{text}: {board}"
-        for condition, text in (("before", "first order, ideal board"), ("after", "as generated"))
-        for board in ("openradar_two_people", "iwr6843_hall", "bgt60_breathing")
-    },
-    columns=(("physics: board left out", "{label}"), ("units", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}"),
-        ("ranked right", "{metrics.ranking:number}"),
-    ),
-)  # fmt: skip
-ECHO_GAIN = RowTable(
-    sources=("echo_gain/physics",),
-    columns=(
-        ("recording", "{dataset.name}"),
-        ("people over the noise of a cell, recorded, dB", "{metrics.echo_gain.recorded_over_noise_db:.1f}"),
-        ("simulated, dB", "{metrics.echo_gain.simulated_over_noise_db:.1f}"),
-        ("gain, dB", "{metrics.echo_gain:interval.1}"), ("simulated people", "{n}"),
-    ),
-)  # fmt: skip
-HALO_ROWS = (
-    ("behind_body_near", "0.6 to 1 m behind a body, dB"), ("behind_body_far", "1 to 2 m behind, dB"),
-    ("clutter_peak_over_median", "clutter's peak over its median, dB"), ("plane_wave_share", "best plane wave"),
-    ("antenna_spread", "spread over antennas, dB"),
-)  # fmt: skip
-ROOMS_WITHIN = MetricTable(
-    sources=("board_left_out/physics_rooms", "rooms_without_facing_wall/physics_rooms"),
-    columns=(
-        ("row", "{label}"), ("physics", "{method}"), ("median of rooms", "{metric:number}"),
-        ("rooms within what was recorded", "{metric.within} of {metric.of}"),
-        ("perfect simulator, range of 2 / 3 recordings",
-         "{metric.oracle.of_2_recordings:.1f} / {metric.oracle.of_3_recordings:.1f} of {metric.of}"),
-    ),
-    lines=HALO_ROWS,
-)  # fmt: skip
 TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
@@ -482,9 +438,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "codec_unusual": codec_unusual_table,
     "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
     "codec_limits": CODEC_LIMITS.render,
-    "board_match": BOARD_MATCH.render, "echo_gain": ECHO_GAIN.render,
     "codec_seconds": CODEC_SECONDS.render,
-    "board_left_out": BOARD_LEFT_OUT.render, "rooms_within": ROOMS_WITHIN.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
@@ -505,5 +459,5 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
     "ablation": ablation_table, "ablation_power": partial(ablation_table, folder="ablation_power"),
-    **{name: table.render for name, table in LEARNED.items()},
+    **{name: table.render for name, table in (*LEARNED.items(), *BOARDS.items())},
 }  # fmt: skip
