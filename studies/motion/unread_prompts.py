@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Fourteen draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Fifteen draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -25,12 +25,15 @@ and right swapped, are left out; that none stands so in a stretch that was read 
 it; six that an earlier draw holds, so or swapped, are left out, and the same was not checked. `captions_seventh`:
 283 more (from 452,000, 873,000, 954,000 and 1,010,000; at most the first 75 of each), after `captions_sixth` had been
 used to mend the checks and those from 420,000, 516,000, 546,000 and 676,000 (16,000 characters each) had been read to
-widen them; twelve that an earlier draw holds, so or swapped, are left out, and the same was not checked. Each
-prompt counts once, without those read to widen the grammar or in an earlier draw, or the same with left and right
-swapped.
+widen them; twelve that an earlier draw holds, so or swapped, are left out, and the same was not checked.
+`captions_eighth`: 300 more (from 310,000, 470,000, 772,000, 1,000,000 and 1,028,000; at most the first 75 of each, 65
+of the last), after `captions_seventh` had been used to mend the checks and records and those from 128,000 and 232,000
+had been read to develop the records; 64 that an earlier draw holds, so or swapped, understood or not, are left out,
+and the same was not checked. Each prompt counts once, without those read to widen the grammar or in an earlier draw,
+or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb and a88c8ccf
-before the last nine);
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb, a88c8ccf
+and 6808b0c9 before the last ten);
 what was understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
 results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
@@ -56,7 +59,7 @@ DRAWS = {  # -> ending of the names of their files
     "strangers": "_strangers", "strangers_second": "_strangers_second",
     "strangers_third": "_strangers_third", "strangers_fourth": "_strangers_fourth",
     "captions_fifth": "_captions_fifth", "captions_sixth": "_captions_sixth",
-    "captions_seventh": "_captions_seventh",
+    "captions_seventh": "_captions_seventh", "captions_eighth": "_captions_eighth",
 }  # fmt: skip
 
 

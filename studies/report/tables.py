@@ -272,6 +272,7 @@ KITML = MetricTable(
     ),
 )  # fmt: skip
 UNDERSTOOD_SINCE = (("understood_today", "understood by the grammar that the faults found have changed"),)
+CAPTIONS = ("fifth", "sixth", "seventh", "eighth")  # the newest draws of people's captions
 UNREAD = {
     f"unread_{'captions' if 'captions' in name else 'prompts'}{name.removeprefix('_captions')}": MetricTable(
         sources=(f"unread_prompts/reading{name}",),
@@ -288,18 +289,17 @@ UNREAD = {
         ("", False, True), ("_second", False, True), ("_captions", False, True), ("_third", True, True),
         ("_captions_second", True, True), ("_captions_third", True, True), ("_captions_fourth", True, True),
         ("_strangers", True, True), ("_strangers_second", True, True), ("_strangers_third", True, False),
-        ("_strangers_fourth", True, False), ("_captions_fifth", True, False), ("_captions_sixth", True, False),
-        ("_captions_seventh", True, False),
+        ("_strangers_fourth", True, False), *((f"_captions_{draw}", True, False) for draw in CAPTIONS),
     )
 }  # fmt: skip
 CAPTIONS_DRAWS = RowTable(
-    sources=tuple(f"unread_prompts/reading_captions_{draw}" for draw in ("fifth", "sixth", "seventh")),
+    sources=tuple(f"unread_prompts/reading_captions_{draw}" for draw in CAPTIONS),
     columns=(
         ("draw", "{label}"), ("captions", "{n}"), ("understood", "{metrics.understood:percent_interval.1}"),
         ("of these wrong without a word", "{metrics.wrong:percent_interval.1}"),
         ("of these shown otherwise, which is said", "{metrics.said:percent_interval.1}"),
     ),
-    labels={f"prompts of other projects, captions_{draw} draw": draw for draw in ("fifth", "sixth", "seventh")},
+    labels={f"prompts of other projects, captions_{draw} draw": draw for draw in CAPTIONS},
     key="dataset.name",
 )  # fmt: skip
 STRANGERS = MetricTable(
