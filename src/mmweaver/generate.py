@@ -427,4 +427,5 @@ def _person(pose: PoseSequence, motion: Motion) -> dict[str, Any]:
         "starts_at_m": path_m[0],
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),
+        "shown": motion.shown,
     }

@@ -12,12 +12,13 @@ def test_a_sentence_is_read_and_acted_out(tmp_path: Path, capsys: pytest.Capture
     assert main(["motion", "a person bows, then waves", "--out", str(out), "--picture", str(picture), "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert [step["name"] for step in facts["steps"]] == ["bowing", "waving"]
+    assert [step["shown"] for step in facts["steps"]] == ["bowing once", "waving with one hand repeatedly"]
     with np.load(out, allow_pickle=False) as file:
         assert file["joints_m"].shape[1:] == (22, 3)
         assert file["frame_time_s"][-1] >= facts["seconds"]
     assert picture.read_bytes()[:4] == b"\x89PNG"
     assert main(["motion", "a person bows"]) == 0
-    assert "bowing" in capsys.readouterr().out
+    assert "bowing once" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

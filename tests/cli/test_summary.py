@@ -17,15 +17,31 @@ META = {
     "resolution": {
         "range_m": 0.044, "radial_velocity_mps": 0.274, "range_window_m": [0.7, 3.48], "max_velocity_mps": 4.39,
     },
-    "person": {"height_m": 1.75, "starts_at_m": [0.3, 2.9], "ends_at_m": [-0.08, 1.37], "path_length_m": 1.57},
+    "person": {"height_m": 1.75, "starts_at_m": [0.3, 2.9], "ends_at_m": [-0.08, 1.37], "path_length_m": 1.57,
+               "shown": "walking towards the radar, then waving with one hand repeatedly"},
 }  # fmt: skip
 
 
 def test_people_hear_where_what_and_on_which_assumptions():
     text = "\n".join(summary_lines("walk", META))
     files = ("walk", "1.5 s", "radar.npz")
-    for word in (*files, "the network", "4.40 cm", "1.75 m", "(-0.08, 1.37)", "assumed: a stool", "D455"):
+    for word in (
+        *files,
+        "the network",
+        "4.40 cm",
+        "1.75 m",
+        "(-0.08, 1.37)",
+        "assumed: a stool",
+        "D455",
+        "motion:  walking towards the radar, then waving with one hand repeatedly",
+    ):
         assert word in text
+
+
+def test_a_recorded_motion_has_no_line_of_what_is_shown():
+    assert not any(
+        line.startswith("motion:") for line in summary_lines("walk", META | {"person": META["person"] | {"shown": ""}})
+    )
 
 
 def test_machines_read_json(capsys: pytest.CaptureFixture[str]):

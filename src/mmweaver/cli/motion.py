@@ -39,6 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Animates the sentence and writes the requested files. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
     from mmweaver.motion.empty_place import says_nobody
+    from mmweaver.motion.language.named_steps import doing
 
     _check_files(arguments)
     if says_nobody(arguments.text):
@@ -49,7 +50,13 @@ def run(arguments: argparse.Namespace) -> int:
     )  # fmt: skip
     _write_files(arguments, motion.pose)
     steps = [
-        {"name": step.name, "start_s": round(step.start_s, 3), "end_s": round(step.end_s, 3), "said": step.clause}
+        {
+            "name": step.name,
+            "shown": doing(step),
+            "start_s": round(step.start_s, 3),
+            "end_s": round(step.end_s, 3),
+            "said": step.clause,
+        }
         for step in motion.plan.steps
     ]
     if arguments.json:
@@ -65,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({**facts, "assumptions": motion.assumptions, "files": files}, indent=2))
         return 0
     for step in steps:
-        print(f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['name']}")
+        print(f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['shown']}")
     for sentence in motion.assumptions:
         print(f"  assumed: {sentence}")
     return 0

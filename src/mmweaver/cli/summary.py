@@ -36,7 +36,8 @@ def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = Fals
     lines += [f"warning: {sentence}" for sentence in meta.get("warnings", [])]
     people = [meta["person"]] if "person" in meta else meta.get("people", [])
     lines += ["people:  nobody, the room is empty"] if meta.get("people") == [] else []
-    lines += [_person_line(person) for person in people]
+    for person in people:
+        lines += [_person_line(person), *([f"motion:  {person['shown']}"] if person.get("shown") else [])]
     shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]
     lines += [f"assumed: {sentence}" for sentence in shown]
     if hidden := len(meta["assumed"]) - len(shown):

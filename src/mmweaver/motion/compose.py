@@ -7,7 +7,7 @@ from mmweaver.motion.animation.assemble import assembled_controls, solved
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.language.named_steps import with_what_is_shown
+from mmweaver.motion.language.named_steps import in_turn, with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
@@ -33,6 +33,11 @@ class Motion:
     end: BodyState | None = None  # how it ends; None of a recorded motion
     controls: Controls | None = None  # at the times of the pose; None of a recorded motion
     chair: PulledChair | None = None  # that is taken as pulled out
+
+    @property
+    def shown(self) -> str:
+        """All that the person does, in its order; "" of a recorded motion."""
+        return "" if self.person is None else in_turn(self.plan.steps)
 
     @property
     def clauses(self) -> tuple[ClauseRecord, ...]:

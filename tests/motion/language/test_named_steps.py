@@ -23,7 +23,7 @@ WALK, WAVE = Step(lower="walk"), Step(upper="wave")
     [
         (Step(lower="walk", direction="backwards", count=3, speed=-1), "walking three steps backwards slowly"),
         (Step(lower="walk", direction="left"), "walking to the left in the photo"),
-        (Step(lower="walk", direction="back"), "walking back, turned round"),
+        (Step(lower="walk", direction="back"), "walking back the way it came"),
         (Step(lower="walk", direction="circle", arc_deg=-720.0), "walking in a circle clockwise, twice round"),
         (Step(lower="walk", arc_deg=90.0, style="either"), "walking in an arc of 90 degrees"),
         (Step(lower="walk", target="door", distance_m=2.0), "walking 2 m to the door"),

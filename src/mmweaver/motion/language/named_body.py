@@ -24,7 +24,7 @@ _WAYS = {
     **{way: f" {way}" for way in ("forwards", "backwards", "away", "around")},
     **{side: f" to the {side} in the photo" for side in _SIDES}, "away": " away from the radar",
     "towards": " towards the radar", "pacing": " to and fro", "spot": " on the spot", "seat": " to a seat",
-    "back": " back, turned round",
+    "back": " back the way it came",
 }  # fmt: skip
 _ONTO = {
     "back": "on the back", "front": "on the belly", **{side: f"on the person's {side} side" for side in _SIDES},
