@@ -119,7 +119,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    weaver = Weaver("physics", bounces=1, clutter="resolved")
+    weaver = Weaver("physics")
     for name, sentences in SENTENCES.items():
         folder = options.rooms / name
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
