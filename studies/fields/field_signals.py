@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
@@ -73,10 +74,12 @@ def without_room(scene: Scene) -> Scene:
     )
 
 
-def simulator_of(scene: Scene, radar: RadarConfig, receiver: Impairments) -> Simulator:
-    """All paths, and the clutter of the room where there is one; an ideal board."""
+def simulator_of(
+    scene: Scene, radar: RadarConfig, receiver: Impairments | None = None, board: Board | None = None
+) -> Simulator:
+    """All paths, and the clutter of the room where there is one; an ideal board unless one is given."""
     paths = Propagation(clutter=len(scene.faces) > 0)
-    return Simulator(scene, radar, receiver, micro_seed=seed_of_room(scene), propagation=paths)
+    return Simulator(scene, radar, receiver, micro_seed=seed_of_room(scene), board=board, propagation=paths)
 
 
 def pose_of(activity: str, *, seconds: float, seed: int = 0, radar: RadarConfig = AWR1843) -> PoseSequence:

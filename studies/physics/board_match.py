@@ -26,8 +26,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.raw_npy import read_adc_npy
-from mmweaver.paths.ray_traced import Simulator
-from studies.fields.field_signals import sample_scene
+from studies.fields.field_signals import sample_scene, simulator_of
 from studies.manifest import StudyRun
 from studies.physics.signal_statistics import recorded_hall, recorded_people
 from studies.result_rows import complete_rows
@@ -79,9 +78,10 @@ def whole_band(config: RadarConfig) -> RadarConfig:
 
 
 def simulated(like: AdcCube, board: Board, seed: int) -> AdcCube:
-    """The empty sample room, recorded by a radar and board of this kind."""
+    """The empty sample room with its clutter, recorded by a radar and board of this kind."""
     frames = min(len(like.samples), MOST_FRAMES)
-    return Simulator(sample_scene(), whole_band(like.config), board=board).run((), num_frames=frames, seed=seed).adc
+    simulator = simulator_of(sample_scene(), whole_band(like.config), board=board)
+    return simulator.run((), num_frames=frames, seed=seed).adc
 
 
 def rows_of(name: str, adc: AdcCube) -> list[dict[str, Any]]:
