@@ -46,7 +46,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         seconds = time.process_time() - began
         row = result_row(evaluated, options.recordings, "first half of the names", seconds=seconds)
         row |= {
-            "windows_of_commit": source["commit"], "windows": source["windows"], "seeds": [source["seed"]],
+            "windows_of_commit": source["commit"], "windows": source["windows"], "seed": source["seed"],
+            "seeds": [source["seed"]],
             "core_seconds_of_windows": source["core_seconds"],
         }  # fmt: skip
         rows.append(row)
