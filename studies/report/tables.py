@@ -21,7 +21,7 @@ from studies.report.computed_tables import (
 from studies.report.learned_tables import LEARNED
 from studies.report.paper_items import paper_table
 from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, RowTable
-from studies.report.zero_shot_tables import ZERO_SHOT
+from studies.report.zero_shot_tables import CURVE_CELLS, ZERO_SHOT
 
 SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
