@@ -20,8 +20,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--codecs", nargs="*", default=list(USUAL))
     parser.add_argument("--signals", nargs="*", default=list(UNUSUAL))
+    parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     """Every codec on every cube; one file a codec."""
-    measure_signals(run, EXPERIMENT, options.codecs, [UNUSUAL[name](options.data) for name in options.signals])
+    signals = [UNUSUAL[name](options.data) for name in options.signals]
+    measure_signals(run, EXPERIMENT, options.codecs, signals, list(UNUSUAL) if options.keep else None)

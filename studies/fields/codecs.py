@@ -29,7 +29,7 @@ from studies.baselines.mmweaver_codec import Mmw
 from studies.baselines.network_codecs import InrInBytes
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
-from studies.result_rows import complete_rows
+from studies.result_rows import complete_rows, in_order, kept_rows
 from studies.study import Reads
 
 EXPERIMENT = "codecs"
@@ -119,26 +119,10 @@ def measure(
     for name in codec_names:
         codec = CODECS[name]()
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
-        rows = in_order(rows + (kept_rows(run.out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
+        kept = kept_rows(run.out / EXPERIMENT / f"{name}.json", signal_names) if keep else []
+        rows = in_order(rows + kept, list(SIGNALS))
         path = run.write(EXPERIMENT, name, config={"sizes": list(sizes)}, rows=complete_rows(rows))
         print(json.dumps({"codec": name, "written": str(path)}), flush=True)
-
-
-def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
-    """Rows of an earlier run of signals that were not measured again."""
-    if not path.is_file():
-        return []
-    record = json.loads(path.read_text(encoding="utf-8"))
-    return [
-        {"commit": record["provenance"]["commit"], **row}
-        for row in record["rows"]
-        if row["dataset"]["name"] not in measured
-    ]
-
-
-def in_order(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Rows by signal, as SIGNALS has them."""
-    return sorted(rows, key=lambda row: list(SIGNALS).index(row["dataset"]["name"]))
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

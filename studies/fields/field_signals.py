@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
@@ -22,7 +23,8 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import Propagation
+from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 
@@ -72,6 +74,14 @@ def without_room(scene: Scene) -> Scene:
     )
 
 
+def simulator_of(
+    scene: Scene, radar: RadarConfig, receiver: Impairments | None = None, board: Board | None = None
+) -> Simulator:
+    """All paths, and the clutter of the room where there is one; an ideal board unless one is given."""
+    paths = Propagation(clutter=len(scene.faces) > 0)
+    return Simulator(scene, radar, receiver, micro_seed=seed_of_room(scene), board=board, propagation=paths)
+
+
 def pose_of(activity: str, *, seconds: float, seed: int = 0, radar: RadarConfig = AWR1843) -> PoseSequence:
     """A person in the sample room, within the range window of the radar, performing the sentence of an activity."""
     window_m = (float(radar.range_m[0]), float(radar.range_m[-1]))
@@ -96,11 +106,7 @@ def simulated(
     quiet = replace(NOISE_FREE, leakage_db=impairments.leakage_db)
     other = replace(pose, subject=pose.subject + OTHER_SKIN)
     cube, realization, noise_free = (
-        radar_cube(
-            Simulator(scene, AWR1843, receiver, propagation=AS_PUBLISHED)
-            .run(skin, num_frames=num_frames, seed=seed)
-            .adc
-        )
+        radar_cube(simulator_of(scene, AWR1843, receiver).run(skin, num_frames=num_frames, seed=seed).adc)
         for skin, receiver in ((pose, impairments), (other, impairments), (pose, quiet))
     )
     name = activity + (ALONE if is_alone else "")
@@ -152,7 +158,7 @@ def walking_in_recording(data: Path, seed: int = 0) -> StudySignal:
     """
     frame, config = _two_people_frame(data), two_people_radar()
     pose = pose_of("walking", seconds=NUM_FRAMES * config.frame_period_s, seed=seed, radar=config)
-    simulator = Simulator(without_room(sample_scene()), config, IDEAL, propagation=AS_PUBLISHED)
+    simulator = simulator_of(without_room(sample_scene()), config, IDEAL)
     skins = (pose, replace(pose, subject=pose.subject + OTHER_SKIN))
     walkers = [simulator.run(skin, num_frames=NUM_FRAMES, seed=seed).adc for skin in skins]
     gain = np.sqrt(_strongest_moving(two_people(data).cube) / _strongest_moving(radar_cube(walkers[0])))

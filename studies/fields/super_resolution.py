@@ -39,11 +39,9 @@ from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from mmweaver.paths.static_paths import AS_PUBLISHED
 from studies.fields.field_fidelity import PAPER_VALUES
-from studies.fields.field_signals import pose_of, sample_scene, without_room
+from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
 from studies.fields.finer_radar import (
     interpolated,
     middle_delay_s,
@@ -226,7 +224,7 @@ def _run_method(
 
 def _record(config: RadarConfig, pose: PoseSequence) -> AdcCube:
     """Noise-free samples of the person alone."""
-    simulator = Simulator(without_room(sample_scene()), config, IDEAL, propagation=AS_PUBLISHED)
+    simulator = simulator_of(without_room(sample_scene()), config, IDEAL)
     return simulator.run(pose, num_frames=NUM_FRAMES, seed=0).adc
 
 

@@ -14,9 +14,8 @@ from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
-from studies.fields.field_signals import StudySignal, pose_of, sample_scene
+from studies.fields.field_signals import StudySignal, pose_of, sample_scene, simulator_of
 from studies.fields.recording_cuts import cut, office, person_breathing, two_people
 
 BURST_SHARE, BURST_LEVEL = 0.04, 20.0  # of the chirps; amplitude over the root mean square of the samples
@@ -30,7 +29,7 @@ RADAR_SPEED_MPS, NUM_REFLECTORS = 1.2, 300
 def walker(radar: RadarConfig, num_frames: int) -> AdcCube:
     """A person who walks in the sample room, before any radar."""
     pose = pose_of("walking", seconds=num_frames * radar.frame_period_s, radar=radar)
-    return Simulator(sample_scene(), radar, Impairments()).run(pose, num_frames=num_frames, seed=0).adc
+    return simulator_of(sample_scene(), radar, Impairments()).run(pose, num_frames=num_frames, seed=0).adc
 
 
 def cascade() -> RadarConfig:

@@ -77,12 +77,11 @@ def _joined(clouds: tuple[PointCloud, ...], name: str) -> np.ndarray:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="folder of a MARS subject")
-    parser.add_argument("--results", type=Path, default=Path("results"))
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    setup = setup_of(options.results / "mars" / "simulator.json")
+    setup = setup_of(run.out / "mars" / "simulator.json")
     pieces = cut(read_mars(options.data, "validate"), PIECE_FRAMES, SHOWN)
     ours = detect(simulate(pieces, setup, MarsVariant()), pieces, setup, MarsVariant())
     real: Clouds = [piece.clouds for piece in pieces]

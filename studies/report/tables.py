@@ -22,6 +22,7 @@ from studies.report.computed_tables import (
 from studies.report.learned_tables import LEARNED
 from studies.report.paper_items import paper_table
 from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, RowTable
+from studies.report.zero_shot_tables import CURVE_CELLS, ZERO_SHOT
 
 SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FIDELITY = RowTable(
@@ -321,20 +322,6 @@ MOTIONGPT = RowTable(
     ),
     footer=(("chance", "8 %", "25 %", ""),),
 )  # fmt: skip
-CURVE_CELLS: dict[str, tuple[tuple[str, str], ...]] = {
-    name: ((head, "{metrics.window:.3f} ({metrics.window.lowest:.3f} to {metrics.window.highest:.3f})"),)
-    for name, head in (("True", "with generated windows"), ("False", "without"))
-}
-CURVE = PivotTable(
-    sources=("zero_shot/curve",), rows=(("real recordings of each", "{real_recordings_each}"),), across="{generated}",
-    cells=CURVE_CELLS, missing="0.200 (chance)",
-)  # fmt: skip
-LIMBS = PivotTable(
-    sources=("zero_shot/limbs",), rows=(("", "{limb:limb}"),), across="{dataset.name:last_words}",
-    cells={name: ((head, "{metrics.window:.3f} ({from_db:.1f} to {to_db:.1f} dB)"),)
-           for name, head in (("faintest third", "faintest third"), ("middle third", "middle"),
-                              ("brightest third", "brightest"))},
-)  # fmt: skip
 BLIND = RowTable(
     sources=("blind_recognition/*",),
     columns=(
@@ -449,7 +436,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     **{name: table.render for name, table in UNREAD.items()},
     "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render, "motiongpt": MOTIONGPT.render,
-    "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
+    "zero_shot": zero_shot_table, **{name: table.render for name, table in ZERO_SHOT.items()},
     "blind_recognition": BLIND.render, "recognised_elsewhere": ELSEWHERE.render,
     "zero_shot_pose": ZERO_SHOT_POSE.render,
     "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,

@@ -98,7 +98,7 @@ def room_row(name: str, weaver: Weaver, room: Room) -> dict[str, Any]:
 
 def measure(run: StudyRun, folders: list[Path]) -> Path:
     """One row a room, the bundled sample first."""
-    weaver = Weaver("physics", bounces=1, clutter="resolved")
+    weaver = Weaver("physics")
     rows = [room_row("bundled sample", weaver, weaver.sample_room())]
     for folder in folders:
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")

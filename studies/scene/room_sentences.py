@@ -68,7 +68,7 @@ def draw_room(path: Path, name: str, weaver: Weaver, room: Room, sentences: tupl
     ):
         figure = Figure(figsize=(9.6, 1.95 * len(sentences) + 0.4), layout="constrained")
         FigureCanvasAgg(figure)
-        figure.suptitle(f"{name}: six sentences, seeds 0 to 5, 2 s each", fontsize=9, fontweight="bold")
+        figure.suptitle(f"{name}: six sentences, seeds 0 to 5", fontsize=9, fontweight="bold")
         axes = figure.subplots(len(sentences), 4, width_ratios=(1.25, 1.25, 1.1, 1.1), squeeze=False)
         for seed, (row, text) in enumerate(zip(axes, sentences, strict=True)):
             try:
@@ -119,7 +119,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    weaver = Weaver("physics", bounces=1, clutter="resolved")
+    weaver = Weaver("physics")
     for name, sentences in SENTENCES.items():
         folder = options.rooms / name
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")

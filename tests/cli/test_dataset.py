@@ -61,7 +61,7 @@ def test_the_cost_is_printed_beforehand(tmp_path: Path, capsys: pytest.CaptureFi
     assert main([*words, "--dry-run"]) == 0
     shown = capsys.readouterr().out
     assert shown.startswith("12,000 sequences in 100 rooms to generate (train ")
-    assert "22.0 GB" in shown
+    assert "24.2 GB" in shown
     assert main([*words, "--dry-run", "--json", "--geometry-only"]) == 0
     cost = json.loads(capsys.readouterr().out)
     assert cost["sequences"] == sum(cost["splits"].values()) == 12_000

@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
 from mmweaver.datasets.dataset_plan import DatasetPlan
+from tests.training.tiny_data import TINY_PLAN
 
 PLAN = DatasetPlan(kinds=("office", "gym"), lightings=("day",), num_layouts=3, sequences_a_room=10)
 
@@ -34,6 +35,12 @@ def test_time_and_disk_grow_with_frames_and_shrink_without_signals(tmp_path: Pat
     assert light.disk_bytes < 0.1 * own.disk_bytes
     assert "of one core" in own.summary(1)
     assert "with 4 workers" in own.summary(4)
+
+
+def test_a_set_fits_into_what_is_estimated(tmp_path: Path, tiny_signals: Path):
+    cost = estimate_cost(replace(TINY_PLAN, geometry_only=False), AWR1843, tmp_path)
+    made = sum(file.stat().st_size for file in tiny_signals.rglob("*") if file.is_file())
+    assert 0.8 * cost.disk_bytes < made < cost.disk_bytes
 
 
 def test_a_full_disk_is_refused_beforehand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -1,5 +1,6 @@
 """python -m studies: run, list, tables, check."""
 
+import ast
 import json
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from studies.manifest import StudyRun
 from studies.run import RESULTS, check_result, main
 from studies.schema import metric
+from studies.study import study_files
 
 ROW = {
     "dataset": {"name": "data", "sha256": "0"}, "n": 1, "seeds": [0], "seconds": {"all": 0.1},
@@ -23,6 +25,18 @@ def test_the_options_of_a_study_are_reachable(capsys: pytest.CaptureFixture[str]
     assert "--codecs" in shown
     assert "--results" in shown
     assert "--threads" in shown
+
+
+def test_no_study_declares_an_option_that_the_runner_has():
+    own = {
+        (name, word.value)
+        for name, file in study_files().items()
+        for call in ast.walk(ast.parse(file.read_text("utf-8")))
+        if isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "add_argument"
+        for word in call.args
+        if isinstance(word, ast.Constant) and word.value in ("--results", "--threads")
+    }
+    assert not own
 
 
 def test_list_names_every_study_with_its_question(capsys: pytest.CaptureFixture[str]):

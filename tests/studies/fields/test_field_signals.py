@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.scorecard import scorecard
-from studies.fields.field_signals import SIGNALS, sample_scene, simulated, without_room
+from mmweaver.paths.paths import Interaction
+from studies.fields.field_signals import SIGNALS, sample_scene, simulated, simulator_of, without_room
 
 
 def test_the_walking_person_moves_and_the_twin_is_a_twin():
@@ -31,6 +33,13 @@ def test_without_room_nothing_stands_still():
     alone = simulated("walking", is_alone=True, num_frames=2)
     room = simulated("walking", is_alone=False, num_frames=2)
     assert cells_of(room.cube).is_active.mean() > cells_of(alone.cube).is_active.mean()
+
+
+def test_walkers_have_all_paths_and_the_clutter_of_their_room():
+    for scene, has_clutter in ((sample_scene(), True), (without_room(sample_scene()), False)):
+        room = simulator_of(scene, AWR1843).room
+        assert room.propagation.bounces == 2
+        assert bool((room.paths.interaction == int(Interaction.CLUTTER)).any()) is has_clutter
 
 
 def test_recordings_need_their_folder():

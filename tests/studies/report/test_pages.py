@@ -26,7 +26,7 @@ def test_every_occurrence_is_filled():
     text = "<!-- table: real_rooms -->\nstale\n<!-- end -->\n"
     filled = with_tables(text + "between\n" + text, RESULTS)
     assert "stale" not in filled
-    assert filled.count("| bundled sample | 331 | 100 % | 36 % |") == 2
+    assert filled.count("| bundled sample | 337 | 100 % | 36 % |") == 2
     assert "\nbetween\n" in filled
     assert with_tables(filled, RESULTS) == filled
 
