@@ -31,6 +31,7 @@ NEEDED: dict[str, dict[str, str | None]] = {
     "compress": {"file": "BIN", "--radar": "awr1843", "-o": "OUT", "--bytes": "9999"},
     "calibrate": {"recordings": "BIN", "--radar": "awr1843", "--out": "OUT"},
     "recognise": {"action": "train", "place": "A", "--out": "OUT"},
+    "studio": {"--port": "0"},  # whatever else listens on the usual one
     "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
     "dataset": {"out": "OUT", "--rooms": "office"}, "pose": {"model": "POSE", "--points": "BIN", "--out": "OUT"},
     "train": {"recipe": "weaver", "task": None, "--data": "DATA", "--out": "OUT"},
