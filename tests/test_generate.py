@@ -363,7 +363,9 @@ def test_a_background_that_came_with_its_board_is_by_that_board(weaver: Weaver, 
     empty = weaver.generate(room, "nobody", frames=2, board="typical:3")
     empty.save(tmp_path / "empty")
     known = room.with_background(tmp_path / "empty")
+    of_file = room.with_background(tmp_path / "empty" / "radar.npz")
     board, _ = weaver.board_of(weaver.request(TEXT, frames=2), known)
+    assert weaver.board_of(weaver.request(TEXT, frames=2), of_file)[0].digest == board.digest
     assert board.gain_db == empty.board.gain_db < 0
     assert np.array_equal(board.channel_phase_deg, empty.board.channel_phase_deg)
     assert not board.leakage_range_m.size  # it is in the recording

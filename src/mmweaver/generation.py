@@ -69,9 +69,15 @@ class Room(ShownByFacts):
             came_from = Path(source)
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
-        board_file = None if came_from is None else came_from / BOARD_FILE
-        board = read_board(board_file) if board_file is not None and board_file.is_file() else None
-        return replace(self, background=source, background_board=board, inputs=inputs)
+        return replace(self, background=source, background_board=_board_next_to(came_from), inputs=inputs)
+
+
+def _board_next_to(recording: Path | None) -> Board | None:
+    """The board.json in the folder of a recording. Raises InputError for a damaged one."""
+    if recording is None:
+        return None
+    file = (recording.parent if recording.is_file() else recording) / BOARD_FILE
+    return read_board(file) if file.is_file() else None
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -32,7 +32,9 @@ _TO_THE_BACK = words_in("open_door sit sit_down lean fall")
 
 def extents_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for sizes, heights and ways about that the steps do not have."""
-    for check in (_slightly, _side_to_side, _heights, _around, _whole_body, _one_arm, _across, _behind, _between):
+    for check in (
+        _slightly, _side_to_side, _heights, _around, _whole_body, _one_arm, _across, _behind, _between, _in_front,
+    ):  # fmt: skip
         yield from check(given)
 
 
@@ -127,9 +129,13 @@ def _of_the_verb_before(given: Given, token: Token) -> Iterator[tuple[str, Step]
 
 
 def _between(given: Given) -> Iterator[tuple[int, str]]:
-    """Pauses in between are shown at the end, arms that circle at the sides."""
+    """Pauses in between are shown at the end."""
     for found, token in given.matches(_BETWEEN):
         yield token.clause, f"{found[0]!r} is not shown"
+
+
+def _in_front(given: Given) -> Iterator[tuple[int, str]]:
+    """Arms circle at the sides."""
     for found, token in given.matches(_IN_FRONT):
         own = given.of_clause(token.clause)
         if own and all(step.upper == "arm_circles" for step in own):
