@@ -7,6 +7,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.approximations import APPROXIMATIONS, with_approximations
 from mmweaver.motion.language.normal_forms import NORMAL_FORMS, in_normal_form
+from mmweaver.motion.language.plan import DONE, ClauseRecord
 from mmweaver.motion.language.sentence import parse
 
 
@@ -79,7 +80,8 @@ def test_only_how_something_is_done_is_left_out():
 def test_what_no_step_shows_is_said_of_its_clause():
     records = parse("a person walks to the door, then dances to the left").clauses
     assert [record.how for record in records] == ["", "is shown as dancing; the side is not shown"]
-    assert not parse("a person walks to the left with the right hand raised").clauses[0].how
+    raised = parse("a person walks to the left with the right hand raised").clauses[0]
+    assert raised == ClauseRecord(raised.clause, DONE, f"is shown as {raised.shown}", raised.shown)
 
 
 def test_poses_that_are_said_stand_for_yoga():

@@ -41,7 +41,7 @@ def test_records_notes_and_steps_quote_the_sentence_as_it_was_given():
         for words in (record.clause for record in plan.clauses):
             assert all(part in text for part in words.split(" ... "))
         assert len(set(plan.notes)) == len(plan.notes)
-        not_done = [record for record in plan.clauses if record.how]
+        not_done = [record for record in plan.clauses if record.status != DONE]
         assert [record.sentence for record in not_done] == [note for note in plan.notes if note in {
             record.sentence for record in not_done
         }]  # fmt: skip

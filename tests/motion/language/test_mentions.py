@@ -79,7 +79,7 @@ def test_the_person_stays_seated_and_keeps_the_side():
     ],
 )
 def test_furniture_that_no_step_uses_is_named(text: str, not_shown: str):
-    said = "".join(clause.how for clause in parse(text, in_part=True).clauses)
+    said = "".join(clause.how for clause in parse(text, in_part=True).clauses if clause.status != DONE)
     assert (not_shown in said) if not_shown else not said
 
 

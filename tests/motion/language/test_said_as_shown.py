@@ -4,7 +4,7 @@ import pytest
 
 from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Step
-from mmweaver.motion.language.said_as_shown import order_of_all, saying_what_is_shown
+from mmweaver.motion.language.said_as_shown import saying_what_is_shown
 from mmweaver.motion.language.sentence import parse
 
 
@@ -73,21 +73,18 @@ def test_a_clause_within_the_movement_before_says_so() -> None:
     ]
 
 
-def test_in_a_sentence_that_is_not_simply_done_every_clause_says_what_it_is_shown_as() -> None:
+def test_every_clause_says_what_it_is_shown_as_unless_its_words_do() -> None:
     stops, bows = parse("a person stops, then bows politely", in_part=True).clauses
     assert (stops.status, stops.how) == (DONE, "is shown as standing")
     assert bows.how == "is shown as bowing once; 'politely' is not shown"
-    assert parse("a person stops, then bows", in_part=True).notes == ()
     walks, _ = parse("a person walks, then bows politely", in_part=True).clauses
-    assert walks.how == ""  # says just what is shown
+    assert walks.how == ""
 
 
-def test_the_order_of_all_is_said_where_the_clauses_leave_it_open() -> None:
-    walk, wave = Step(lower="walk", clauses=(1,)), Step(upper="wave", clauses=(0,))
-    records = [ClauseRecord("waves"), ClauseRecord("walks", APPROXIMATED, "'so' is not shown")]
-    whole = "shown in all: walking, then waving with one hand repeatedly"
-    assert order_of_all("", records, [walk, wave]) == [whole]
-    assert order_of_all("", records, [wave, walk]) == order_of_all("", records[:1] * 2, [walk, wave]) == []
-    in_order = [Step(lower="walk", clauses=(0,)), Step(upper="wave", clauses=(1,))]
-    assert order_of_all("walks while waving so", records, in_order) == [whole]
-    assert order_of_all("walks as if waving so", records, in_order) == []
+def test_notes_are_of_clauses_that_are_not_done() -> None:
+    plan = parse("a person stops, then bows")
+    assert [record.how for record in plan.clauses] == ["is shown as standing", ""]
+    assert plan.notes == ()
+    assert parse("a person stops, then bows politely", in_part=True).notes == (
+        "'bows politely' is shown as bowing once; 'politely' is not shown",
+    )

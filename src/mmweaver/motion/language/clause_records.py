@@ -11,7 +11,7 @@ from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_c
 from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.said_as_shown import order_of_all, saying_what_is_shown
+from mmweaver.motion.language.said_as_shown import saying_what_is_shown
 from mmweaver.motion.language.shared_steps import shown_only_once
 from mmweaver.motion.language.shown_in_turn import shown_in_turn
 
@@ -74,8 +74,8 @@ def in_the_given_words(
 ) -> tuple[list[Step], list[ClauseRecord], list[str]]:
     """Steps and records with the clauses as they were given, in the sentence's order, and a note for each not done so.
 
-    A clause that is not simply done says all that it is shown as; of a sentence that is read `roughly` every clause
-    does, unless its words say just that. A clause that patterns have added counts with the one before.
+    A record says all that its clause is shown as, unless the words say just that; notes are of clauses that are not
+    done. A clause that patterns have added counts with the one before.
     """
     own_words = as_given(given_text, records)
     given = [number for number in sorted(records) if own_words[number]] or [min(records)]
@@ -89,8 +89,7 @@ def in_the_given_words(
     index = {number: given.index(of_given[number]) for number in records}
     steps = [_in_own_words(step, index, clauses) for step in steps]
     clauses = saying_what_is_shown(with_what_is_shown(clauses, steps), steps, roughly=roughly)
-    notes = [record.sentence for record in clauses if record.how]
-    return steps, clauses, notes + order_of_all(given_text, clauses, steps)
+    return steps, clauses, [record.sentence for record in clauses if record.status != DONE]
 
 
 def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:

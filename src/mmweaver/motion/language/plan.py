@@ -93,7 +93,7 @@ DONE, APPROXIMATED, NOT_DONE = "done", "approximated", "not done"
 
 @dataclass(frozen=True)
 class ClauseRecord:
-    """What became of one clause of the sentence; `how` says it where it was not simply done."""
+    """What became of one clause of the sentence; `how` says what is shown unless the words do, and what is not."""
 
     clause: str
     status: str = DONE  # done | approximated | not done

@@ -3,11 +3,10 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
-from mmweaver.motion.language.named_steps import in_turn, steps_of_each
-from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.named_steps import steps_of_each
+from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.words import word_of
 
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
@@ -18,9 +17,6 @@ _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
     "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
 }  # fmt: skip
-_AT_ONCE = re.compile(
-    r"\b(?:while|whilst|when|during|simultaneously|same time|as(?! if| though| well))\b", re.IGNORECASE
-)
 _LEG = "what happens with 'leg' is not shown"
 _VAGUE = {  # a reason -> those that say no more where it is there
     "which foot it is is not shown": ("which hand or foot it is is not shown", _LEG),
@@ -32,17 +28,15 @@ _VAGUE = {  # a reason -> those that say no more where it is there
 def saying_what_is_shown(
     records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool
 ) -> list[ClauseRecord]:
-    """The records with what each is shown as, where its words do not say just that and not all clauses are simply done.
+    """The records with what each is shown as, done or not, where its words do not say just that.
 
-    Words that are not known may have changed what was read of the clauses around them. Of a sentence that is read
-    `roughly` no clause is simply done whose words do not say what is shown.
+    Of a sentence that is read `roughly` no clause is done whose words do not say what is shown.
     """
     of_each = steps_of_each(len(records), steps)
     records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
-    is_all_done = not roughly and all(record.status == DONE for record in records)
     said: list[ClauseRecord] = []
     for record, own in zip(records, of_each, strict=True):
-        if is_all_done or record.status == NOT_DONE or not own:
+        if record.status == NOT_DONE or not own:
             said.append(record)
             continue
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
@@ -61,18 +55,6 @@ def _of_a_part(record: ClauseRecord) -> ClauseRecord:
         return record
     hows = ["a part of it is not done" if how.startswith("no activity") else how for how in record.how.split("; ")]
     return replace(record, status=APPROXIMATED, how="; ".join(hows))
-
-
-def order_of_all(given_text: str, records: Sequence[ClauseRecord], steps: Sequence[Step]) -> list[str]:
-    """One line on the order of all that is shown, where a sentence is not simply done and its clauses leave it open."""
-    if len(steps) < 2 or all(record.status == DONE for record in records):
-        return []
-    whole = in_turn(steps)
-    if any("the order shown is" in record.how or whole in record.how for record in records):
-        return []
-    numbers = [min(step.clauses) for step in steps if step.clauses]
-    is_moved = any(after < before for before, after in pairwise(numbers)) or len(steps) > len(records)
-    return [f"shown in all: {whole}"] if is_moved or _AT_ONCE.search(given_text) else []
 
 
 def _more_than(shown: str, hows: list[str]) -> list[str]:

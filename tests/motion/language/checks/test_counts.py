@@ -3,7 +3,7 @@
 import pytest
 
 from mmweaver.motion.language.checks.counts import repeats
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import DONE, Step
 from mmweaver.motion.language.sentence import parse
 
 
@@ -42,7 +42,7 @@ def test_what_is_not_repeated_is_said(sentence: str, how: str) -> None:
     ],
 )
 def test_what_is_repeated_is_done(sentence: str) -> None:
-    assert not [record.how for record in parse(sentence).clauses if record.how]
+    assert {record.status for record in parse(sentence).clauses} == {DONE}
 
 
 def test_once_or_more_than_once() -> None:

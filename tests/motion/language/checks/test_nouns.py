@@ -2,6 +2,7 @@
 
 import pytest
 
+from mmweaver.motion.language.plan import DONE
 from mmweaver.motion.language.sentence import parse
 
 
@@ -35,4 +36,4 @@ def test_things_that_no_step_has_are_named(sentence: str, how: str) -> None:
     ],
 )
 def test_things_of_a_step_need_no_word(sentence: str) -> None:
-    assert not [record.how for record in parse(sentence).clauses if record.how]
+    assert {record.status for record in parse(sentence).clauses} == {DONE}

@@ -38,4 +38,4 @@ def test_ways_that_are_gone_need_no_word(sentence: str) -> None:
     assert "level ground" not in hows
     assert "through" not in hows
     assert "around" not in hows
-    assert "to the sides" not in hows
+    assert "'to the sides'" not in hows

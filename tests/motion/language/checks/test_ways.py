@@ -4,7 +4,7 @@ import pytest
 
 from mmweaver.motion.language.checks.given import given
 from mmweaver.motion.language.checks.ways import ways_not_shown
-from mmweaver.motion.language.plan import ClauseRecord, Step
+from mmweaver.motion.language.plan import DONE, ClauseRecord, Step
 from mmweaver.motion.language.sentence import parse
 
 RECORDS = {0: ClauseRecord("goes right"), 1: ClauseRecord("left"), 2: ClauseRecord("left again")}
@@ -56,4 +56,4 @@ def test_words_that_are_no_ways(sentence: str) -> None:
 
 
 def test_what_goes_to_both_sides_shows_both() -> None:
-    assert not [record.how for record in parse("a person twists left and right").clauses if record.how]
+    assert {record.status for record in parse("a person twists left and right").clauses} == {DONE}
