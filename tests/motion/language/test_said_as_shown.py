@@ -1,4 +1,4 @@
-"""A clause that is not simply done says all that it is shown as, unless its own words say just that."""
+"""Every clause says all that it is shown as, unless its own words say just that."""
 
 import pytest
 
@@ -88,3 +88,11 @@ def test_notes_are_of_clauses_that_are_not_done() -> None:
     assert parse("a person stops, then bows politely", in_part=True).notes == (
         "'bows politely' is shown as bowing once; 'politely' is not shown",
     )
+
+
+@pytest.mark.parametrize("status", [DONE, APPROXIMATED])
+def test_a_clause_without_a_step_of_its_own_is_shown_as_its_neighbour(status: str) -> None:
+    steps = [Step(lower="bend", clauses=(0,))]
+    records = with_what_is_shown([ClauseRecord("bends down"), ClauseRecord("tries to get up", status)], steps)
+    tries = saying_what_is_shown(records, steps, roughly=False)[1]
+    assert (tries.status, tries.how) == (status, f"is shown as {records[0].shown}")

@@ -10,7 +10,7 @@ from itertools import groupby
 from mmweaver.motion.language.named_body import of_the_body
 from mmweaver.motion.language.named_counts import times_said
 from mmweaver.motion.language.named_hands import of_a_hand
-from mmweaver.motion.language.plan import DONE, ClauseRecord, Step
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
 
 _SIDES = ("left", "right")
 
@@ -26,7 +26,7 @@ def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -
         shown.append("then " * follows + in_turn(own))
         before += map(id, own)
     for number, record in enumerate(records):  # "turns left while walking": the step is that of the other clause
-        if record.status == DONE and not shown[number]:
+        if record.status != NOT_DONE and not shown[number]:
             shown[number] = next(filter(None, (*shown[number + 1 :], *shown[:number][::-1])), "")
     return tuple(_shown_as(record, words) for record, words in zip(records, shown, strict=True))
 

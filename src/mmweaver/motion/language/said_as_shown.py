@@ -36,7 +36,7 @@ def saying_what_is_shown(
     records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
     said: list[ClauseRecord] = []
     for record, own in zip(records, of_each, strict=True):
-        if record.status == NOT_DONE or not own:
+        if record.status == NOT_DONE or not record.shown:
             said.append(record)
             continue
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
@@ -114,7 +114,7 @@ def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
         return True
     kept = {word for word, kind in TARGETS.items() if any(kind in _where(step) for step in own)}
     kept |= {word for word in SEATS if any(step.seat == word for step in own)}
-    if len(own) > 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
+    if len(own) != 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
         return False
     numbers, counts = _numbers(record.clause), _numbers(record.shown)
     return numbers <= counts and counts - {1.0, 90.0} <= numbers  # "once", "one hand", a turn to a side
