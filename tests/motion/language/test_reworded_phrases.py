@@ -254,3 +254,24 @@ def test_the_way_back_to_a_place_ends_with_its_clause() -> None:
 
 def test_who_has_not_gone_does_not_walk_back() -> None:
     assert parse("a person falls to the left and then steps back where he was").clauses[1].status == "approximated"
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("a person slowly walks along a line and holds their arms out", [("walk", "arms_out")]),
+        ("a person walks forward and keeps his hands on his hips", [("walk", "hips")]),
+        ("a man walks forward and has his arms crossed", [("walk", "cross_arms")]),
+        ("a person walks and holds his arms up", [("walk", "raise_hold")]),
+        ("a person walks with their arms raised above their head", [("walk", "raise_hold")]),
+        ("a person walks with his arms raised to the sides", [("walk", "arms_out")]),
+        ("a person walks to the door and holds the arms out", [("walk", ""), ("stand", "arms_out")]),
+        ("a person walks five steps and holds the arms out", [("walk", ""), ("stand", "arms_out")]),
+        ("a person from a t pose walking and then sitting down", [("stand", "arms_out"), ("walk", ""), ("sit_down", "")]),
+        ("a person starts in a t-pose and walks forward", [("stand", "arms_out"), ("walk", "")]),
+        ("a person is standing in a t-pose, then walks", [("stand", "arms_out"), ("walk", "")]),
+        ("a person walks in a t-pose", [("walk", "arms_out")]),
+    ],
+)  # fmt: skip
+def test_arms_are_held_during_a_walk_and_leave_a_t_pose_before_it(text: str, steps: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.upper) for step in parse(text, in_part=True).steps] == steps

@@ -10,6 +10,9 @@ _SLIGHTLY = r"(?:slightly|a (?:little )?bit|a little|somewhat)"
 _ENDS = r"(?= *(?:$|[.,;]| and\b| then\b| before\b))"
 _DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lowers? (?:him|her|them)self|falls?)"
 _ONWARD = r"(?:return|go|come|walk|run|jog|turn|sit|stand|jump|step|move|start|stop|wave|bend|kneel)"  # "and after return back"
+_WALKS = r"(?:walk|run|jog|march|stroll|mov)(?:s|es|ing|ning|ging|ping)"
+_WALK_ALONE = rf"{_WALKS}(?: (?!(?:to|and|then|until|times|steps?|while|with)\b)[a-z]+){{0,5}}?"  # to no place, and not counted
+_T_POSE = r"(?:(?:an?|the|his|her|their) )?t[- ]?pose\b(?: position)?"
 _ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
 
 
@@ -52,6 +55,14 @@ def _limb_after_limb(found: re.Match[str]) -> str:
     verb, limb = found["verb"], found["limb"]
     one = f"{verb} " if verb.startswith(("rais", "lift")) else f"{verb} with "
     return f"{one}the left {limb}, then {one}the right {limb}"
+
+
+def _from_a_t_pose(found: re.Match[str]) -> str:
+    """Whoever starts or comes from it, or stands in it and then does something, lowers the arms."""
+    starts, then = found["starts"], found["then"]
+    if not re.match("(?i)from|(?:is |are )?(?:start|begin|go|mov|com)", found[0]) and not re.search("then|before", then):
+        return found[0]
+    return f"{starts}in a t-pose, lowers them, then "
 
 
 _TURNS = ["", "", "two", "three", "four", "five"]
@@ -118,6 +129,13 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
     (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),
     (r"\b(?P<verb>(?:rais|lift|wav|kick|touch|punch|stretch|stomp|swing|shak|tap)(?:s|es|ing)(?: (?!and\b|then\b|with\b)[a-z]+){0,2}?)(?: with)? one (?P<limb>hand|arm|leg|foot|knee) after (?:another|the other)\b", _limb_after_limb),
+    # arms that are held during a walk, or only where somebody starts
+    (rf"\b(?:(?:is|are) )?standing in (?={_T_POSE})", "stands in "),
+    (rf"\b({_WALK_ALONE}),? and (?:is |are )?(?:(?:hold|keep)(?:s|ing)|has|have|having) (?=(?:{_OWN}|both )*(?:arms|hands)\b(?: (?:on|at) |[a-z ]*\b(?:crossed|folded)))", r"\1 with "),
+    (rf"\b({_WALK_ALONE}),? and (?:is |are )?(?:(?:hold|keep)(?:s|ing)|has|have|having) (?=(?:{_OWN}|both )*(?:arms|hands)\b)", r"\1 while holding "),
+    (rf"\b({_WALK_ALONE}),? (?:with|while (?:holding|keeping|having)) ((?:{_OWN}|both |left |right )*(?:arms?|hands?)) (?:(?:raised|lifted|held|stretched|extended|straight)(?: (?:up(?:wards?)?|high|overhead|in the air|(?:above|over) {_OWN}head))+|(?:up(?:wards?)? )?(?:high|overhead|in the air|(?:above|over) {_OWN}head)|(?<=arms )(?:raised|lifted|up)(?! (?:to|at|sideways|forward|ahead|in front)\b))\b", r"\1 while raise_and_hold \2"),
+    (rf"\b(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? )?(?:off |out )?(?:in|from|with|at) {_T_POSE}(?: and| then|,)* (?:lower|drop)(?:s|ing) (?:them|(?:{_OWN}|both )*(?:arms|hands)\b)", "in a t-pose, lowers them"),
+    (rf"\b(?P<starts>(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? (?:off |out )?)?)(?:in|from|with|at) {_T_POSE}(?P<then>(?: (?:and|then|before|to)\b|,)*) (?=[a-z])", _from_a_t_pose),
     # postures
     (r"\bon all four\b", "on all fours"),
     (rf"\b{_DOWN}(?: down)? (?:on|onto|to) {_OWN}(?:hands and knees|knees and hands|all fours)(?:,| and| then)+ (?:walk|mov|go|crawl)(?:s|es)\b", "crawls"),
