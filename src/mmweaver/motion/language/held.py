@@ -17,7 +17,7 @@ _OF_THE_HEAD = words_in("look_around nod shake_head")
 _HELD_LOW = {"squat": "crouch", "crouch": "crouch", "raise_leg": "one_leg", "one_leg": "one_leg"}
 _HELD_BENT = ("bend", "lean")
 _NOT_HELD = words_in("lunge kick twist bow side_lunge limb_extension march")
-_STAYING = words_in(
+STAYING = words_in(
     "stay stays staying remain remains remaining hold holds holding keep keeps keeping wait waits waiting pause pauses"
     " pausing freeze freezes freezing rest rests resting"
 )
@@ -53,7 +53,7 @@ def with_what_is_held(
             result.append(step)
             continue
         stays = (
-            step.lower == "stand" and not step.upper and not step.on_feet and bool(own & _STAYING) and not own & ARMS
+            step.lower == "stand" and not step.upper and not step.on_feet and bool(own & STAYING) and not own & ARMS
         )
         held = _held_pose(before, step) if stays else None
         if held is not None:
@@ -85,7 +85,7 @@ def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
     """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
     own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
     still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
-    return still and bool(own & _LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
+    return still and bool(own & _LOWERED) and not own & (STAYING - {"rests", "resting", "rest"})
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
@@ -112,7 +112,7 @@ def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
     """A raised arm that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
     more = words_in(" ".join(clauses.get(number, "") for number in step.clauses[1:]))
-    if step.upper != "raise" or step.lower != "stand" or step.count or not more & _STAYING or "down" in more:
+    if step.upper != "raise" or step.lower != "stand" or step.count or not more & STAYING or "down" in more:
         return step
     return replace(step, upper="raise_hold")
 
@@ -122,7 +122,7 @@ def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
     first, last = max(before.clauses, default=-1), min(step.clauses, default=-1)
     between = [*before.clauses[1:], *range(first + 1, last)]
     words = [words_in(clauses.get(number, "")) for number in between]
-    return any(own & _COMING_BACK and not own & _STAYING for own in words)
+    return any(own & _COMING_BACK and not own & STAYING for own in words)
 
 
 def _held_pose(before: Step, step: Step) -> Step | None:

@@ -12,6 +12,7 @@ _DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|l
 _ONWARD = r"(?:return|go|come|walk|run|jog|turn|sit|stand|jump|step|move|start|stop|wave|bend|kneel)"  # "and after return back"
 _WALKS = r"(?:walk|run|jog|march|stroll|mov)(?:s|es|ing|ning|ging|ping)"
 _WALK_ALONE = rf"{_WALKS}(?: (?!(?:to|and|then|until|times|steps?|while|with)\b)[a-z]+){{0,5}}?"  # to no place, and not counted
+_A_SHORT = r"(?:an?|some) (?:(?:short|brief|long|little|small|quick|slight) )*"
 _T_POSE = r"(?:(?:an?|the|his|her|their) )?t[- ]?pose\b(?: position)?"
 _ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
 
@@ -136,6 +137,9 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b({_WALK_ALONE}),? (?:with|while (?:holding|keeping|having)) ((?:{_OWN}|both |left |right )*(?:arms?|hands?)) (?:(?:raised|lifted|held|stretched|extended|straight)(?: (?:up(?:wards?)?|high|overhead|in the air|(?:above|over) {_OWN}head))+|(?:up(?:wards?)? )?(?:high|overhead|in the air|(?:above|over) {_OWN}head)|(?<=arms )(?:raised|lifted|up)(?! (?:to|at|sideways|forward|ahead|in front)\b))\b", r"\1 while raise_and_hold \2"),
     (rf"\b(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? )?(?:off |out )?(?:in|from|with|at) {_T_POSE}(?: and| then|,)* (?:lower|drop)(?:s|ing) (?:them|(?:{_OWN}|both )*(?:arms|hands)\b)", "in a t-pose, lowers them"),
     (rf"\b(?P<starts>(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? (?:off |out )?)?)(?:in|from|with|at) {_T_POSE}(?P<then>(?: (?:and|then|before|to)\b|,)*) (?=[a-z])", _from_a_t_pose),
+    # pauses
+    (rf"(^|[.;,]|\b(?:and|then|but)) *(?:,? then )?after {_A_SHORT}(?:pause|break|rest|moment)\b(?: of rest)?,?(?= *[a-z])", r"\1 pauses, then"),
+    (rf"\b(?:takes|makes|has) {_A_SHORT}(?:pause|break|rest)\b(?! of)", "pauses"),
     # postures
     (r"\bon all four\b", "on all fours"),
     (rf"\b{_DOWN}(?: down)? (?:on|onto|to) {_OWN}(?:hands and knees|knees and hands|all fours)(?:,| and| then)+ (?:walk|mov|go|crawl)(?:s|es)\b", "crawls"),
