@@ -16,7 +16,6 @@ from mmweaver.motion.language.sentence import parse
         ("waits, then stands up", ["sit", "stand_up"]),
         ("pauses and gets up from the floor", ["lie", "get_up"]),
         ("stands still and then stands up", ["stand"]),
-        ("sits down and sits", ["sit_down"]),
         ("sits down and stays there", ["sit_down"]),
         ("walks, makes a pause, and walks on", ["walk", "stand", "walk"]),
     ],

@@ -52,9 +52,7 @@ def with_what_is_held(
         if before is None or _comes_back(before, step, clauses):
             result.append(step)
             continue
-        stays = (
-            step.lower == "stand" and not step.upper and not step.on_feet and bool(own & STAYING) and not own & ARMS
-        )
+        stays = step.lower == "stand" and not step.upper and not step.on_feet and bool(own & STAYING) and not own & ARMS
         held = _held_pose(before, step) if stays else None
         if held is not None:
             result[-1] = held

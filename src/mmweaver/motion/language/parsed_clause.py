@@ -79,7 +79,7 @@ class ParsedClause:
             hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
             direction=last.direction or about.direction,
             speed=last.speed or about.speed,
-            count=last.count or (0 if last.lower in GAITS and more.says_times else about.count),
+            count=_count_of(last, more),
             seat=last.seat or about.seat,
             seconds=last.seconds or about.seconds,
             clauses=(*last.clauses, more.number),
@@ -124,6 +124,13 @@ class ParsedClause:
         self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
+
+
+def _count_of(last: Step, more: ParsedClause) -> int:
+    """How often the last step is done: 'does a kick, three times' is three, 'walks, three times' no number of paces."""
+    if more.says_times:
+        return last.count if last.lower in GAITS else max(more.about.count, last.count)
+    return last.count or more.about.count
 
 
 def _as_far_as(about: Step, walk: Step) -> Step:

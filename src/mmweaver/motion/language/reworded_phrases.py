@@ -11,7 +11,9 @@ _ENDS = r"(?= *(?:$|[.,;]| and\b| then\b| before\b))"
 _DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lowers? (?:him|her|them)self|falls?)"
 _ONWARD = r"(?:return|go|come|walk|run|jog|turn|sit|stand|jump|step|move|start|stop|wave|bend|kneel)"  # "and after return back"
 _WALKS = r"(?:walk|run|jog|march|stroll|mov)(?:s|es|ing|ning|ging|ping)"
-_WALK_ALONE = rf"{_WALKS}(?: (?!(?:to|and|then|until|times|steps?|while|with)\b)[a-z]+){{0,5}}?"  # to no place, and not counted
+_WALK_ALONE = (
+    rf"{_WALKS}(?: (?!(?:to|and|then|until|times|steps?|while|with)\b)[a-z]+){{0,5}}?"  # to no place, and not counted
+)
 _A_SHORT = r"(?:an?|some) (?:(?:short|brief|long|little|small|quick|slight) )*"
 _T_POSE = r"(?:(?:an?|the|his|her|their) )?t[- ]?pose\b(?: position)?"
 _ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
@@ -61,7 +63,9 @@ def _limb_after_limb(found: re.Match[str]) -> str:
 def _from_a_t_pose(found: re.Match[str]) -> str:
     """Whoever starts or comes from it, or stands in it and then does something, lowers the arms."""
     starts, then = found["starts"], found["then"]
-    if not re.match("(?i)from|(?:is |are )?(?:start|begin|go|mov|com)", found[0]) and not re.search("then|before", then):
+    if not re.match("(?i)from|(?:is |are )?(?:start|begin|go|mov|com)", found[0]) and not re.search(
+        "then|before", then
+    ):
         return found[0]
     return f"{starts}in a t-pose, lowers them, then "
 

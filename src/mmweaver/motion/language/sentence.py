@@ -135,7 +135,9 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = with_shared_speeds(at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text)
+    sequence = with_shared_speeds(
+        at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
+    )
     on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
