@@ -8,7 +8,7 @@ from mmweaver.motion.language.sentence import parse
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("does a right hook and a right punch", ["a hook with the right hand once", "then punching with the right hand once"]),
+        ("does a hook and a right punch", ["a hook with one hand once", "then punching with the right hand once"]),
         ("throws a left punch", ["punching with the left hand once"]),
         ("throws a straight punch", ["punching with one hand once"]),
         ("throws punches", ["punching with both hands in turn repeatedly"]),

@@ -24,7 +24,10 @@ AIMED = ("point", "look_around")
 _EXERCISES = ("squat", "lunge", "jump", "kick", "side_lunge")
 # Activities that a noun in the singular names once: "a punch", "does a squat".
 _SINGLE = words_in(
-    "punch jab cross hook uppercut kick squat jump leap hop hop_one_leg jumping_jacks push_ups throw lunge side_lunge stomp"
+    """
+    punch jab cross hook uppercut kick squat jump leap hop hop_one_leg jumping_jacks push_ups throw lunge side_lunge
+    stomp
+    """
 )
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
