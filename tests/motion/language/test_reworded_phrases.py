@@ -140,7 +140,7 @@ def test_an_s_bends_to_both_sides(text: str) -> None:
     [
         ("is walking and turning to the left", [("walk", 60.0)]),
         ("walks on all four", [("crawl", 0.0)]),
-        ("gets down on his knees and hands and walks around", [("crawl", 0.0)]),
+        ("gets down on his knees and hands and walks around", [("kneel_down", 0.0), ("crawl", 0.0)]),
         ("appears to be jumping", [("jump", 0.0)]),
         ("walks side ways", [("sidestep", 0.0)]),
         ("spins around and walks back", [("turn", 0.0), ("walk", 0.0)]),
@@ -275,3 +275,19 @@ def test_who_has_not_gone_does_not_walk_back() -> None:
 )  # fmt: skip
 def test_arms_are_held_during_a_walk_and_leave_a_t_pose_before_it(text: str, steps: list[tuple[str, str]]) -> None:
     assert [(step.lower, step.upper) for step in parse(text, in_part=True).steps] == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("gets on their hands and knees, crawls, then stands up", ["kneel_down", "crawl", "kneel_up"]),
+        ("gets down on all fours and crawls forward", ["kneel_down", "crawl"]),
+        ("gets on the floor and crawls", ["kneel_down", "crawl"]),
+        ("falls on the floor and walks away", ["fall", "get_up", "walk"]),
+        ("is leaning to the left, turns and twists at waist", ["lean", "twist"]),
+        ("rotates at the waist", ["twist"]),
+        ("climbs a step while walking", ["stairs", "walk"]),
+    ],
+)
+def test_what_is_gone_through_first_and_what_is_turned(text: str, steps: list[str]) -> None:
+    assert [step.lower for step in parse(f"a person {text}", in_part=True).steps] == steps

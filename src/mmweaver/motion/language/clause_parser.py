@@ -269,7 +269,9 @@ def _goes_another_way(words: list[Word], before: int, i: int) -> bool:
     return _is_gait(words[i]) and all(ways) and not counted and (between[-1].text in _WAYS)
 
 
-_WAYS = frozenset({"left", "right", "forward", "forwards", "backward", "backwards", "back", "straight", "ahead", "away"})
+_WAYS = frozenset(
+    {"left", "right", "forward", "forwards", "backward", "backwards", "back", "straight", "ahead", "away"}
+)
 
 
 def _before_adjectives(words: list[Word], i: int) -> str:
