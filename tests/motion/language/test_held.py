@@ -115,3 +115,15 @@ def test_a_walk_has_its_own_direction(text: str, ahead: bool) -> None:
     assert plan.steps[-1].moves
     assert plan.steps[-1].arms_ahead == ahead
     assert all(clause.status == "done" for clause in plan.clauses)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("bends down and stays there", "bending down and staying down"),
+        ("bends down, pauses, then stands up", "bending down, staying down and coming up"),
+        ("leans to the left, stays there and straightens up", "leaning to the person's left, staying so and coming up"),
+    ],
+)
+def test_who_stays_down_comes_up_only_where_it_is_said(text: str, shown: str) -> None:
+    assert parse(f"a person {text}", in_part=True).clauses[0].shown == shown

@@ -67,6 +67,8 @@ def with_what_is_held(
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
+    if result and result[-1].style == "held" and _comes_up_last(result[-1], clauses):
+        result[-1] = replace(result[-1], style="released")
     if result and _is_brought_back(result[-1], clauses):
         result.append(
             Step(
@@ -77,6 +79,12 @@ def with_what_is_held(
             )
         )
     return result, lost
+
+
+def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> bool:
+    """Whether a clause after the last step, which needs none of its own, ends a posture that is held."""
+    after = [words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)]
+    return any(own & _COMING_BACK and not own & STAYING for own in after)
 
 
 def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
