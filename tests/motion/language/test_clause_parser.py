@@ -14,6 +14,7 @@ from mmweaver.motion.language.sentence import parse
         ("jumps to the left jumps to the right", ["left", "right"]),
         ("walks forward steps back", ["forwards", "backwards"]),
         ("walks forward three steps", ["forwards"]),
+        ("walks four straight steps forward", ["forwards"]),
     ],
 )
 def test_a_gait_with_a_way_of_its_own_is_a_movement(text: str, ways: list[str]) -> None:

@@ -264,14 +264,12 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
 def _goes_another_way(words: list[Word], before: int, i: int) -> bool:
     """Whether a gait after another one has a way of its own: "takes two steps to the right walks to the left"."""
     between, after = words[before + 1 : i], words[i + 1 : i + 4]
-    counted = bool(between) and (between[-1].text in NUMBERS or between[-1].text in BEFORE_NOUNS)
-    ways = [any(word.text in _WAYS for word in part) for part in (between, after)]
-    return _is_gait(words[i]) and all(ways) and not counted and (between[-1].text in _WAYS)
+    counted = any(word.text in NUMBERS or word.text.isdigit() for word in between)
+    has_way = bool(between) and between[-1].text in _WAYS and any(word.text in _WAYS for word in after)
+    return _is_gait(words[i]) and has_way and not counted
 
 
-_WAYS = frozenset(
-    {"left", "right", "forward", "forwards", "backward", "backwards", "back", "straight", "ahead", "away"}
-)
+_WAYS = frozenset({"left", "right", "forward", "forwards", "backward", "backwards", "back", "ahead", "away"})
 
 
 def _before_adjectives(words: list[Word], i: int) -> str:

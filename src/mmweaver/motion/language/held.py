@@ -67,7 +67,7 @@ def with_what_is_held(
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
-    if result and result[-1].style == "held" and _comes_up_last(result[-1], clauses):
+    if result and result[-1].style == "held" and not result[-1].upper and _comes_up_last(result[-1], clauses):
         result[-1] = replace(result[-1], style="released")
     if result and _is_brought_back(result[-1], clauses):
         result.append(
