@@ -17,6 +17,7 @@ from mmweaver.motion.language.sentence import parse
         ("slowly, a person walks forward and turns around", [-1, -1]),
         ("a person walks forward, turns around and walks back, slowly", [-1, -1, -1]),
         ("a person raises the left arm, then the right arm slowly", [0, -1]),
+        ("a person bends left and right slowly", [-1, -1]),
         ("a person walks forward and slowly backward", [0, -1]),
         ("a person walks forward slowly and then quickly walks backward", [-1, 1]),
         ("a person walks forward, then sits down slowly", [0, -1]),
@@ -29,6 +30,11 @@ def test_a_speed_holds_for_all_that_it_is_said_of(text: str, speeds: list[int]) 
 
 def test_both_curves_of_a_run_are_run() -> None:
     assert {step.lower for step in parse("a person runs in a zigzag", in_part=True).steps} == {"jog"}
+
+
+def test_both_circles_of_a_jog_are_jogged() -> None:
+    steps = parse("a person jogs slowly in a figure 8", in_part=True).steps
+    assert [(step.lower, step.style) for step in steps] == [("jog", "jog"), ("jog", "jog")]
 
 
 def test_all_of_a_walk_is_sideways_where_its_first_clause_says_so() -> None:

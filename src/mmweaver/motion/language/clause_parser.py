@@ -266,7 +266,7 @@ def _goes_another_way(words: list[Word], before: int, i: int) -> bool:
     between, after = words[before + 1 : i], words[i + 1 : i + 4]
     counted = any(word.text in NUMBERS or word.text.isdigit() for word in between)
     has_way = bool(between) and between[-1].text in _WAYS and any(word.text in _WAYS for word in after)
-    return _is_gait(words[i]) and has_way and not counted
+    return (_is_gait(words[i]) or words[i].lemma == "sidestep") and has_way and not counted
 
 
 _WAYS = frozenset({"left", "right", "forward", "forwards", "backward", "backwards", "back", "ahead", "away"})

@@ -28,6 +28,7 @@ _COMING_BACK = words_in(
     "lower lowers lowering lowered drop drops dropping down up upright straightens straightening release releases"
     " uncrosses unfolds back stand_up"
 )
+_RISING = _COMING_BACK | words_in("stand stands standing")
 _LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
@@ -67,8 +68,11 @@ def with_what_is_held(
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
-    if result and result[-1].style == "held" and not result[-1].upper and _comes_up_last(result[-1], clauses):
+    rises = _comes_up_last(result[-1], clauses) if result else None
+    if rises is not None and result[-1].style == "held" and not result[-1].upper:
         result[-1] = replace(result[-1], style="released")
+    elif rises is not None and result[-1].lower in _HELD_LOW.values():
+        result.append(Step(lower="stand", clauses=(rises,), clause=clauses[rises]))
     if result and _is_brought_back(result[-1], clauses):
         result.append(
             Step(
@@ -81,10 +85,10 @@ def with_what_is_held(
     return result, lost
 
 
-def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> bool:
-    """Whether a clause after the last step, which needs none of its own, ends a posture that is held."""
-    after = [words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)]
-    return any(own & _COMING_BACK and not own & STAYING for own in after)
+def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
+    """The clause after the last step, without a step of its own, that ends a posture that is held."""
+    after = {number: words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)}
+    return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
 
 
 def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
@@ -116,11 +120,14 @@ def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
-    """A raised arm that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
-    more = words_in(" ".join(clauses.get(number, "") for number in step.clauses[1:]))
-    if step.upper != "raise" or step.lower != "stand" or step.count or not more & STAYING or "down" in more:
+    """A raised arm or leg that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
+    more = [words_in(clauses.get(number, "")) for number in step.clauses[1:]]
+    if step.count or not any(words & STAYING and "down" not in words for words in more):
         return step
-    return replace(step, upper="raise_hold")
+    if step.lower == "raise_leg" and not step.upper:
+        return replace(step, lower="one_leg", foot=OPPOSITE.get(step.foot, ""))
+    is_arm = step.upper == "raise" and step.lower == "stand" and not any("down" in words for words in more)
+    return replace(step, upper="raise_hold") if is_arm else step
 
 
 def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:

@@ -55,7 +55,7 @@ class ParsedClause:
     def absorb(self, more: "ParsedClause") -> None:
         """Applies the modifiers of a clause without an activity to the last step."""
         about = more.about
-        self._take_its_speed(more)
+        self.take_its_speed(more)
         last = self.steps[-1]
         if (
             more.link == "and"
@@ -93,7 +93,7 @@ class ParsedClause:
     def go_on(self, more: "ParsedClause") -> None:
         """Adds a step like the last one in another direction."""
         about = more.about
-        self._take_its_speed(more)
+        self.take_its_speed(more)
         last = self.steps[-1]
         count = about.count or next((NUMBERS[word.text] for word in more.words if word.text in NUMBERS), 0)
         aside = count in (1, 2) or any(word.text == "sideways" for word in more.words)
@@ -104,7 +104,7 @@ class ParsedClause:
         )  # fmt: skip
         self.forms.append("s")
 
-    def _take_its_speed(self, more: "ParsedClause") -> None:
+    def take_its_speed(self, more: "ParsedClause") -> None:
         """The speed that the clause after it says of both."""
         self.steps[-1] = replace(self.steps[-1], speed=self.steps[-1].speed or more.speed_of_both)
 

@@ -247,7 +247,8 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
         if other is not None:
             found[-1].steps[-1] = overlay(last, other)
         elif another is not None:
-            found[-1].steps.append(another)
+            found[-1].take_its_speed(parsed)
+            found[-1].steps.append(replace(another, speed=another.speed or parsed.about.speed))
             found[-1].forms.append("s")
         elif _goes_elsewhere(last, parsed):
             found[-1].go_on(parsed)
@@ -385,9 +386,7 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     if is_aim or not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
     limb = {"hand": side} if last.hand else {"foot": side}
-    return replace(
-        last, **limb, count=about.count or last.count, speed=about.speed or last.speed, clauses=(parsed.number,)
-    )
+    return replace(last, **limb, count=about.count or last.count, clauses=(parsed.number,))
 
 
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:

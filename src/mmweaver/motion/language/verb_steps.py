@@ -85,7 +85,7 @@ def _is_a_single_one(step: Step, words: list[Word], at: int) -> bool:
     if step.count or words[at].form != "base" or (step.upper or step.lower) not in _SINGLE:
         return False
     before = [word.text for word in takewhile(lambda word: not word.is_verb, reversed(words[max(at - 5, 0) : at]))]
-    article = next((place for place, text in enumerate(before) if text in ("a", "an")), None)
+    article = next((place for place, text in enumerate(before) if text in ("a", "an", "another")), None)
     if article is None or _NO_ADJECTIVES & {*before[:article]}:  # "a person seems to jump"
         return False
     return before[article + 1 : article + 2] not in (["in"], ["into"], ["from"])  # a posture: "is in a squat"

@@ -15,8 +15,13 @@ _WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
 
 def at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
     """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
-    runs = any(step.lower == "jog" for step in steps) and not _WALKING.search(given_text.lower())
-    return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
+    run = next((step for step in steps if step.lower == "jog"), None)
+    if run is None or _WALKING.search(given_text.lower()):
+        return steps
+    return [
+        replace(step, lower="jog", style=step.style or run.style) if step.lower == "walk" and step.arc_deg else step
+        for step in steps
+    ]
 
 
 def sideways_throughout(steps: list[Step]) -> list[Step]:
