@@ -271,6 +271,8 @@ def test_who_has_not_gone_does_not_walk_back() -> None:
         ("a person starts in a t-pose and walks forward", [("stand", "arms_out"), ("walk", "")]),
         ("a person is standing in a t-pose, then walks", [("stand", "arms_out"), ("walk", "")]),
         ("a person walks in a t-pose", [("walk", "arms_out")]),
+        ("a person bounces a ball and runs forward", [("jog", "knock")]),
+        ("a person bounces a ball and then walks", [("stand", "knock"), ("walk", "")]),
     ],
 )  # fmt: skip
 def test_arms_are_held_during_a_walk_and_leave_a_t_pose_before_it(text: str, steps: list[tuple[str, str]]) -> None:

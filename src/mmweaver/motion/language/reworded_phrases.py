@@ -60,6 +60,10 @@ def _limb_after_limb(found: re.Match[str]) -> str:
     return f"{one}the left {limb}, then {one}the right {limb}"
 
 
+def _on_the_way(found: re.Match[str]) -> str:
+    return f"{found[1]} while {found['verb']}{'n' * (found['verb'] == 'run')}ing"
+
+
 def _from_a_t_pose(found: re.Match[str]) -> str:
     """Whoever starts or comes from it, or stands in it and then does something, lowers the arms."""
     starts, then = found["starts"], found["then"]
@@ -134,6 +138,8 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
     (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),
     (r"\b(?P<verb>(?:rais|lift|wav|kick|touch|punch|stretch|stomp|swing|shak|tap)(?:s|es|ing)(?: (?!and\b|then\b|with\b)[a-z]+){0,2}?)(?: with)? one (?P<limb>hand|arm|leg|foot|knee) after (?:another|the other)\b", _limb_after_limb),
+    # what is done on the way
+    (r"\b((?:bounc|dribbl)(?:es|ing) (?:an?|the|his|her|their) (?:basket)?ball),? and (?!then\b)(?P<verb>walk|jog|mov|run)(?:s|es|n?ing)\b", _on_the_way),
     # arms that are held during a walk, or only where somebody starts
     (rf"\b(?:(?:is|are) )?standing in (?={_T_POSE})", "stands in "),
     (rf"\b({_WALK_ALONE}),? and (?:is |are )?(?:(?:hold|keep)(?:s|ing)|has|have|having) (?=(?:{_OWN}|both )*(?:arms|hands)\b(?: (?:on|at) |[a-z ]*\b(?:crossed|folded)))", r"\1 with "),
