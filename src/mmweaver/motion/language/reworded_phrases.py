@@ -87,6 +87,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # speed
     (r"\bspeed[- ]walk(s|ing|ed)?\b", r"walk\1 quickly"),
     (r"\bat pace\b(?! with\b)", "quickly"),
+    (r"\b((?:back|for)wards?|back|left|right) at an? (?:very |rather |quite )?(?:(?P<slow>slow)|fast|quick|brisk) (?:pace|speed)\b", lambda found: f"{found[1]} {'slowly' if found['slow'] else 'quickly'}"),
     (r"\b(pick(?:s|ing|ed)? up) in (?=(?:speed|pace)\b)", r"\1 "),
     # one movement with what another clause says of it
     (r"\b(?:is|are) still(?=,? (?:and |then )*(?:then|walks|does|steps|jumps|turns|takes|runs|raises)\b)", "stands still"),
