@@ -113,3 +113,21 @@ def test_what_is_shown_as_something_alike_is_said(text: str, acted: list[str], s
     does = ["+".join(part for part in (step.lower, step.upper) if part and part != "stand") for step in plan.steps]
     assert does == acted
     assert said in " ".join(clause.how for clause in plan.clauses)
+
+
+@pytest.mark.parametrize(
+    ("text", "upper"),
+    [
+        ("quickly grabs themselves with their arms", "cross_arms"),
+        ("hugs himself", "cross_arms"),
+        ("wraps their arms around themselves", "cross_arms"),
+        ("hugs somebody", "arms_out"),
+        ("cleans their hands", "clap"),
+        ("wipes his hands", "clap"),
+        ("wipes the table with his hands", "wipe"),
+    ],
+)
+def test_what_is_done_to_oneself(text: str, upper: str) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert [step.upper for step in plan.steps] == [upper]
+    assert (plan.clauses[0].status == "approximated") == (upper != "wipe")

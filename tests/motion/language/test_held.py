@@ -42,7 +42,7 @@ def test_arms_do_not_stay_where_they_are_needed_or_brought_back(text: str, last:
 @pytest.mark.parametrize(
     ("text", "lower", "style"),
     [
-        ("squats, holds the position, then stands up", "crouch", ""),
+        ("squats and holds the position", "crouch", ""),
         ("crouches down and stays low", "crouch", ""),
         ("bends down and remains bent over", "bend", "held"),
         ("leans to the left and stays there", "lean", "held"),
@@ -115,3 +115,35 @@ def test_a_walk_has_its_own_direction(text: str, ahead: bool) -> None:
     assert plan.steps[-1].moves
     assert plan.steps[-1].arms_ahead == ahead
     assert all(clause.status == "done" for clause in plan.clauses)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("bends down and stays there", "bending down and staying down"),
+        ("bends down, pauses, then stands up", "bending down, staying down and coming up"),
+        ("leans to the left, stays there and straightens up", "leaning to the person's left, staying so and coming up"),
+    ],
+)
+def test_who_stays_down_comes_up_only_where_it_is_said(text: str, shown: str) -> None:
+    assert parse(f"a person {text}", in_part=True).clauses[0].shown == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("squats down, holds it for a moment, then stands up", ["crouch", "stand"]),
+        ("crouches, holds still, then stands", ["crouch", "stand"]),
+        ("squats, holds it, stands up and walks away", ["crouch", "walk"]),
+        ("squats and stands up", ["squat"]),
+        ("squats and stays down", ["crouch"]),
+    ],
+)
+def test_who_was_held_low_stands_at_the_end_where_it_is_said(text: str, steps: list[str]) -> None:
+    assert [step.lower for step in parse(f"a person {text}", in_part=True).steps] == steps
+
+
+def test_a_leg_that_is_held_up_is_held() -> None:
+    plan = parse("a person lifts the left leg and holds it up", in_part=True)
+    assert [(step.lower, step.foot) for step in plan.steps] == [("one_leg", "right")]
+    assert {clause.status for clause in plan.clauses} == {"done"}

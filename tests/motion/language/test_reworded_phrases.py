@@ -140,7 +140,7 @@ def test_an_s_bends_to_both_sides(text: str) -> None:
     [
         ("is walking and turning to the left", [("walk", 60.0)]),
         ("walks on all four", [("crawl", 0.0)]),
-        ("gets down on his knees and hands and walks around", [("crawl", 0.0)]),
+        ("gets down on his knees and hands and walks around", [("kneel_down", 0.0), ("crawl", 0.0)]),
         ("appears to be jumping", [("jump", 0.0)]),
         ("walks side ways", [("sidestep", 0.0)]),
         ("spins around and walks back", [("turn", 0.0), ("walk", 0.0)]),
@@ -254,3 +254,42 @@ def test_the_way_back_to_a_place_ends_with_its_clause() -> None:
 
 def test_who_has_not_gone_does_not_walk_back() -> None:
     assert parse("a person falls to the left and then steps back where he was").clauses[1].status == "approximated"
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("a person slowly walks along a line and holds their arms out", [("walk", "arms_out")]),
+        ("a person walks forward and keeps his hands on his hips", [("walk", "hips")]),
+        ("a man walks forward and has his arms crossed", [("walk", "cross_arms")]),
+        ("a person walks and holds his arms up", [("walk", "raise_hold")]),
+        ("a person walks with their arms raised above their head", [("walk", "raise_hold")]),
+        ("a person walks with his arms raised to the sides", [("walk", "arms_out")]),
+        ("a person walks to the door and holds the arms out", [("walk", ""), ("stand", "arms_out")]),
+        ("a person walks five steps and holds the arms out", [("walk", ""), ("stand", "arms_out")]),
+        ("a person from a t pose walking and sitting", [("stand", "arms_out"), ("walk", ""), ("sit_down", "")]),
+        ("a person starts in a t-pose and walks forward", [("stand", "arms_out"), ("walk", "")]),
+        ("a person is standing in a t-pose, then walks", [("stand", "arms_out"), ("walk", "")]),
+        ("a person walks in a t-pose", [("walk", "arms_out")]),
+        ("a person bounces a ball and runs forward", [("jog", "knock")]),
+        ("a person bounces a ball and then walks", [("stand", "knock"), ("walk", "")]),
+    ],
+)  # fmt: skip
+def test_arms_are_held_during_a_walk_and_leave_a_t_pose_before_it(text: str, steps: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.upper) for step in parse(text, in_part=True).steps] == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("gets on their hands and knees, crawls, then stands up", ["kneel_down", "crawl", "kneel_up"]),
+        ("gets down on all fours and crawls forward", ["kneel_down", "crawl"]),
+        ("gets on the floor and crawls", ["kneel_down", "crawl"]),
+        ("falls on the floor and walks away", ["fall", "get_up", "walk"]),
+        ("is leaning to the left, turns and twists at waist", ["lean", "twist"]),
+        ("rotates at the waist", ["twist"]),
+        ("climbs a step while walking", ["stairs", "walk"]),
+    ],
+)
+def test_what_is_gone_through_first_and_what_is_turned(text: str, steps: list[str]) -> None:
+    assert [step.lower for step in parse(f"a person {text}", in_part=True).steps] == steps

@@ -89,7 +89,7 @@ UNDERSTOOD = {
     "waves before jumping": "waving | jumping",
     "after walking to the left, he claps": "walking left | clapping",
     "waves after clapping": "clapping | waving",
-    "a squat followed by a jump": "squatting | jumping",
+    "a squat followed by a jump": "squatting x1 | jumping x1",
     "walks to the sofa to sit down": "walking seat | sitting down",
     "starts to walk and then stops": "walking | standing",
     "stops walking": "standing",

@@ -53,3 +53,24 @@ def test_the_link_says_whether_a_participle_goes_with_the_clause_before(
     clauses = [ParsedClause("first", before, number=0), ParsedClause(link, words, number=1)]
     found = [number for number, _ in shown_in_turn(clauses, {0: before, 1: words}, [WALK, KICK])]
     assert found == [1] * is_said
+
+
+@pytest.mark.parametrize(
+    ("text", "is_said"),
+    [
+        ("a person is dancing side to side and turning", True),
+        ("a person dances and spins around", True),
+        ("a person is spinning and dancing", True),
+        ("a person dances, then turns around", False),
+        ("a person walks and turns around", False),
+    ],
+)
+def test_a_turn_during_a_dance_is_said_to_come_after_it(text: str, is_said: bool) -> None:
+    notes = " ".join(parse(text, in_part=True).notes)
+    assert ("one after the other" in notes) == is_said
+
+
+def test_a_dance_goes_round_in_no_circle() -> None:
+    plan = parse("a person is dancing, moving side to side and in circles", in_part=True)
+    assert plan.clauses[-1].status == "approximated"
+    assert "the circle" in plan.clauses[-1].how

@@ -362,7 +362,7 @@ _ALIKE = tuple(
         "wipe brush_teeth sweep stir", "fall lower_arm", "stretch push_hand", "turn twist", "kick raise_leg",
         "read text type", "throw punch jab cross hook uppercut", "throw roll_over roll_in_bed", "turn roundhouse",
         "turn hula_hoop", "walk lunge walking_lunge", "kick roundhouse side_kick",
-        "turn roll_over roll_in_bed", "carry walk",
+        "turn roll_over roll_in_bed", "carry walk", "raise_leg raise one_leg",
     )
 )  # fmt: skip
 

@@ -249,6 +249,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return bool(found)
     if _is_plain_noun(word, _before_adjectives(words, i) if found else before, after_a_verb=bool(found)):
         return True
+    if found and word.form == "s" and _goes_another_way(words, found[-1], i):
+        return False
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
     going = any(words[k].lemma in STEPPING or _is_gait(words[k]) for k in found)
@@ -257,6 +259,17 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
     # "walks a walk", not "walks to the left, turns around walk back"
     return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
+
+
+def _goes_another_way(words: list[Word], before: int, i: int) -> bool:
+    """Whether a gait after another one has a way of its own: "takes two steps to the right walks to the left"."""
+    between, after = words[before + 1 : i], words[i + 1 : i + 4]
+    counted = any(word.text in NUMBERS or word.text.isdigit() for word in between)
+    has_way = bool(between) and between[-1].text in _WAYS and any(word.text in _WAYS for word in after)
+    return (_is_gait(words[i]) or words[i].lemma == "sidestep") and has_way and not counted
+
+
+_WAYS = frozenset({"left", "right", "forward", "forwards", "backward", "backwards", "back", "ahead", "away"})
 
 
 def _before_adjectives(words: list[Word], i: int) -> str:

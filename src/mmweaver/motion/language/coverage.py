@@ -144,7 +144,7 @@ def goes_back(step: Step) -> bool:
 
 def goes_round(step: Step) -> bool:
     return bool(
-        step.direction == "circle"
+        (step.direction == "circle" and step.moves)
         or step.arc_deg
         or step.turn_deg
         or step.lower in ("turn", "hula_hoop")

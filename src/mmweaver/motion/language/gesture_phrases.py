@@ -33,11 +33,11 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     # Exercises
     (rf"\b{_LUNGE}(?:s|d|ing)? {_OF_LEG}\b", r" side_lunge \1_leg "),
     (rf"\b(left|right) {_LUNGE}(?:s|d|ing)?\b", r" side_lunge \1_leg "),
-    (rf"\b{_LUNGE}(?:s|d|ing)?\b", " side_lunge "),
+    (rf"\b{_LUNGE}s\b", " side_lunges "), (rf"\b{_LUNGE}(?:d|ing)?\b", " side_lunge "),
     (r"\blung(?:es?|ing) (?:sideways|to (?:the |his |her |their )?(left|right|side)s?(?: side)?)\b", r" side_lunge \1 leg "),
     (r"\b(left|right) front(?:al)?[- ]lunges?\b|\bfront(?:al)?[- ]lunges? (?:with (?:the )?)?(left|right)(?: leg)?\b",
      r" frontlunge lunges \1\2_leg "),
-    (r"\bfront(?:al)?[- ]lunges?\b", " frontlunge lunges "),
+    (r"\bfront(?:al)?[- ]lunge(s?)\b", r" frontlunge lunge\1 "),
     (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) arm and {_OWN}(?:same |\1 )?leg"
      r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
     (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) leg and {_OWN}(?:same |\1 )?arm"
@@ -48,7 +48,7 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?:the |his |her |their |its |both )*sides?\b", r" arm_extension \1 \2 arm "),
     (rf"\bwith {_OWN}hands (?:held |raised )?up\b", " while hands_up "),
     (r"\b(?:an?|one) (?:push|press)[- ]?up\b", " 1 push_up "), (r"\b(?:push|press)[- ]?ups?\b", " push_up "),
-    (r"\b(?:an?|one) sit-?up\b", " 1 sit_up_exercise "),
+    (r"\b(?:an?|one) sit[- ]?up\b", " 1 sit_up_exercise "),
     (r"\b(?:sit-ups?|situps?|sit ups|(?:ab(?:dominal)? )?crunch(?:es)?)\b", " sit_up_exercise "),
     (r"\b(?:shak(?:es|ing)|trembl(?:es|ing)|shiver(?:s|ing)|quiver(?:s|ing)) (?:all over|(?:all over )?(?:with|from|for|in|because of) (?:the |his |her )?"
      r"(?:cold|fear|fright|fever|anger|rage|excitement|exhaustion))\b", " tremble "),

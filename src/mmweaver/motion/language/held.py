@@ -17,7 +17,7 @@ _OF_THE_HEAD = words_in("look_around nod shake_head")
 _HELD_LOW = {"squat": "crouch", "crouch": "crouch", "raise_leg": "one_leg", "one_leg": "one_leg"}
 _HELD_BENT = ("bend", "lean")
 _NOT_HELD = words_in("lunge kick twist bow side_lunge limb_extension march")
-_STAYING = words_in(
+STAYING = words_in(
     "stay stays staying remain remains remaining hold holds holding keep keeps keeping wait waits waiting pause pauses"
     " pausing freeze freezes freezing rest rests resting"
 )
@@ -28,6 +28,7 @@ _COMING_BACK = words_in(
     "lower lowers lowering lowered drop drops dropping down up upright straightens straightening release releases"
     " uncrosses unfolds back stand_up"
 )
+_RISING = _COMING_BACK | words_in("stand stands standing")
 _LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
@@ -52,9 +53,7 @@ def with_what_is_held(
         if before is None or _comes_back(before, step, clauses):
             result.append(step)
             continue
-        stays = (
-            step.lower == "stand" and not step.upper and not step.on_feet and bool(own & _STAYING) and not own & ARMS
-        )
+        stays = step.lower == "stand" and not step.upper and not step.on_feet and bool(own & STAYING) and not own & ARMS
         held = _held_pose(before, step) if stays else None
         if held is not None:
             result[-1] = held
@@ -69,6 +68,11 @@ def with_what_is_held(
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
+    rises = _comes_up_last(result[-1], clauses) if result else None
+    if rises is not None and result[-1].style == "held" and not result[-1].upper:
+        result[-1] = replace(result[-1], style="released")
+    elif rises is not None and result[-1].lower in _HELD_LOW.values():
+        result.append(Step(lower="stand", clauses=(rises,), clause=clauses[rises]))
     if result and _is_brought_back(result[-1], clauses):
         result.append(
             Step(
@@ -81,11 +85,17 @@ def with_what_is_held(
     return result, lost
 
 
+def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
+    """The clause after the last step, without a step of its own, that ends a posture that is held."""
+    after = {number: words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)}
+    return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
+
+
 def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
     """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
     own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
     still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
-    return still and bool(own & _LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
+    return still and bool(own & _LOWERED) and not own & (STAYING - {"rests", "resting", "rest"})
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
@@ -110,11 +120,14 @@ def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
 
 
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
-    """A raised arm that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
-    more = words_in(" ".join(clauses.get(number, "") for number in step.clauses[1:]))
-    if step.upper != "raise" or step.lower != "stand" or step.count or not more & _STAYING or "down" in more:
+    """A raised arm or leg that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
+    more = [words_in(clauses.get(number, "")) for number in step.clauses[1:]]
+    if step.count or not any(words & STAYING and "down" not in words for words in more):
         return step
-    return replace(step, upper="raise_hold")
+    if step.lower == "raise_leg" and not step.upper:
+        return replace(step, lower="one_leg", foot=OPPOSITE.get(step.foot, ""))
+    is_arm = step.upper == "raise" and step.lower == "stand" and not any("down" in words for words in more)
+    return replace(step, upper="raise_hold") if is_arm else step
 
 
 def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
@@ -122,7 +135,7 @@ def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
     first, last = max(before.clauses, default=-1), min(step.clauses, default=-1)
     between = [*before.clauses[1:], *range(first + 1, last)]
     words = [words_in(clauses.get(number, "")) for number in between]
-    return any(own & _COMING_BACK and not own & _STAYING for own in words)
+    return any(own & _COMING_BACK and not own & STAYING for own in words)
 
 
 def _held_pose(before: Step, step: Step) -> Step | None:

@@ -208,7 +208,8 @@ def moves_limb(step: Step, side: str, *, is_hand: bool) -> bool:
     if is_hand:
         with_hand = step.hand in (side, "both") and moves_one_hand(step)
         return with_hand or (step.lower == "limb_extension" and step.foot == side)
-    return step.foot in (side, "both") or step.lower in ("push_ups", "plank")
+    lifts_the_other = step.lower == "one_leg" and bool(step.foot)  # "raises the left leg and holds it"
+    return step.foot in (side, "both") or lifts_the_other or step.lower in ("push_ups", "plank")
 
 
 def risings_that_no_clause_names(steps: Sequence[Step]) -> list[tuple[Step, str]]:

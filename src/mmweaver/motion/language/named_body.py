@@ -62,9 +62,13 @@ def _way(step: Step) -> str:
         return f" on the {step.seat}" if step.seat and step.lower != "stand_up" else ""
     if step.lower == "lean":
         way = {"backwards": " backwards", "": " to one side"}.get(step.direction, f" to the person's {step.direction}")
-        return f"{way} and staying so" if step.style == "held" else way
-    if step.lower == "bend" and step.style == "held":
-        return " and staying down"
+        return (
+            way
+            if step.upper
+            else way + {"held": " and staying so", "released": ", staying so and coming up"}.get(step.style, "")
+        )
+    if step.lower == "bend" and step.style in ("held", "released") and not step.upper:
+        return " and staying down" if step.style == "held" else ", staying down and coming up"
     if step.lower in ("kick", "roundhouse"):
         return {"back": " to the back", "high": " high up"}.get(step.style, "")
     if not step.moves or step.lower == "forward_roll":

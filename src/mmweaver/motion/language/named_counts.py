@@ -19,7 +19,7 @@ _SMALL_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "
 def how_often(step: Step, key: str) -> str:
     """How often an activity is repeated, where it can be."""
     activity = BY_KEY[key]
-    if activity.counted_s is None or key in PACES or step.style == "held":
+    if activity.counted_s is None or key in PACES or step.style in ("held", "released"):
         return ""
     if step.count:
         return f" {times_said(step.count)}"

@@ -73,5 +73,5 @@ def hand_of(part: Step, key: str) -> str:
     if key in _ONE_HANDED:
         return _OF_BOTH.get(key, "both") if part.hand == "both" else part.hand or "one"
     if key in ("punch", "text"):  # a phone is in one hand or both where the sentence names none
-        return part.hand or ("both" if key == "punch" else "")
+        return part.hand or (("one" if part.count == 1 else "both") if key == "punch" else "")
     return (part.hand or "both") if key in _BOTH else ""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.lexicon import NUMBERS, TIMES
+from mmweaver.motion.language.lexicon import NUMBERS, SPEEDS, TIMES
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verb_steps import GAITS, facing_of, target_of
 from mmweaver.motion.language.words import Word
@@ -41,6 +41,12 @@ class ParsedClause:
     def is_empty(self) -> bool:
         return self.adds_nothing and replace(self.about, clause="") == Step()
 
+    @property
+    def speed_of_both(self) -> int:
+        """Speed that it says of the movement before, too: "forwards and backwards slowly"; 0 for none."""
+        ends_with_it = bool(self.words) and self.words[-1].text in SPEEDS
+        return self.about.speed if ends_with_it and self.link in ("and", "comma") else 0
+
     def say_in_turn(self, one: Step, other: Step) -> None:
         """Says that two movements are shown one after the other."""
         self.lost.append(f"{one.name} and {other.name} are shown one after the other")
@@ -48,7 +54,9 @@ class ParsedClause:
 
     def absorb(self, more: "ParsedClause") -> None:
         """Applies the modifiers of a clause without an activity to the last step."""
-        last, about = self.steps[-1], more.about
+        about = more.about
+        self.take_its_speed(more)
+        last = self.steps[-1]
         if (
             more.link == "and"
             and last.lower in GAITS
@@ -71,7 +79,7 @@ class ParsedClause:
             hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
             direction=last.direction or about.direction,
             speed=last.speed or about.speed,
-            count=last.count or (0 if last.lower in GAITS and more.says_times else about.count),
+            count=_count_of(last, more),
             seat=last.seat or about.seat,
             seconds=last.seconds or about.seconds,
             clauses=(*last.clauses, more.number),
@@ -85,6 +93,7 @@ class ParsedClause:
     def go_on(self, more: "ParsedClause") -> None:
         """Adds a step like the last one in another direction."""
         about = more.about
+        self.take_its_speed(more)
         last = self.steps[-1]
         count = about.count or next((NUMBERS[word.text] for word in more.words if word.text in NUMBERS), 0)
         aside = count in (1, 2) or any(word.text == "sideways" for word in more.words)
@@ -94,6 +103,10 @@ class ParsedClause:
                     distance_m=about.distance_m, seconds=about.seconds, clauses=(*last.clauses, more.number))
         )  # fmt: skip
         self.forms.append("s")
+
+    def take_its_speed(self, more: "ParsedClause") -> None:
+        """The speed that the clause after it says of both."""
+        self.steps[-1] = replace(self.steps[-1], speed=self.steps[-1].speed or more.speed_of_both)
 
     def _leads_back(self, last: Step, about: Step, number: int) -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
@@ -111,6 +124,13 @@ class ParsedClause:
         self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
+
+
+def _count_of(last: Step, more: ParsedClause) -> int:
+    """How often the last step is done: 'does a kick, three times' is three, 'walks, three times' no number of paces."""
+    if more.says_times:
+        return last.count if last.lower in GAITS else max(more.about.count, last.count)
+    return last.count or more.about.count
 
 
 def _as_far_as(about: Step, walk: Step) -> Step:

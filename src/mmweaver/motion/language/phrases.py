@@ -184,7 +184,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bhigh[- ]kick(s|ing)?\b", " highkick kicks "),
     (r"\bduck(?:s|ing|ed)? (?:down|away)?\b", " duck_down "),
     (r"\bu-? ?turn\b", " arc180 "),
-    (r"\bthrow(?:s|ing)? an? (?:(?:quick|fast|hard) )?((?:left |right )?(?:punch|jab|hook|uppercut))\b(?! (?:and|or|after)\b)", r" punches once \1 "),
+    (r"\bthrow(?:s|ing)? an? (?:(?:quick|fast|hard|strong|straight|single|powerful) )*((?:left |right )?(?:punch|jab|hook|uppercut))\b(?! (?:and|or|after)\b)", r" punches once \1 "),
     (r"\bthrow(?:s|ing)? (?:(?:a|some|few|several|two|three|quick|fast|hard) )*((?:left |right )?(?:punch|punches|jabs?|hooks?|uppercuts?))\b",
      r" punches \1 "),
     (r"\b(?:in the air|in mid-?air)(?= *(?:[.,]|$))", " mid-air "),

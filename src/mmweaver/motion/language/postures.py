@@ -4,11 +4,13 @@ import re
 from dataclasses import replace
 
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.held import STAYING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
+_RISEN_FROM = {"stand_up": "sit", "kneel_up": "kneel", "get_up": "lie"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # What is done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
@@ -20,11 +22,19 @@ def with_postures(steps: list[Step]) -> list[Step]:
     """The steps with transitions (sitting down, kneeling, lying down, getting up) inserted where they are needed."""
     result: list[Step] = []
     posture = ""  # not known yet
-    for step in steps:
+    for step in _from_where_it_rises(steps):
         for one in _with_transitions(step, posture, result):
             result.append(one)
             posture = one.posture
     return merged(_styled(result))
+
+
+def _from_where_it_rises(steps: list[Step]) -> list[Step]:
+    """Who waits first and then gets up waits where that begins: on a seat, on the knees or on the floor."""
+    if len(steps) < 2 or steps[1].lower not in _RISEN_FROM:
+        return steps
+    waits = steps[0].lower == "stand" and not steps[0].on_feet and bool(STAYING & {*steps[0].clause.split()})
+    return [replace(steps[0], lower=_RISEN_FROM[steps[1].lower]), *steps[1:]] if waits else steps
 
 
 def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step]:
@@ -182,14 +192,15 @@ def carried_over(steps: list[Step]) -> list[Step]:
 
 
 def merged(steps: list[Step]) -> list[Step]:
-    """Merges two equal static postures in a row."""
+    """Merges two equal static postures in a row, but no pause before the next movement."""
     result: list[Step] = []
-    for step in steps:
+    for number, step in enumerate(steps, start=1):
         plain = (
             step.lower in ("sit", "stand", "kneel", "lie", "lie_on_seat")
             and not step.upper
             and not step.seconds
             and not step.facing
+            and not (number < len(steps) and _is_a_pause(step))
         )
         same = {
             "sit": ("sit", "sit_down"),
@@ -200,3 +211,8 @@ def merged(steps: list[Step]) -> list[Step]:
         if not (plain and result and result[-1].lower in same and not result[-1].upper):
             result.append(step)
     return result
+
+
+def _is_a_pause(step: Step) -> bool:
+    """Whether a posture is one that somebody stays in: 'pauses', 'lies there for a bit'."""
+    return step.lower != "stand" and bool((STAYING | {"there"}) & {*step.clause.split()})

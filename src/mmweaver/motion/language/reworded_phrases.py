@@ -8,8 +8,14 @@ _TO = rf"(?:to (?:{_OWN})?|towards {_OWN}?)?"
 _GAIT = r"(?:walk|run|jog|mov|go|step|head|march|stroll)(?:s|es|ing|ning|ging|ping|ed)?"
 _SLIGHTLY = r"(?:slightly|a (?:little )?bit|a little|somewhat)"
 _ENDS = r"(?= *(?:$|[.,;]| and\b| then\b| before\b))"
-_DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lowers? (?:him|her|them)self|falls?)"
+_DOWN = r"(?:go(?:es|ing)?|gets?|getting|drops?|dropping|sinks?|sinking|comes?|lower(?:s|ing)?(?: (?:him|her|them)self)?|falls?)"
 _ONWARD = r"(?:return|go|come|walk|run|jog|turn|sit|stand|jump|step|move|start|stop|wave|bend|kneel)"  # "and after return back"
+_WALKS = r"(?:walk|run|jog|march|stroll|mov)(?:s|es|ing|ning|ging|ping)"
+_WALK_ALONE = (
+    rf"{_WALKS}(?: (?!(?:to|and|then|until|times|steps?|while|with)\b)[a-z]+){{0,5}}?"  # to no place, and not counted
+)
+_A_SHORT = r"(?:an?|some) (?:(?:short|brief|long|little|small|quick|slight) )*"
+_T_POSE = r"(?:(?:an?|the|his|her|their) )?t[- ]?pose\b(?: position)?"
 _ADVERBS = r"(?: (?:back|slowly|quickly|carefully|gently))*"
 
 
@@ -54,6 +60,20 @@ def _limb_after_limb(found: re.Match[str]) -> str:
     return f"{one}the left {limb}, then {one}the right {limb}"
 
 
+def _on_the_way(found: re.Match[str]) -> str:
+    return f"{found[1]} while {found['verb']}{'n' * (found['verb'] == 'run')}ing"
+
+
+def _from_a_t_pose(found: re.Match[str]) -> str:
+    """Whoever starts or comes from it, or stands in it and then does something, lowers the arms."""
+    starts, then = found["starts"], found["then"]
+    if not re.match("(?i)from|(?:is |are )?(?:start|begin|go|mov|com)", found[0]) and not re.search(
+        "then|before", then
+    ):
+        return found[0]
+    return f"{starts}in a t-pose, lowers them, then "
+
+
 _TURNS = ["", "", "two", "three", "four", "five"]
 
 # Replaced in this order.
@@ -67,6 +87,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # speed
     (r"\bspeed[- ]walk(s|ing|ed)?\b", r"walk\1 quickly"),
     (r"\bat pace\b(?! with\b)", "quickly"),
+    (r"\b((?:back|for)wards?|back|left|right) at an? (?:very |rather |quite )?(?:(?P<slow>slow)|fast|quick|brisk) (?:pace|speed)\b", lambda found: f"{found[1]} {'slowly' if found['slow'] else 'quickly'}"),
     (r"\b(pick(?:s|ing|ed)? up) in (?=(?:speed|pace)\b)", r"\1 "),
     # one movement with what another clause says of it
     (r"\b(?:is|are) still(?=,? (?:and |then )*(?:then|walks|does|steps|jumps|turns|takes|runs|raises)\b)", "stands still"),
@@ -118,9 +139,23 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (rf"\b({_OWN}(?:both |two )?(?:arms|hands)\b(?! of)[^.;]{{0,60}}? )((?:wav|flap)(?:s|es|ing|ping)) them\b", r"\1\2 both arms"),
     (r"\bthrow(s|ing) ((?:up )?(?:(?:his|her|their|the|both|one) )*(?:left |right )?(?:hands?|arms?)) (?:up )?(?:in|into) the air\b", lambda found: f"rais{'es' if found[1] == 's' else 'ing'} {found[2]}"),
     (r"\b(?P<verb>(?:rais|lift|wav|kick|touch|punch|stretch|stomp|swing|shak|tap)(?:s|es|ing)(?: (?!and\b|then\b|with\b)[a-z]+){0,2}?)(?: with)? one (?P<limb>hand|arm|leg|foot|knee) after (?:another|the other)\b", _limb_after_limb),
+    # what is done on the way
+    (r"\b((?:bounc|dribbl)(?:es|ing) (?:an?|the|his|her|their) (?:basket)?ball),? and (?!then\b)(?P<verb>walk|jog|mov|run)(?:s|es|n?ing)\b", _on_the_way),
+    # arms that are held during a walk, or only where somebody starts
+    (rf"\b(?:(?:is|are) )?standing in (?={_T_POSE})", "stands in "),
+    (rf"\b({_WALK_ALONE}),? and (?:is |are )?(?:(?:hold|keep)(?:s|ing)|has|have|having) (?=(?:{_OWN}|both )*(?:arms|hands)\b(?: (?:on|at) |[a-z ]*\b(?:crossed|folded)))", r"\1 with "),
+    (rf"\b({_WALK_ALONE}),? and (?:is |are )?(?:(?:hold|keep)(?:s|ing)|has|have|having) (?=(?:{_OWN}|both )*(?:arms|hands)\b)", r"\1 while holding "),
+    (rf"\b({_WALK_ALONE}),? (?:with|while (?:holding|keeping|having)) ((?:{_OWN}|both |left |right )*(?:arms?|hands?)) (?:(?:raised|lifted|held|stretched|extended|straight)(?: (?:up(?:wards?)?|high|overhead|in the air|(?:above|over) {_OWN}head))+|(?:up(?:wards?)? )?(?:high|overhead|in the air|(?:above|over) {_OWN}head)|(?<=arms )(?:raised|lifted|up)(?! (?:to|at|sideways|forward|ahead|in front)\b))\b", r"\1 while raise_and_hold \2"),
+    (rf"\b(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? )?(?:off |out )?(?:in|from|with|at) {_T_POSE}(?: and| then|,)* (?:lower|drop)(?:s|ing) (?:them|(?:{_OWN}|both )*(?:arms|hands)\b)", "in a t-pose, lowers them"),
+    (rf"\b(?P<starts>(?:(?:is |are )?(?:start|begin|go|mov|com|stand)(?:s|es|ing|ning|e)? (?:off |out )?)?)(?:in|from|with|at) {_T_POSE}(?P<then>(?: (?:and|then|before|to)\b|,)*) (?=[a-z])", _from_a_t_pose),
+    (r"\bstruggles to (?=(?:get|stand|rise|walk|sit|lift|raise)\b)", "tries to "), (r"\bstruggling to (?=(?:get|stand|rise|walk|sit|lift|raise)\b)", "trying to "),
+    # pauses
+    (rf"(^|[.;,]|\b(?:and|then|but)) *(?:,? then )?after {_A_SHORT}(?:pause|break|rest|moment)\b(?: of rest)?,?(?= *[a-z])", r"\1 pauses, then"),
+    (rf"\b(?:takes|makes|has) {_A_SHORT}(?:pause|break|rest)\b(?! of)", "pauses"),
     # postures
     (r"\bon all four\b", "on all fours"),
-    (rf"\b{_DOWN}(?: down)? (?:on|onto|to) {_OWN}(?:hands and knees|knees and hands|all fours)(?:,| and| then)+ (?:walk|mov|go|crawl)(?:s|es)\b", "crawls"),
+    (rf"\b{_DOWN}{_ADVERBS}(?: down)? (?:on|onto|to|in|into) {_OWN}?(?:hands and knees|knees and hands|all fours)(?:,| and| then)+ (?:starts? (?:to )?)?(?:walk|mov|go|crawl)(?:s|es|ing)?\b", "kneels down, then crawls"),
+    (rf"\b{_DOWN}{_ADVERBS}(?: down)? (?:on|onto|to) (?:the )?(?:floor|ground)(?:,| and| then)+ (?:starts? (?:to )?)?crawl(?:s|ing)?\b", "kneels down, then crawls"),
     (r"\b(kneel(?:s|ing|ed)?|knelt)(?: down)?(?: (?:on|onto|to|with))? (?:one|a single) knee\b", r"\1 one_knee"),
     (r"\b(?:is|are) (?:down )?on (?:one|a single) knee\b", "is kneeling one_knee"),
     (rf"\b{_DOWN}{_ADVERBS}(?: down)?{_ADVERBS} (?:on|onto|to) (?:one|a|a single) knee\b", "kneels down one_knee"),
@@ -138,6 +173,9 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?P<verb>[a-z]+(?:s|ing)) (?P<how>(?:up )?(?:with |on )?)(?:one|a) (?P<limb>arm|hand|leg|foot|knee|fist)(?P<more>(?: (?!and|then)[a-z]+){0,3}?)(?:,| and| then)+ (?:with |on )?the other(?: (?P=limb)| one)?(?=$|[,.;]| and\b| then\b)", _one_and_the_other),
     (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:held )?out\b(?: (?:for balance|for stability|(?:to|at|from) (?:{_OWN}|both )?sides?|wide|sideways))*(?! (?:in|ahead|forwards?|straight|of|like|as)\b)", r"with \1 held out to the sides"),
     (r"\b(wav(?:es|ing)(?: [a-z]+){0,3}? (?:hands?|arms?)) in the air\b", r"\1"),
+    # the trunk, and a step that is climbed
+    (rf"\b(?:(?:turn|rotat|swivel|twist|pivot)(?:s|es|ing) and )?(?:turn|rotat|swivel|twist|pivot)(?P<ending>e?s|ing)(?P<way> (?:to (?:{_OWN})?)?(?:left|right)(?: and (?:to (?:{_OWN})?)?(?:left|right))?)? (?:at|from|in) {_OWN}?(?:waist|hips?|torso)\b", lambda found: f"twist{'ing' if found['ending'] == 'ing' else 's'} the upper body{found['way'] or ''}"),
+    (r"\bclimb(s|ing)(?: up| onto| on)? (?:an?|one|the) (?:(?:single|small|large|big|high|low) )?step\b", r"walk\1 up a step"),
     # each leg in turn
     (r"\b(?P<verb>(?:kick|stomp|stamp|hop|punch)(?:s|es|ing|ping))(?: (?:alternately|alternatingly|in turn))? (?:with |on )?(?:(?:the|his|her|their) )?(?P<one>left|right)(?: (?:leg|foot|hand|arm|fist))? and (?:(?:the|his|her|their) )?(?P<other>left|right)(?: (?P<limb>leg|foot|hand|arm|fist))?(?: (?:alternately|alternatingly|in turn))?(?=$|[,.;]| and\b| then\b)", _one_then_other),
     (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?:(?:the|his|her|their) )?(?P<one>left|right) (?:leg|knee|foot) and (?:(?:the|his|her|their) )?(?P<other>left|right) (?P<limb>leg|knee|foot)(?: (?:alternately|alternatingly|in turn))?\b", _one_then_other),

@@ -41,6 +41,7 @@ from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.verbs import RECOVERING
+from mmweaver.motion.language.whole_walks import at_one_gait, sideways_throughout, with_shared_speeds
 from mmweaver.motion.language.words import Word, words_of
 
 LONGEST_TEXT = 1000
@@ -48,7 +49,6 @@ MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 _ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
-_WALKING = re.compile(r"\b(?:walk|step|go|stroll|mov|turn)")
 _TRAVELLING = ("leap", "crawl", "limp", "stagger")  # the walks go on otherwise: `_goes_elsewhere`
 _OTHER_WAY = {**OPPOSITE, "forwards": "backwards", "backwards": "forwards"}
 JUMPING = ("jump", "leap", "hop")
@@ -135,7 +135,9 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = _at_one_gait(in_sequence(parsed_clauses, leaving), given_text)
+    sequence = with_shared_speeds(
+        at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
+    )
     on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
@@ -149,7 +151,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
             sequence[number - 1 : number + 1] = [walk, replace(step, place=None)]
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
-    steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
+    steps = carried_over(with_postures(going_on(sideways_throughout(sequence))))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
@@ -167,26 +169,6 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
-
-
-def _at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
-    """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
-    runs = any(step.lower == "jog" for step in steps) and not _WALKING.search(given_text.lower())
-    return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
-
-
-def _sideways_throughout(steps: list[Step]) -> list[Step]:
-    """ "Walks sideways, four steps to the left, four steps back": all of it sideways."""
-    is_aimless = len(steps) > 1 and steps[0].lower == "sidestep" and not (steps[0].direction or steps[0].count)
-    if not is_aimless or not all(step.lower == "walk" and step.count for step in steps[1:]):
-        return steps
-    result: list[Step] = []
-    for step in steps[1:]:
-        back = step.direction in ("back", "backwards") and result
-        side = OPPOSITE.get(result[-1].direction, "") if back else step.direction
-        result.append(replace(step, lower="sidestep", direction=side))
-    result[0] = replace(result[0], clauses=(*steps[0].clauses, *result[0].clauses))
-    return result
 
 
 def _is_understood_alone(part: str) -> bool:
@@ -265,7 +247,8 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
         if other is not None:
             found[-1].steps[-1] = overlay(last, other)
         elif another is not None:
-            found[-1].steps.append(another)
+            found[-1].take_its_speed(parsed)
+            found[-1].steps.append(replace(another, speed=another.speed or parsed.about.speed))
             found[-1].forms.append("s")
         elif _goes_elsewhere(last, parsed):
             found[-1].go_on(parsed)

@@ -36,15 +36,25 @@ def shown_in_turn(
     last = max(links, default=0)
     for before, step in pairwise([step for step in steps if step.clauses]):
         earlier, number = max(before.clauses), min(step.clauses)
-        if not _could_be_at_once(before, step):
+        dances = _turns_in_a_dance(before, step)
+        if not (dances or _could_be_at_once(before, step)):
             continue
         tokens, tokens_before = (_TOKEN.findall(own_words.get(n, "").lower()) for n in (number, earlier))
-        if earlier == number:
+        if dances:
+            is_linked = links.get(number, "") in ("and", "comma", "while")
+            said = earlier == number or (is_linked and (step.lower == "turn" or _begins_with_participle(tokens)))
+        elif earlier == number:
             said = _has_participle(tokens)
         else:
             said = _begins_with_participle(tokens) and _goes_with(links.get(number, ""), tokens_before, number == last)
         if said:
             yield number, f"{before.name} and {step.name} are shown one after the other"
+
+
+def _turns_in_a_dance(before: Step, step: Step) -> bool:
+    """Whether somebody dances and turns or walks, which is one movement unless "then" stands between."""
+    pair = (before, step) if before.lower == "dance" else (step, before)
+    return pair[0].lower == "dance" and (pair[1].lower == "turn" or pair[1].moves)
 
 
 def _could_be_at_once(before: Step, step: Step) -> bool:

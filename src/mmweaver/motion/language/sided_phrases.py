@@ -11,6 +11,7 @@ _TRUNK = rf"(?:{_OWN}(?:upper body|torso|trunk|body) )?"
 _GAIT = r"walks?|walking|goes|going|runs?|running|jogs?|jogging|moves|moving|paces|pacing|strolls|strolling"
 _WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
 
+_DOES = "(?:throws?|throwing|performs?|performing|does|doing|makes|making|lands?)"
 _IN_FRONT = "(?:body|chest|face|head|belly|stomach|eyes|mouth|breast|nose)"
 _PALM = r"(?:,? (?:the |with the )?palm (?:facing )?forwards?)?"
 _STATE = (
@@ -98,8 +99,10 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:three|3)[- ](?:quarters?|fourths?)(?: of an?)? (?:turn|rotation|spin)\b", " 270 degree turn "),
     (r"\b((?:full|whole|complete|half|quarter)(?: of an?)?)(?<!with a half)(?<!with a full) turn\b(?! (?:kick|jump))", r" \1 turn turn "),
     # punches
-    (r"\b(?:throws?|throwing|performs?|performing|does|doing|makes|making|lands?) (?:an? )?(?:quick |fast |hard |short )?(left|right)"
-     r"(?: forwards?| straight| quick| hard)* (punch|jab|hook|uppercut)\b", r" punches with the \1 hand \2 "),
+    (rf"\b{_DOES} an? (?:(?:quick|fast|hard|short) )?(left|right)(?: (?:forwards?|straight|quick|hard))* (punch|jab|hook|uppercut)\b",
+     r" punches once with the \1 hand \2 "),
+    (rf"\b{_DOES} (?:(?:quick|fast|hard|short) )?(left|right)(?: (?:forwards?|straight|quick|hard))* (punch|jab|hook|uppercut)\b",
+     r" punches with the \1 hand \2 "),
     (r"\b(left|right) kick\b", r" kick with the \1 leg "),
     (r"\b((?:kick|step|hop|stomp|stamp|lunge)[a-z]*(?: (?!start|begin|lead)[a-z]+){0,3}?) (?:with|using|on) (?:(?:his|her|its|their|the) )?(left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 with the \2 leg"),
     (r"(?<!ing )(?<!starts )(?<!begins )\b(with|using) (?:(?:his|her|its|their|the) )?(left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 the \2 hand"),

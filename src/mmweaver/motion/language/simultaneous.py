@@ -64,7 +64,7 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
             if steps and (steps[-1].lower, first.lower, parsed.form) in _TURNING_JUMPS and parsed.link == "comma":
                 parsed.lost.append("the turn in the air is shown after the jump")
             low = bool(steps) and steps[-1].lower in ("crouch", "lean")
-            if low and first.moves and parsed.link == "and":  # "ducks and steps aside"
+            if low and first.moves and first.lower != "crawl" and parsed.link == "and":  # "ducks and steps aside"
                 parsed.lost.append(f"{first.name} is shown upright, after {steps[-1].name}")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):

@@ -1,14 +1,15 @@
 """From a verb and the modifiers of its clause to a Step, or an error that says why it cannot be shown."""
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, takewhile
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.described_person import PERSON_NOUNS
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import HOPPING, Step
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import Word
 
 LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
@@ -20,7 +21,14 @@ SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 _TOWARDS = frozenset(["to", "towards", "toward", "at"])
 AIMED = ("point", "look_around")
-_EXERCISES = ("squat", "lunge", "jump", "kick")
+_EXERCISES = ("squat", "lunge", "jump", "kick", "side_lunge")
+# Activities that a noun in the singular names once: "a punch", "does a squat".
+_SINGLE = words_in(
+    """
+    punch jab cross hook uppercut kick squat jump leap hop hop_one_leg jumping_jacks push_ups throw lunge side_lunge
+    stomp
+    """
+)
 _HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
@@ -39,7 +47,9 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     step = _times_of_a_walk(_arms_step(step, texts), texts)
     if _is_of_several(step, words, at):
-        step = replace(step, style="several")
+        step = replace(step, count=2) if step.style else replace(step, style="several")
+    elif _is_a_single_one(step, words, at):
+        step = replace(step, count=1)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
     if step.upper == "carry" and step.lower == "stand" and _goes_somewhere(step, words):
@@ -62,8 +72,23 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
 def _is_of_several(step: Step, words: list[Word], at: int) -> bool:
     """Whether an exercise is named in the plural without a number: "does squats"."""
     word = words[at]
-    can_be = step.lower in _EXERCISES and not (step.upper or step.style or step.count)
+    can_be = step.lower in _EXERCISES and not (step.upper or step.count)
+    can_be &= not (step.style or step.lower == "side_lunge") or (step.style != "high" and not step.foot)
     return can_be and word.text == f"{word.lemma}s" and any(one.lemma in ("do", "perform") for one in words[:at])
+
+
+_NO_ADJECTIVES = frozenset({"to", *PERSON_NOUNS.split("|")})
+
+
+def _is_a_single_one(step: Step, words: list[Word], at: int) -> bool:
+    """Whether a movement is a noun in the singular: "a right punch", "performs one high jump"."""
+    if step.count or words[at].form != "base" or (step.upper or step.lower) not in _SINGLE:
+        return False
+    before = [word.text for word in takewhile(lambda word: not word.is_verb, reversed(words[max(at - 5, 0) : at]))]
+    article = next((place for place, text in enumerate(before) if text in ("a", "an", "another")), None)
+    if article is None or _NO_ADJECTIVES & {*before[:article]}:  # "a person seems to jump"
+        return False
+    return before[article + 1 : article + 2] not in (["in"], ["into"], ["from"])  # a posture: "is in a squat"
 
 
 def _lifts_a_thing(following: list[Word]) -> bool:

@@ -38,3 +38,11 @@ def test_who_twists_turns_the_shoulders_both_ways_over_feet_that_stay():
 def test_who_stays_bent_is_down_until_the_end_of_the_step():
     ahead_m, _ = _head_relative_to_pelvis("bends down and stays bent over for four seconds")
     assert (ahead_m > 0.25).mean() > 0.5
+
+
+def test_who_stays_down_at_the_end_comes_up_only_where_the_sentence_says_so():
+    def last_height_m(text: str) -> float:
+        return act_out(f"a person {text}", seed=3, height_m=1.75).pose.joints_m[-1, joint("head"), 2]
+
+    down_m, up_m = last_height_m("bends down and stays there"), last_height_m("bends down, pauses, then stands up")
+    assert up_m - down_m > 0.4

@@ -60,3 +60,14 @@ def test_a_hand_that_is_placed_back_down_is_no_thing() -> None:
 def test_a_posture_is_kept_or_it_is_said(sentence: str, is_said: bool) -> None:
     hows = " ".join(record.how for record in parse(sentence, in_part=True).clauses)
     assert ("is shown standing, after squatting" in hows) == is_said
+
+
+def test_arms_that_come_down_stretched_out_are_said_to_come_down_otherwise() -> None:
+    clauses, lifts = (
+        ("stretches the arms overhead", "lowers them extended to both sides"),
+        Step(upper="raise_hold", clauses=(0,)),
+    )
+    down = Step(clauses=(0, 1))
+    assert _said(clauses, lifts, down) == ["'extended to both sides' is not shown"]
+    assert not _said(clauses, lifts, Step(upper="arms_out", clauses=(1,)), down)
+    assert not _said(("lifts the arms", "lowers them slowly"), lifts, down)

@@ -30,6 +30,20 @@ def test_another_sense_is_said(sentence: str, how: str) -> None:
 @pytest.mark.parametrize(
     "sentence",
     [
+        "a person tries to stand up",
+        "a person bends down and attempts to stand back up",
+        "a person is trying to walk",
+        "a person struggles to get up",
+    ],
+)
+def test_an_attempt_is_no_success(sentence: str) -> None:
+    last = parse(sentence, in_part=True).clauses[-1]
+    assert "shown as done, not only tried" in last.how
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
         "a person sweeps the floor",
         "a person reaches forward",
         "a person picks something up from the floor",

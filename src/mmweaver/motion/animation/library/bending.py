@@ -45,10 +45,17 @@ def _hinge(controls: Controls, height_m: float, down: PerTime, angle_rad: float)
     controls.knee_room[:] = np.maximum(controls.knee_room, 0.5 * down)
 
 
+_BEYOND_S = 10.0  # longer than it takes to come up
+
+
 def _spells(context: StepContext, usual_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
-    """(start, duration) of each time that the body is down, in seconds; once, all the time, where it is held."""
-    if context.step.style == "held":
-        return [(context.start_s, context.duration_s)]
+    """(start, duration) of each time that the body is down, in seconds; once, all the time, where it is held.
+
+    Who stays down at the end of a sequence is down in its last frame, unless the hands have something to do meanwhile.
+    """
+    if context.step.style in ("held", "released"):
+        stays = context.last and context.step.style == "held" and not context.step.upper
+        return [(context.start_s, context.duration_s + _BEYOND_S * stays)]
     return list(repeats(context, usual_s, least_s, most_s))
 
 
@@ -57,7 +64,7 @@ def bending(context: StepContext) -> Controls:
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     deep = float(context.rng.uniform(1.35, 1.75))
     for begin, lasts in _spells(context, 2.3, 1.5, 3.4):
-        move = 0.42 * min(lasts, 3.4)
+        move = 0.42 * min(lasts, context.duration_s, 3.4)
         down = plateau(time_s, begin, begin + lasts, move, move)
         _hinge(controls, h, down, deep)
         shift_pelvis(controls, 0.0, 0.0, -0.025 * h * down)
@@ -70,7 +77,7 @@ def leaning(context: StepContext) -> Controls:
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     deep = float(context.rng.uniform(0.4, 0.6))
     for k, (begin, lasts) in enumerate(_spells(context, 2.0, 1.2, 3.0)):
-        move = 0.4 * min(lasts, 3.0)
+        move = 0.4 * min(lasts, context.duration_s, 3.0)
         down = plateau(time_s, begin, begin + lasts, move, move)
         if context.step.direction == "backwards":
             shift_pelvis(controls, 0.05 * h * down, 0.0, -0.01 * h * down)

@@ -23,6 +23,12 @@ _STOPS = words_in("stop stops stopped stopping quits quit ceases finishes")
 _PUT_BACK = re.compile(
     r"\b(?:puts?|places?|sets?|lays?|brings?|puttings?)\b (?:it|them)\b[a-z ]{0,10}\b(?:down|back)\b"
 )
+_LOWERED_OUT = re.compile(
+    r"\b(?:lower|drop|bring|com)(?:s|es|ing|ed)? [a-z ]{0,25}?"
+    r"(?P<how>(?:(?:extended|stretched|outstretched|straight)(?: out)?|out|wide)"
+    r"(?: (?:to|at) (?:both|the|his|her|their) sides?)?"
+    r"|to both sides|sideways)\b"
+)
 _LOW_STATES = re.compile(
     r"\b(?:squatting|crouching|crouched|squatted|kneeling|bent over|bending over|lunging|"
     r"(?:in|into|to|on) (?:an? |his |her |their |the )?(?:deep |low |half )?(?:squat|crouch|lunge|kneel)\w*"
@@ -38,7 +44,7 @@ _UP = re.compile(
 
 def endings_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for ways back, endings and kept postures that no step shows."""
-    for check in (_undone, _returned, _stopped, _put_back, _kept):
+    for check in (_undone, _returned, _stopped, _put_back, _lowered_out, _kept):
         yield from check(given)
 
 
@@ -104,6 +110,14 @@ def _put_back(given: Given) -> Iterator[tuple[int, str]]:
         ]
         if objects[-1:] and objects[-1] in ARMS | LEGS and any(step.lower == "put_down" for step in given.own(token)):
             yield token.clause, f"the {objects[-1]} is not lowered: a thing is put down"
+
+
+def _lowered_out(given: Given) -> Iterator[tuple[int, str]]:
+    """Arms that come down stretched out to the sides, which are shown as coming down in front."""
+    for found, token in given.matches(_LOWERED_OUT):
+        lowers = [step for step in given.own(token) if step.upper in ("raise", "raise_hold") or step.lower == "stand"]
+        if lowers and not any(step.upper == "arms_out" for step in given.own(token)):
+            yield token.clause, f"{found['how']!r} is not shown"
 
 
 def _is_object(given: Given, limb: Token) -> bool:

@@ -3,8 +3,11 @@
 import re
 from collections.abc import Callable, Iterator
 
+from mmweaver.motion.language.accounts import alike
 from mmweaver.motion.language.checks.given import Given
 from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.words import word_of
 
 _FOOT = r"(?:foot|leg)"
 
@@ -61,3 +64,23 @@ def senses_not_shown(given: Given) -> Iterator[tuple[int, str]]:
             if any(map(is_other, own)):
                 said = next(filter(None, found.groupdict().values()))
                 yield token.clause, f"{said!r} is shown as {shown}"
+    yield from _only_tried(given)
+
+
+_TRIED = re.compile(
+    r"\b(?:attempt(?:s|ed|ing)?|tr(?:y|ies|ied|ying)|struggl(?:es|ed|ing)) to (?:[a-z]+ly )?(?P<verb>[a-z]+)"
+)
+
+_RISING = ("get", "stand", "rise", "come", "straighten")
+
+
+def _only_tried(given: Given) -> Iterator[tuple[int, str]]:
+    """An attempt has a step that does it: "tries to stand up"."""
+    for found, token in given.matches(_TRIED):
+        word = word_of(found["verb"])
+        lower, upper = ACTIVITY_OF_LEMMA.get(word.lemma, ("", "")) if word.is_activity else ("", "")
+        own = given.of_clause(token.clause)
+        keys = {key for step in own for key in (step.lower, step.upper) if key}
+        is_shown = any(alike(upper or lower, key) for key in keys) if own else word.text in _RISING
+        if is_shown or (word.text in _RISING and keys & {"stand_up", "get_up", "kneel_up", "sit_up"}):
+            yield token.clause, f"{found[0]!r} is shown as done, not only tried"

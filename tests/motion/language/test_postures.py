@@ -1,0 +1,31 @@
+"""Postures last until the person gets up; a pause in one has its time."""
+
+import pytest
+
+from mmweaver.motion.language.sentence import parse
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("sits down, pauses, stands up", ["sit_down", "sit", "stand_up"]),
+        ("kneels down, waits, and gets up", ["kneel_down", "kneel", "kneel_up"]),
+        ("falls down, lies there for a bit and gets up", ["fall", "lie", "get_up"]),
+        ("sits down, takes a short break, then gets up", ["sit_down", "sit", "stand_up"]),
+        ("sits down and after a moment stands up", ["sit_down", "sit", "stand_up"]),
+        ("waits, then stands up", ["sit", "stand_up"]),
+        ("pauses and gets up from the floor", ["lie", "get_up"]),
+        ("stands still and then stands up", ["stand"]),
+        ("sits down and stays there", ["sit_down"]),
+        ("walks, makes a pause, and walks on", ["walk", "stand", "walk"]),
+    ],
+)
+def test_a_pause_before_the_next_movement_is_a_step(text: str, steps: list[str]) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert [step.lower for step in plan.steps] == steps
+    assert all(clause.status == "done" for clause in plan.clauses)
+
+
+def test_a_pause_at_the_beginning_comes_before_the_movement() -> None:
+    plan = parse("after a short pause a person walks forward", in_part=True)
+    assert [step.lower for step in plan.steps] == ["stand", "walk"]
