@@ -1,5 +1,6 @@
 """A sentence in a Scene: the right way, the right hands, nothing through furniture, floor and limits kept."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -249,6 +250,18 @@ def test_jogging_without_a_direction_is_on_the_spot_and_said():
     assert any("on the spot" in sentence for sentence in made.assumptions)
     assert np.ptp(made.pose.joints_m[:, 0, :2], axis=0).max() < 0.15
     assert np.hypot(*np.ptp(motion("jogs to the left").pose.joints_m[:, 0, :2], axis=0)) > 1.5
+
+
+def test_who_runs_along_a_path_runs_there():
+    plan = plan_motion("runs", 2.0)
+    (step,) = plan.steps
+    path = ((-1.0, 2.0), (1.0, 2.0))
+    along = replace(plan, steps=(replace(step, route_m=path, distance_m=2.0),))
+    made = compose(along, room(), seed=0, range_window_m=WINDOW_M)
+    assert np.allclose(made.pose.joints_m[-3, 0, :2], path[-1], atol=0.1)
+    late = replace(along, duration_s=0.5, steps=(replace(along.steps[0], end_s=0.5),))
+    with pytest.raises(InputError, match="too short for the path"):
+        compose(late, room(), seed=0, range_window_m=WINDOW_M)
 
 
 def test_walking_while_waving_has_the_legs_of_one_and_the_hand_of_the_other():
