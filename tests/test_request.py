@@ -114,3 +114,19 @@ def test_a_path_is_for_somebody_who_walks():
         parse_request(AWR1843, "a person waves", path_m=[(0.0, 3.0), (0.0, 1.5)])
     with pytest.raises(InputError, match="at least two points"):
         parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0)])
+    with pytest.raises(InputError, match="a walk takes"):
+        parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0), (0.0, 2.9)])
+
+
+def test_a_path_is_gone_along_once_however_long_it_lasts():
+    plan = parse_request(AWR1843, "a person walks", path_m=[(0.0, 3.0), (0.0, 1.5)], seconds=20.0).people[0].plan
+    assert plan is not None
+    assert len(plan.steps) == 1
+
+
+def test_a_path_that_leads_elsewhere_than_the_sentence_is_said():
+    path = [(0.0, 3.0), (0.0, 1.5)]
+    for text, status in (("a person walks", "done"), ("a person walks backwards", "approximated")):
+        plan = parse_request(AWR1843, text, path_m=path).people[0].plan
+        assert plan is not None
+        assert [clause.status for clause in plan.clauses] == [status]

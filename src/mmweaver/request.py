@@ -13,13 +13,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
-from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE, Place
 from mmweaver.motion.people import check_subject
+from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 
 MAX_FRAMES = 2000
@@ -227,16 +228,27 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     if plan is None or not walks:
         raise InputError("the path is for a sentence in which the person walks or runs; say so, or leave out --path")
     length_m = sum(math.dist(one, other) for one, other in itertools.pairwise(points))
+    if length_m < SHORTEST_PATH_M:
+        raise InputError(f"the path is {length_m:.2f} m long; a walk takes {SHORTEST_PATH_M:g} m at least")
     steps = list(plan.steps)
+    walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        steps[walks[0]], route_m=points, distance_m=length_m + TURN_M * (len(points) - 1), direction="", target="",
-        place=None, arc_deg=0.0, count=0,
+        walk, route_m=points, distance_m=length_m + TURN_M * (len(points) - 1), direction="", target="", place=None,
+        arc_deg=0.0, count=0,
     )  # fmt: skip
-    return replace(plan, steps=tuple(steps), notes=(*plan.notes, f"the path given is {length_m:.2f} m long"))
+    notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
+    if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:
+        notes.append(f"{walk.clause!r} is shown along the path given, whatever way it names")
+        for number in walk.clauses:
+            clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
+    return replace(plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=tuple(clauses))
 
 
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
-    return None if plan is None else schedule(repeated(plan, duration_s), duration_s)
+    if plan is None:
+        return None
+    has_path = any(step.route_m for step in plan.steps)  # which is gone along once
+    return schedule(plan if has_path else repeated(plan, duration_s), duration_s)
 
 
 def _most_frames(config: RadarConfig, has_adc: bool) -> int:

@@ -2,6 +2,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from mmweaver.figures.motion_strip import draw_sheet, draw_strip
@@ -21,6 +22,16 @@ def test_nothing_is_cut_off(tmp_path: Path):
     draw_strip(act_out("a person falls").pose, tmp_path / "fall.png", title="a person falls")
     grey = np.asarray(Image.open(tmp_path / "fall.png").convert("L"))
     assert min(edge.min() for edge in (grey[0], grey[-1], grey[:, 0], grey[:, -1])) == 255
+
+
+@pytest.mark.parametrize("text", ["a person crawls", "a person does push-ups"])
+def test_bodies_near_the_floor_are_whole_and_above_the_seconds(text: str, tmp_path: Path):
+    draw_strip(act_out(text, duration_s=3.0).pose, tmp_path / "low.png")
+    rgb = np.asarray(Image.open(tmp_path / "low.png").convert("RGB"), int)
+    limbs = np.ptp(rgb, axis=2) > 60  # red and blue
+    first_column, last_row = np.flatnonzero(limbs.any(axis=0))[0], np.flatnonzero(limbs.any(axis=1))[-1]
+    assert limbs[:, first_column].sum() < 10, "the hand ends there and is not cut off"
+    assert (rgb[last_row + 1 :].max(axis=2) < 170).any(axis=1).sum() >= 4, "the seconds stand below"
 
 
 def test_a_strip_is_the_same_wherever_the_body_faces(tmp_path: Path):

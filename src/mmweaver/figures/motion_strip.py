@@ -24,6 +24,7 @@ AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
 TILT = 0.18  # upward shift per metre of distance
 PX_PER_M = 110.0
 BELOW_M, ABOVE_M = 0.25, 0.12  # shown below the floor and above the highest point
+LABEL_M, LIMB_M = 0.09, 0.08  # height of the seconds' line, and a limb's thickness with a margin
 LEAST_HIPS_M = 0.1  # distance of the hips on the floor plan from which a facing is read
 SHADOW_HEIGHT_M = 0.2  # limbs so high above the floor darken it by a third of what they do on it
 
@@ -61,20 +62,32 @@ def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
     places_m = [
         _flat(body.ends_m - [*pose.joints_m[k, 0, :2], floor_m]) for body, k in zip(bodies, instants, strict=True)
     ]
-    wide = max(float(np.ptp(place[..., 0])) for place in places_m)
-    reach, top_m = max(SPACING_M, 1.05 * wide + 0.1), max(float(place[..., 1].max()) for place in places_m) + ABOVE_M
-    left_m, right_m = -reach / 2, (count - 0.5) * reach
-    picture = np.full((round((top_m + BELOW_M) * PX_PER_M), round((right_m - left_m) * PX_PER_M), 3), 255, np.uint8)
+    reach, left_m, right_m, below_m, top_m = frame_of(places_m)
+    picture = np.full((round((top_m + below_m) * PX_PER_M), round((right_m - left_m) * PX_PER_M), 3), 255, np.uint8)
     for number, (body, index) in enumerate(zip(bodies, instants, strict=True)):
         middle_m = pose.joints_m[index, 0, :2]
         origin_px = np.array([(number * reach - left_m) * PX_PER_M, top_m * PX_PER_M])
         _paint(picture, body, np.array([*middle_m, floor_m]), origin_px)
         seconds = f"{abs(pose.time_s[index]):.1f} s"
-        axes.text(number * reach, -0.16, seconds, ha="center", va="top", fontsize=6, color="0.4")
+        axes.text(number * reach, LABEL_M - below_m, seconds, ha="center", va="top", fontsize=6, color="0.4")
     axes.axhline(0.0, color="0.85", linewidth=0.6, zorder=0)
-    axes.imshow(picture, extent=(left_m, right_m, -BELOW_M, top_m), alpha=(picture < 255).any(axis=2).astype(float))
-    axes.set(xlim=(left_m, right_m), ylim=(-BELOW_M, top_m))
+    axes.imshow(picture, extent=(left_m, right_m, -below_m, top_m), alpha=(picture < 255).any(axis=2).astype(float))
+    axes.set(xlim=(left_m, right_m), ylim=(-below_m, top_m))
     axes.set_aspect("equal")
+
+
+def frame_of(places_m: list[Float[np.ndarray, "capsule 2 2"]]) -> tuple[float, float, float, float, float]:
+    """Distance between instants, left and right edge, depth below the floor and top of a strip of bodies, in metres.
+
+    `places_m` are the capsules' ends in the picture, from each body's place on the floor. Bodies that lie reach far to
+    one side and below their place; the seconds stand below them.
+    """
+    ends = np.stack([place.reshape(-1, 2) for place in places_m])
+    reach = max(SPACING_M, 1.05 * float(np.ptp(ends[..., 0], axis=1).max()) + 0.1)
+    left_m = min(-reach / 2, float(ends[0, :, 0].min()) - LIMB_M)
+    last_m = max(reach / 2, float(ends[-1, :, 0].max()) + LIMB_M)
+    below_m = max(BELOW_M, LIMB_M + LABEL_M - float(ends[..., 1].min()))
+    return reach, left_m, (len(places_m) - 1) * reach + last_m, below_m, float(ends[..., 1].max()) + ABOVE_M
 
 
 def _facing_the_radar(pose: PoseSequence) -> PoseSequence:

@@ -8,7 +8,7 @@ from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.named_steps import in_turn, with_what_is_shown
-from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan
+from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
@@ -142,14 +142,14 @@ def _depth_m(result: RankedPlacement) -> float:
 
 def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:
     """Running to and fro takes more room than most rooms have: without a direction it is then on the spot, and said."""
-    if not any(step.lower == "jog" and not (step.direction or step.target) for step in plan.steps):
+    if not any(_runs_anywhere(step) for step in plan.steps):
         return plan, ()
     longest_m = floor.longest_free_m(RUN_ROOM_M)
     if longest_m >= RUN_ROOM_M:
         return plan, ()
     steps, notes = [], []
     for step in plan.steps:
-        aimless = step.lower == "jog" and not (step.direction or step.target or step.arc_deg)
+        aimless = _runs_anywhere(step)
         steps.append(replace(step, direction="spot") if aimless else step)
         if aimless:
             notes.append(
@@ -157,3 +157,9 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
                 " the person runs on the spot"
             )
     return replace(plan, steps=tuple(steps)), tuple(notes)
+
+
+def _runs_anywhere(step: Step) -> bool:
+    """Whether a step is running that nothing leads anywhere: no direction, circle, landmark, place or path."""
+    leads = step.direction or step.target or step.arc_deg or step.place or step.route_m
+    return step.lower == "jog" and not leads

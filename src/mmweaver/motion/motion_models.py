@@ -1,12 +1,15 @@
 """Motion models: whatever turns a sentence into moving joints, for sentences that the library does not know.
 
 A model is a callable that follows `MotionModel`. It is named by `--motion-model`: a MotionGPT checkpoint, an entry
-point of the group mmweaver.motion_models, or "module:attribute" of a module that can be imported.
+point of the group mmweaver.motion_models, or "module:attribute" of a module that can be imported, or lies in the
+current folder.
 """
 
 import importlib
+import sys
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -84,6 +87,9 @@ def heading_of(path_m: tuple[Place, ...], clip: MotionClip) -> float | None:
 
 
 def _imported(module: str, attribute: str) -> MotionModel:
+    here = str(Path.cwd())
+    if here not in sys.path:  # an installed command does not look there, python -m does
+        sys.path.append(here)  # last, so that it hides no installed module; kept, for what the model imports later
     try:
         model = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError) as error:

@@ -58,6 +58,18 @@ def test_an_error_names_the_nearest_place_the_window_it_needs_and_radars():
     assert caught.value.ways_on == {}
 
 
+def test_a_place_outside_the_window_is_named_with_the_window_that_it_needs():
+    deep = room(depth_m=8.0, width_m=6.0)
+    text = "a person stands five metres away and waves"
+    with pytest.raises(NoRoomError, match=r"nobody can be 5 m .*try --range") as caught:
+        _composed(text, deep)
+    helped = compose(plan_motion(text, 2.0), deep, seed=0, range_window_m=tuple(caught.value.ways_on["range_m"]))
+    assert np.hypot(*helped.pose.joints_m[0, 0, :2]) == pytest.approx(5.0, abs=0.3)
+    with pytest.raises(NoRoomError) as caught:
+        _composed("a person stands 20 metres away", deep)
+    assert caught.value.ways_on == {}
+
+
 def test_who_has_no_room_to_walk_on_ahead_turns_and_it_is_said():
     corridor = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 3.6, 6.0)))
     plan = plan_motion("a person walks, stops, waves and walks on", 6.0)

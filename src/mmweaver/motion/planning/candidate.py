@@ -70,6 +70,7 @@ _PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chair
 _STRAIGHT = ("left", "right", "towards", "away", "")
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
+_RUN_OF_USUAL = 1.0  # a run, which is not slowed down as far as a walk
 _LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
 _NEAR_MIDDLE_M = 0.3  # from where on a couch somebody sits down to lie in its middle
 _SEAT_WAYS = 4  # ways to seats for which a start of the walk is looked for
@@ -303,7 +304,8 @@ class CandidateSampler:
             return self.floor.walkable_m
         if id(step) not in self._roomy_starts:
             cells, free_m = self.floor.straight_starts(step.direction)
-            enough_m = _OF_USUAL * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
+            of_usual = _RUN_OF_USUAL if step.lower == "jog" else _OF_USUAL
+            enough_m = of_usual * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
             self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
         return self._roomy_starts[id(step)]
 

@@ -13,8 +13,10 @@ import numpy as np
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import Scene
+from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.targets import SEATS
 
 Result = TypeVar("Result")
@@ -73,7 +75,7 @@ def with_more_room(
         return min(deep, key=lambda one: depth_m(one[1]))
     assert first_error is not None
     if isinstance(first_error, NoRoomError):
-        raise NoRoomError(str(first_error), ways_on=ways_on(floor)) from None
+        raise NoRoomError(str(first_error), ways_on=ways_on(floor, plan)) from None
     raise first_error
 
 
@@ -172,17 +174,22 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
     return replace(plan, steps=tuple(steps)), tuple(notes)
 
 
-def ways_on(floor: FloorMap) -> dict[str, Any]:
+def ways_on(floor: FloorMap, plan: MotionPlan) -> dict[str, Any]:
     """Where there would be room: the nearest free place, the range window it needs, and presets that have it.
 
-    Empty where the photo shows no floor at any distance, or hardly more than in the window.
+    Where the room has nothing of a place that the plan names, the nearest of that place. Empty where the photo shows no
+    such floor at any distance, or hardly more than in the window.
     """
     anywhere = FloorMap.of(floor.scene, _ANY_WINDOW_M, floor.height_m, with_assumed=True)
-    if np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
+    named = [step.place for step in plan.steps if step.place is not None and not _has_cells(step.place, floor)]
+    if not named and np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
         return {}
-    place = anywhere.nearest_walkable_m(np.zeros(2))
-    if place is None:
+    if named and not _has_cells(named[0], anywhere):
         return {}
+    places_m = cells_of(named[0], anywhere) if named else anywhere.walkable_m
+    if not len(places_m):
+        return {}
+    place = places_m[np.argmin(np.hypot(*places_m.T))]
     near_m, far_m = window_about(floor.scene, floor.height_m, place, floor.range_window_m)
     radars = [
         name for name in PRESETS
@@ -193,6 +200,13 @@ def ways_on(floor: FloorMap) -> dict[str, Any]:
         "range_m": [near_m, far_m],
         "radars": radars[:_MOST_RADARS],
     }
+
+
+def _has_cells(place: Place, floor: FloorMap) -> bool:
+    try:
+        return bool(len(cells_of(place, floor)))
+    except NoRoomError:
+        return False
 
 
 def window_about(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
@@ -48,7 +48,10 @@ def _is_open(step: Step) -> bool:
 
 
 def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
-    """The walkable cells (x, y) of a place, in metres. Raises InputError where the room has none."""
+    """The walkable cells (x, y) of a place, in metres.
+
+    Raises NoRoomError where the room has none, InputError where it lacks what the place is relative to.
+    """
     cells = floor.walkable_m
     inside, part = np.ones(len(cells), bool), place
     while part is not None and len(cells):
@@ -59,7 +62,7 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
         part = part.also
     cells = cells[inside]
     if not len(cells):
-        raise InputError(
+        raise NoRoomError(
             f"nobody can be {place.words}: no free floor is there in the picture and the radar's window; say another"
             " place, or leave it out"
         )

@@ -189,6 +189,8 @@ def _no_floor(floor: FloorMap) -> str:
 
 
 def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | None) -> str:
+    if any(step.route_m for step in plan.steps):  # its floor is free, or `walk_along` has said where not
+        return f"{plan.duration_s:.1f} s are too short for the path; give more --seconds or --frames, or a shorter path"
     from_there = f" from {start_m[0]:g},{start_m[1]:g}" if start_m else ""
     going = [step.clause for step in plan.steps if step.moves]
     what = f" for {going[0]!r}" if going else ""

@@ -27,7 +27,7 @@ SEATS = ("couch", "chair", "bench", "stool", "seat")  # handled by `seating`
 # In a sentence, one of these words stands for several kinds of landmarks.
 ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
 _FASTEST_MPS = {"jog": 3.5}  # walking: 1.6
-_SHORTEST_M = 0.35  # a shorter path is no walk
+SHORTEST_PATH_M = 0.35  # a shorter path is no walk
 _NEAR_M = 0.45  # a walkable position so near to the approach still is at the landmark
 _NUM_CORNERS = 24  # corners tried
 _NUM_GOALS = 6  # positions tried in a place
@@ -207,7 +207,7 @@ def _lay_legs(
     at_end = TURN_OVERHEAD_S + turned / TURN_RATE_RADPS if turned > 0.15 else 0.1
     spare = step.end_s - step.start_s - at_end - 0.5 * (len(corners) - 1) - (0.0 if first else 0.3)
     total = float(lengths.sum())
-    if spare < 0.6 or total < _SHORTEST_M:
+    if spare < 0.6 or total < SHORTEST_PATH_M:
         return False
     speed = min(preferred_speed_mps(step, trajectory.rng), _FASTEST_MPS.get(step.lower, 1.6))
     needed = total / max(spare - 0.5 * RAMP_S * (2 * len(corners) - first), 0.2)

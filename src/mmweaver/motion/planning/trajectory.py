@@ -16,6 +16,10 @@ SLOWEST_MPS = {
     "walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15, "hop": 0.25, "hop_one_leg": 0.25,
     "walking_lunge": 0.3,
 }  # fmt: skip
+SLOWED_TO, RUN_SLOWED_TO = (
+    0.6,
+    0.8,
+)  # share of the preferred speed to which a short way slows a gait; a run is none below
 RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
@@ -54,6 +58,11 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
     return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0) * step.pace
+
+
+def slowest_mps(step: Step, speed_mps: float) -> float:
+    """The speed in m/s to which a short way slows who prefers `speed_mps`; a shorter one is gone faster, then stood."""
+    return max(SLOWEST_MPS[step.lower], (RUN_SLOWED_TO if step.lower == "jog" else SLOWED_TO) * speed_mps)
 
 
 @dataclass
@@ -160,7 +169,7 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
         speed = min(max(step.distance_m / max(effective, 0.2), SLOWEST_MPS[step.lower]), 1.6 * speed)
         wanted = step.distance_m
     free = trajectory.free_length_m(direction_rad, wanted)
-    if free >= min(max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective, step.distance_m or np.inf):
+    if free >= min(slowest_mps(step, speed) * effective, step.distance_m or np.inf):
         trajectory.cost += 2.0 * (1 - free / wanted)
         trajectory.go(step, direction_rad, free, (begin, end), ramps)
         return
@@ -171,8 +180,12 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     lasts = free / speed + sum(stop_ramps) / 2
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
     trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
+    _say_stopped(trajectory, step, free)
+
+
+def _say_stopped(trajectory: Trajectory, step: Step, gone_m: float) -> None:
     trajectory.notes.append(
-        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person"
+        f"there is room to go {gone_m:.1f} m for {step.clause!r}; after that the person"
         f" {'stays on hands and knees' if step.lower == 'crawl' else 'stands still'} until {step.end_s:.1f} s"
     )
 
@@ -201,6 +214,7 @@ def ramps_of(span_s: float, *, first: bool, last: bool, ramp_s: float = RAMP_S) 
 def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
     speed = preferred_speed_mps(step, trajectory.rng)
+    runs, slowest = step.lower == "jog", SLOWEST_MPS[step.lower]
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
     trajectory.turn_rate_radps = CRAWLING_TURN_RADPS if step.lower == "crawl" else TURN_RATE_RADPS
     for _ in range(40):
@@ -213,11 +227,11 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         else:
             begin = face_along(trajectory, step, direction, time, first=begun)
         left = step.end_s - begin
-        final = free >= 0.75 * speed * (left - ramp_s / 2)
+        final = free >= (slowest_mps(step, speed) * left if runs else 0.75 * speed * (left - ramp_s / 2))
         if final:
             ramps = ramps_of(left, first=begun, last=last, ramp_s=ramp_s)
             length = min(free, speed * (left - sum(ramps) / 2))
-            if length < SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2):
+            if length < slowest * (left - sum(ramps) / 2):
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
@@ -227,8 +241,11 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
         lasts = free / speed + sum(ramps) / 2
-        if left - lasts < 1.3:  # leave time enough to turn and go back, or take the whole time for this one
-            lasts = left if free >= SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2) else left - 1.3
+        stops = left - lasts < 1.3
+        if stops and runs:  # who runs is not slowed down, but stands still for the rest
+            lasts = min(lasts, left)
+        elif stops:  # leave time enough to turn and go back, or take the whole time for this one
+            lasts = left if free >= slowest * (left - sum(ramps) / 2) else left - 1.3
         length = min(free, speed * (lasts - sum(ramps) / 2))
         if lasts < 0.8 or length < SHORTEST_LEG_M:
             raise NoTrajectory(f"only {free:.1f} m")
@@ -236,6 +253,10 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
         trajectory.cost += 0.15
         time, begun = begin + lasts - 0.15, False
         if step.end_s - time < 0.3:
+            return
+        if stops and runs:
+            trajectory.cost += 2.0 * (1 - length / (speed * left))
+            _say_stopped(trajectory, step, length)
             return
     raise NoTrajectory("too many turns")
 
