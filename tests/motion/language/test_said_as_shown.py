@@ -88,3 +88,16 @@ def test_notes_are_of_clauses_that_are_not_done() -> None:
     assert parse("a person stops, then bows politely", in_part=True).notes == (
         "'bows politely' is shown as bowing once; 'politely' is not shown",
     )
+
+
+def test_a_done_clause_without_a_step_says_what_is_shown_in_its_place() -> None:
+    kneels, pauses, _ = parse("he kneels, pauses, stands up").clauses
+    assert kneels.how == ""
+    assert (pauses.status, pauses.how) == (DONE, "is shown as standing up from the knees")
+
+
+@pytest.mark.parametrize(
+    "text", ["is in a t-pose, drops the arms and jumps", "folds the arms, lowers them and sits down"]
+)
+def test_arms_that_only_come_down_are_not_said_to_stay(text: str) -> None:
+    assert parse(text).clauses[1].how == "is shown as the arms coming down after that"

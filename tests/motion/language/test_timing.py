@@ -60,7 +60,15 @@ def test_a_short_sentence_is_repeated_in_a_long_time():
 
 @pytest.mark.parametrize(
     "text",
-    ["turns around", "sits down", "kneels down", "gets up from the floor", "bows", "raises the left hand", "waves twice"],
+    [
+        "turns around",
+        "sits down",
+        "kneels down",
+        "gets up from the floor",
+        "bows",
+        "raises the left hand",
+        "waves twice",
+    ],
 )
 def test_what_is_done_slowly_takes_longer(text):
     slowly, usual, quickly = (plan_motion(f"a person {text}{how}").duration_s for how in (" slowly", "", " quickly"))

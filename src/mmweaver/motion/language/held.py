@@ -28,7 +28,7 @@ _COMING_BACK = words_in(
     "lower lowers lowering lowered drop drops dropping down up upright straightens straightening release releases"
     " uncrosses unfolds back stand_up"
 )
-_LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
+LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
@@ -85,7 +85,7 @@ def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
     """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
     own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
     still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
-    return still and bool(own & _LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
+    return still and bool(own & LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
