@@ -36,6 +36,7 @@ from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.shared_steps import says_again
+from mmweaver.motion.language.sideways import sideways_throughout
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
@@ -149,7 +150,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
             sequence[number - 1 : number + 1] = [walk, replace(step, place=None)]
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
-    steps = carried_over(with_postures(going_on(_sideways_throughout(sequence))))
+    steps = carried_over(with_postures(going_on(sideways_throughout(sequence))))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
@@ -173,20 +174,6 @@ def _at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
     """Two curves of a run that patterns have made of one: 'runs in a zigzag' does not walk the second one."""
     runs = any(step.lower == "jog" for step in steps) and not _WALKING.search(given_text.lower())
     return [replace(step, lower="jog") if runs and step.lower == "walk" and step.arc_deg else step for step in steps]
-
-
-def _sideways_throughout(steps: list[Step]) -> list[Step]:
-    """ "Walks sideways, four steps to the left, four steps back": all of it sideways."""
-    is_aimless = len(steps) > 1 and steps[0].lower == "sidestep" and not (steps[0].direction or steps[0].count)
-    if not is_aimless or not all(step.lower == "walk" and step.count for step in steps[1:]):
-        return steps
-    result: list[Step] = []
-    for step in steps[1:]:
-        back = step.direction in ("back", "backwards") and result
-        side = OPPOSITE.get(result[-1].direction, "") if back else step.direction
-        result.append(replace(step, lower="sidestep", direction=side))
-    result[0] = replace(result[0], clauses=(*steps[0].clauses, *result[0].clauses))
-    return result
 
 
 def _is_understood_alone(part: str) -> bool:
