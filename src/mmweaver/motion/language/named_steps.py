@@ -39,33 +39,25 @@ def _shown_as(record: ClauseRecord, shown: str) -> ClauseRecord:
 def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:
     """The steps of each of so many clauses; one that no clause names counts with the next one that a clause does.
 
-    A step of several clauses counts with those that have no other: "walks forward, then backward".
+    A step of several clauses counts with those that have no other of its kind: "walks forward, then backward".
     """
     return [[steps[place] for place in places] for places in _places_of_each(clauses, steps)]
 
 
 def _places_of_each(clauses: int, steps: Sequence[Step]) -> list[list[int]]:
     named = [[*dict.fromkeys(number for part in step.each for number in part.clauses)] for step in steps]
-    acting = {number for own, step in zip(named, steps, strict=True) if not _waits(step) for number in own}
-    has_its_own = {
-        own[0]
-        for own, step in zip(named, steps, strict=True)
-        if len(own) == 1 and _waits(step) is (own[0] not in acting)
-    }
+    does = [(step.lower, step.upper) for step in steps]
+    alone = {(own[0], doing) for own, doing in zip(named, does, strict=True) if len(own) == 1}
     of_each: list[list[int]] = [[] for _ in range(clauses)]
     waiting: list[int] = []
     for place, own in enumerate(named):
-        own = [number for number in own if number not in has_its_own] or own
-        own = [number for number in own if all(_waits(steps[one]) for one in of_each[number])] or own
+        own = [number for number in own if (number, does[place]) not in alone] or own
+        own = [number for number in own if does[place] not in (does[one] for one in of_each[number])] or own
         waiting.append(place)
         for k, number in enumerate(own):
             of_each[number] += waiting if k == 0 else [place]
         waiting = [] if own else waiting
     return of_each
-
-
-def _waits(step: Step) -> bool:
-    return step.lower == "stand" and not step.upper
 
 
 def _at(places: Sequence[int], steps: Sequence[Step]) -> str:
