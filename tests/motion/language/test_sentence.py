@@ -406,6 +406,13 @@ def test_who_faces_backwards_turns_around() -> None:
     assert (step.lower, step.direction, step.facing) == ("turn", "", "")
 
 
+@pytest.mark.parametrize("text", ["skips", "skips in a circle", "is skipping and clapping"])
+def test_skipping_is_not_recorded_as_done(text: str) -> None:
+    plan = parse(f"a person {text}")
+    assert plan.steps[0].lower == "hop"
+    assert plan.clauses[0].status == "approximated"
+
+
 def test_a_leg_that_kicks_high_kicks_high() -> None:
     (step,) = parse("a person kicks high with the left leg twice").steps
     assert (step.lower, step.style, step.foot, step.count) == ("kick", "high", "left", 2)

@@ -20,7 +20,7 @@ RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
-PACING_FROM_S = 3.0  # "walks to and fro": the shortest time with two legs
+PACING_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
 SLOWER_TURNS = (1.5, 1.0, 0.8)  # times as long: slowly, as usual, quickly
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
@@ -255,7 +255,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
 def _pacing_m(step: Step, speed_mps: float) -> float:
     """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
     lasts_s = step.end_s - step.start_s
-    is_pacing = step.direction == "pacing" and step.lower != "crawl" and lasts_s > PACING_FROM_S
+    is_pacing = step.direction == "pacing" and step.lower != "crawl" and PACING_S[0] < lasts_s < PACING_S[1]
     return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - 1.2) / 2) if is_pacing else 0.0
 
 
