@@ -115,3 +115,8 @@ def test_a_walk_has_its_own_direction(text: str, ahead: bool) -> None:
     assert plan.steps[-1].moves
     assert plan.steps[-1].arms_ahead == ahead
     assert all(clause.status == "done" for clause in plan.clauses)
+
+
+def test_arms_that_were_up_during_a_walk_come_down_after_it() -> None:
+    plan = parse("a person walks forward with the arms raised and then lowers them")
+    assert [(step.lower, step.upper) for step in plan.steps] == [("walk", "raise_hold"), ("stand", "")]

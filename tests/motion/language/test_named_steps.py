@@ -127,6 +127,8 @@ def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> Non
     stops = Step(clauses=(1,))
     again = [replace(WALK, clauses=(0,)), stops, replace(WALK, clauses=(0, 2)), replace(stops, clauses=(1, 2))]
     assert steps_of_each(3, again) == [again[:1], again[1:2], again[2:]]
+    twice = [replace(WALK, clauses=numbers) for numbers in ((0,), (0, 1), (0, 2), (0, 1, 2), (0, 2), (0, 1, 2))]
+    assert steps_of_each(3, twice) == [twice[:1], twice[1:2], twice[2:]]
 
 
 def test_steps_with_others_between_them_are_not_in_a_row() -> None:

@@ -72,7 +72,7 @@ def with_what_is_held(
     if result and _is_brought_back(result[-1], clauses):
         result.append(
             Step(
-                lower=result[-1].lower,
+                lower="stand" if result[-1].moves else result[-1].lower,
                 seat=result[-1].seat,
                 clauses=result[-1].clauses[-1:],
                 clause=clauses[result[-1].clauses[-1]],
@@ -84,7 +84,11 @@ def with_what_is_held(
 def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
     """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
     own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
-    still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
+    still = (
+        last.lower in ("stand", "sit", "kneel", "walk", "jog")
+        and last.upper in ARM_POSTURES
+        and last.other_hand is None
+    )
     return still and bool(own & LOWERED) and not own & (_STAYING - {"rests", "resting", "rest"})
 
 

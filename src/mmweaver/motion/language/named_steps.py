@@ -51,8 +51,10 @@ def _places_of_each(clauses: int, steps: Sequence[Step]) -> list[list[int]]:
     of_each: list[list[int]] = [[] for _ in range(clauses)]
     waiting: list[int] = []
     for place, own in enumerate(named):
-        own = [number for number in own if (number, does[place]) not in alone] or own
-        own = [number for number in own if does[place] not in (does[one] for one in of_each[number])] or own
+        if len(own) > 1:
+            own = [number for number in own if (number, does[place]) not in alone] or own[-1:]
+        if len(own) == 1:
+            alone.add((own[0], does[place]))
         waiting.append(place)
         for k, number in enumerate(own):
             of_each[number] += waiting if k == 0 else [place]

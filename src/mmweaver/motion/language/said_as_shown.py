@@ -44,7 +44,7 @@ def saying_what_is_shown(
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
         is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
-        briefly = "the arms coming down after that" if is_same and _comes_down(record, own) else briefly
+        briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
         whole = [] if is_plain else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
@@ -53,9 +53,10 @@ def saying_what_is_shown(
     return said
 
 
-def _comes_down(record: ClauseRecord, own: Sequence[Step]) -> bool:
+def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]) -> bool:
     """Whether a clause only ends a posture of the arms, whose step it shares with the clause before."""
-    return any(step.upper in ARM_POSTURES for step in own[-1:]) and bool(words_in(record.clause.lower()) & LOWERED)
+    held = any(step.upper in ARM_POSTURES and step is not steps[-1] for step in own[-1:])
+    return held and bool(words_in(record.clause.lower()) & LOWERED)
 
 
 def _of_a_part(record: ClauseRecord) -> ClauseRecord:
