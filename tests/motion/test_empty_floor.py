@@ -45,3 +45,23 @@ def _way_m(motion: Motion, step: Step) -> Float[np.ndarray, "2"]:
     """From where to where the pelvis moves in a step, as (x, y) in metres."""
     start, end = np.searchsorted(motion.pose.time_s, [step.start_s, step.end_s - 0.1])
     return motion.pose.joints_m[end, 0, :2] - motion.pose.joints_m[start, 0, :2]
+
+
+@pytest.mark.parametrize("turn", ["turns around", "turns 360 degrees"])
+def test_who_turns_slowly_turns_slowly(turn: str):
+    def fastest_mps(how: str) -> float:
+        pelvis_to_hips_m = np.diff(act_out(f"a person {turn} {how}", seed=0).pose.joints_m[:, 1:3], axis=1)[:, 0]
+        return float(np.linalg.norm(np.diff(pelvis_to_hips_m, axis=0), axis=-1).max() * 120)
+
+    slowly, usual, quickly = (fastest_mps(how) for how in ("slowly", "", "quickly"))
+    assert slowly < 0.8 * usual
+    assert usual < 0.95 * quickly
+
+
+@pytest.mark.parametrize("text", ["paces back and forth", "walks to and fro slowly", "runs back and forth"])
+def test_who_paces_comes_back(text: str):
+    for seed in range(3):
+        pelvis_m = act_out(f"a person {text}", seed=seed).pose.joints_m[:, 0, :2]
+        way_m = float(np.linalg.norm(np.diff(pelvis_m, axis=0), axis=-1).sum())
+        farthest_m = float(np.linalg.norm(pelvis_m - pelvis_m[0], axis=-1).max())
+        assert way_m > 1.5 * farthest_m

@@ -113,3 +113,9 @@ def test_what_somebody_who_stumbles_holds_on_to_is_said_to_be_left_out():
     assert stumbles.status == DONE
     assert "holds on to" in catches.how
     assert all(record.status == DONE for record in parse("she is pushed and catches herself").clauses)
+
+
+def test_what_is_not_shown_is_said_of_the_clause_that_says_it() -> None:
+    blocks, punches = parse("a person blocks with the left arm and punches with the right").clauses
+    assert "which hand or foot it is" in blocks.how
+    assert "which hand" not in punches.how

@@ -147,3 +147,8 @@ def test_a_leg_that_is_held_up_is_held() -> None:
     plan = parse("a person lifts the left leg and holds it up", in_part=True)
     assert [(step.lower, step.foot) for step in plan.steps] == [("one_leg", "right")]
     assert {clause.status for clause in plan.clauses} == {"done"}
+
+
+def test_arms_that_were_up_during_a_walk_come_down_after_it() -> None:
+    plan = parse("a person walks forward with the arms raised and then lowers them")
+    assert [(step.lower, step.upper) for step in plan.steps] == [("walk", "raise_hold"), ("stand", "")]

@@ -45,6 +45,9 @@ WALK, WAVE = Step(lower="walk"), Step(upper="wave")
         (Step(lower="bend", style="held", seconds=3.0), "bending down and staying down for 3 s"),
         (Step(upper="raise", hand="left", count=12), "raising the left hand overhead and lowering it 12 times"),
         (Step(upper="raise_hold", hand="both"), "lifting both arms overhead and keeping them up"),
+        (Step(lower="lean", direction="left", upper="raise_hold", hand="both"),
+         "leaning to the person's left once while holding both arms up overhead"),
+        (Step(lower="kneel_up", style="knee", foot="left"), "standing up from the left knee"),
         (Step(upper="arms_out", hand="right", direction="forwards"), "holding the right arm out ahead"),
         (Step(upper="point", facing="left"), "pointing to the left in the photo with one hand once"),
         (Step(upper="wave", facing="towards"), "waving with one hand repeatedly, facing the radar"),
@@ -113,3 +116,22 @@ def test_every_activity_has_words() -> None:
         assert words
         assert "{" not in words
         assert "  " not in words
+
+
+def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> None:
+    there, on, back = (replace(WALK, direction=way) for way in ("left", "right", "back"))
+    steps = [replace(there, clauses=(0,)), replace(on, clauses=(0, 1)), replace(back, clauses=(0, 1, 2))]
+    assert steps_of_each(3, steps) == [[steps[0]], [steps[1]], [steps[2]]]
+    waves = [Step(seconds=0.5, clauses=(0,)), replace(WAVE, clauses=(0, 1))]
+    assert steps_of_each(2, waves) == [waves, waves[1:]]
+    stops = Step(clauses=(1,))
+    again = [replace(WALK, clauses=(0,)), stops, replace(WALK, clauses=(0, 2)), replace(stops, clauses=(1, 2))]
+    assert steps_of_each(3, again) == [again[:1], again[1:2], again[2:]]
+    twice = [replace(WALK, clauses=numbers) for numbers in ((0,), (0, 1), (0, 2), (0, 1, 2), (0, 2), (0, 1, 2))]
+    assert steps_of_each(3, twice) == [twice[:1], twice[1:2], twice[2:]]
+
+
+def test_steps_with_others_between_them_are_not_in_a_row() -> None:
+    walks, bows = replace(WALK, clauses=(0,)), Step(lower="bow", clauses=(1,))
+    records = with_what_is_shown([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
+    assert [record.shown for record in records] == ["walking, later walking", "then bowing once"]

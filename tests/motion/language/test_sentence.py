@@ -105,7 +105,7 @@ UNDERSTOOD = {
     "walks while waving": "walking and waving",
     "as she walks, she waves": "walking and waving",
     "walking and waving": "walking and waving",
-    "walks with his left hand raised": "walking and left-hand raise",
+    "walks with his left hand raised": "walking and lifting an arm and keeping it up left-hand",
     "is waving with both hands while standing": "waving both-hands",
     # postures last
     "sits down and drinks, then stands up": "sitting down | sitting and drinking | standing up",
@@ -390,3 +390,29 @@ def test_an_arm_that_is_held_out_comes_down() -> None:
 )
 def test_a_greeting_bow_is_a_bow_and_a_t_pose_one_movement(sentence: str, shown: list[tuple[str, str]]) -> None:
     assert [(step.lower, step.upper) for step in parse(sentence).steps] == shown
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["walks forward with the left arm raised", "stands with the left hand raised", "walks with his left arm lifted"],
+)
+def test_an_arm_that_is_raised_meanwhile_stays_up(text: str) -> None:
+    (step,) = parse(f"a person {text}").steps
+    assert (step.upper, step.hand) == ("raise_hold", "left")
+
+
+def test_who_faces_backwards_turns_around() -> None:
+    step = parse("a person spins, then lands facing backwards").steps[-1]
+    assert (step.lower, step.direction, step.facing) == ("turn", "", "")
+
+
+@pytest.mark.parametrize("text", ["skips", "skips in a circle", "is skipping and clapping"])
+def test_skipping_is_not_recorded_as_done(text: str) -> None:
+    plan = parse(f"a person {text}")
+    assert plan.steps[0].lower == "hop"
+    assert plan.clauses[0].status == "approximated"
+
+
+def test_a_leg_that_kicks_high_kicks_high() -> None:
+    (step,) = parse("a person kicks high with the left leg twice").steps
+    assert (step.lower, step.style, step.foot, step.count) == ("kick", "high", "left", 2)

@@ -56,3 +56,25 @@ def test_a_short_sentence_is_repeated_in_a_long_time():
     assert "4 times" in plan.notes[-1]
     assert len(plan_motion("falls", 10.0).steps) == 1  # it would have to get up first
     assert len(plan_motion("waves", 10.0).steps) == 1  # goes on
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "turns around",
+        "sits down",
+        "kneels down",
+        "gets up from the floor",
+        "bows",
+        "raises the left hand",
+        "waves twice",
+    ],
+)
+def test_what_is_done_slowly_takes_longer(text):
+    slowly, usual, quickly = (plan_motion(f"a person {text}{how}").duration_s for how in (" slowly", "", " quickly"))
+    assert quickly < 0.9 * usual
+    assert usual < 0.85 * slowly
+
+
+def test_who_walks_slowly_goes_less_far_in_the_same_time():
+    assert plan_motion("a person walks slowly").duration_s == plan_motion("a person walks").duration_s

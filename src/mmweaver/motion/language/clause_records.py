@@ -58,9 +58,12 @@ def _found(
     for how in sizes_not_shown(given_text, steps):
         size = how.split("'")[1]
         yield next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how
+    own_words = as_given(given_text, records)
     for words, how in not_in_any_step(given_text, steps, records):
         if not any(words in record.how for record in records.values()):
-            yield next((n for n, record in sorted(records.items()) if words in record.clause), max(records)), how
+            of = [n for n, record in sorted(records.items()) if words in record.clause]
+            of += [n for n, own in sorted(own_words.items()) if words in own.lower()]
+            yield of[0] if of else max(records), how
 
 
 def _is_named(how: str, records: dict[int, ClauseRecord]) -> bool:

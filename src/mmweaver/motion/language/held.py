@@ -29,7 +29,7 @@ _COMING_BACK = words_in(
     " uncrosses unfolds back stand_up"
 )
 _RISING = _COMING_BACK | words_in("stand stands standing")
-_LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
+LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
@@ -76,7 +76,7 @@ def with_what_is_held(
     if result and _is_brought_back(result[-1], clauses):
         result.append(
             Step(
-                lower=result[-1].lower,
+                lower="stand" if result[-1].moves else result[-1].lower,
                 seat=result[-1].seat,
                 clauses=result[-1].clauses[-1:],
                 clause=clauses[result[-1].clauses[-1]],
@@ -94,8 +94,12 @@ def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
 def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
     """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
     own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
-    still = last.lower in ("stand", "sit", "kneel") and last.upper in ARM_POSTURES and last.other_hand is None
-    return still and bool(own & _LOWERED) and not own & (STAYING - {"rests", "resting", "rest"})
+    still = (
+        last.lower in ("stand", "sit", "kneel", "walk", "jog")
+        and last.upper in ARM_POSTURES
+        and last.other_hand is None
+    )
+    return still and bool(own & LOWERED) and not own & (STAYING - {"rests", "resting", "rest"})
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:

@@ -37,6 +37,8 @@ def of_the_body(step: Step) -> str:
     name = _BODY.get(step.lower, BY_KEY[step.lower].name)
     if step.lower == "jog" and step.style != "jog":
         name = "running"
+    if step.lower == "kneel_up" and step.style == "knee":
+        name = f"standing up from the {step.foot} knee" if step.foot else "standing up from one knee"
     if step.lower == "turn":
         return f"turning{_turn(step)}{SPEEDS_SAID[step.speed]}"
     if step.lower == "lunge" and not step.foot and (step.count > 1 or step.style):
@@ -54,6 +56,8 @@ def _way(step: Step) -> str:
     """Where it goes, leans or lies, and on what."""
     if step.lower in _LYING:
         return f" {_ONTO.get(step.style, 'on the back')}"
+    if step.lower == "kneel_up" and step.style == "knee":
+        return ""
     if step.style == "knee":
         return f" on the {step.foot} knee" if step.foot else " on one knee"
     if step.lower == "fall_off":

@@ -44,6 +44,8 @@ def of_a_hand(step: Step, part: Step) -> str:
         name = f"holding {arms} out {way}"
     elif key == "hips":
         name = "holding the hands on the hips" if hand == "both" else f"holding the {hand} hand on the hip"
+    elif key == "raise_hold" and step.lower != "stand":  # it is up already, or comes up meanwhile
+        name = "holding {arm} up overhead"
     elif key == "look_around":
         name = {"down": "looking down", **{side: f"looking to the {side} in the photo" for side in _SIDES}}.get(
             part.facing or part.direction, "looking around to both sides"

@@ -20,11 +20,10 @@ def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -
 
     Records that said so of other steps, before these were cut or placed, say it of these.
     """
-    shown, before = [], [id(step) for step in steps[:1]]
-    for own in steps_of_each(len(records), steps):
-        follows = bool(own) and id(own[0]) not in before
-        shown.append("then " * follows + in_turn(own))
-        before += map(id, own)
+    shown, seen = [], {0}  # what begins with the first step follows nothing
+    for places in _places_of_each(len(records), steps):
+        shown.append("then " * bool(places and places[0] not in seen) + _at(places, steps))
+        seen |= {*places}
     for number, record in enumerate(records):  # "turns left while walking": the step is that of the other clause
         if record.status != NOT_DONE and not shown[number]:
             shown[number] = next(filter(None, (*shown[number + 1 :], *shown[:number][::-1])), "")
@@ -38,16 +37,40 @@ def _shown_as(record: ClauseRecord, shown: str) -> ClauseRecord:
 
 
 def steps_of_each(clauses: int, steps: Sequence[Step]) -> list[list[Step]]:
-    """The steps of each of so many clauses; one that no clause names counts with the next one that a clause does."""
-    of_each: list[list[Step]] = [[] for _ in range(clauses)]
-    waiting: list[Step] = []
-    for step in steps:
-        own = dict.fromkeys(number for part in step.each for number in part.clauses)
-        waiting.append(step)
-        for place, number in enumerate(own):
-            of_each[number] += waiting if place == 0 else [step]
+    """The steps of each of so many clauses; one that no clause names counts with the next one that a clause does.
+
+    A step of several clauses counts with those that have no other of its kind: "walks forward, then backward".
+    """
+    return [[steps[place] for place in places] for places in _places_of_each(clauses, steps)]
+
+
+def _places_of_each(clauses: int, steps: Sequence[Step]) -> list[list[int]]:
+    named = [[*dict.fromkeys(number for part in step.each for number in part.clauses)] for step in steps]
+    does = [(step.lower, step.upper) for step in steps]
+    alone = {(own[0], doing) for own, doing in zip(named, does, strict=True) if len(own) == 1}
+    of_each: list[list[int]] = [[] for _ in range(clauses)]
+    waiting: list[int] = []
+    for place, own in enumerate(named):
+        if len(own) > 1:
+            own = [number for number in own if (number, does[place]) not in alone] or own[-1:]
+        if len(own) == 1:
+            alone.add((own[0], does[place]))
+        waiting.append(place)
+        for k, number in enumerate(own):
+            of_each[number] += waiting if k == 0 else [place]
         waiting = [] if own else waiting
     return of_each
+
+
+def _at(places: Sequence[int], steps: Sequence[Step]) -> str:
+    """The steps at these places in their order; others come between them where it says "later"."""
+    runs: list[list[Step]] = []
+    for k, place in enumerate(places):
+        if k and place == places[k - 1] + 1:
+            runs[-1].append(steps[place])
+        else:
+            runs.append([steps[place]])
+    return ", later ".join(map(in_turn, runs))
 
 
 def in_turn(steps: Iterable[Step]) -> str:

@@ -181,7 +181,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:one |a )?third of (?:an? |the )?circle\b", " arc120 "),
     (r"\b(90|180|270|360)\b(?= (?:turn|jump|spin|clockwise|counter|left|right|rotation))", r"\1 degrees "),
     (r"\bside-? ?kick(s|ing)?\b|\bkick(?:s|ing|ed)? (?:to the )?side(?:ways)?\b", " kicks sideways "),
-    (r"\bhigh[- ]kick(s|ing)?\b", " highkick kicks "),
+    (r"\bhigh[- ]kick(s|ing)?\b|\bkick(?:s|ing|ed) (?:(?:really |very )?high|high up)\b", " highkick kicks "),
     (r"\bduck(?:s|ing|ed)? (?:down|away)?\b", " duck_down "),
     (r"\bu-? ?turn\b", " arc180 "),
     (r"\bthrow(?:s|ing)? an? (?:(?:quick|fast|hard|strong|straight|single|powerful) )*((?:left |right )?(?:punch|jab|hook|uppercut))\b(?! (?:and|or|after)\b)", r" punches once \1 "),

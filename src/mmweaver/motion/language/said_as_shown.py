@@ -4,9 +4,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+from mmweaver.motion.language.held import ARM_POSTURES, LOWERED
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.named_steps import steps_of_each
 from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import word_of
 
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
@@ -40,13 +42,21 @@ def saying_what_is_shown(
             said.append(record)
             continue
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
-        is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown and "is shown as" in said[-1].how
-        whole = [] if is_plain else ["is shown as the same movement" if is_same else f"is shown as {shown}"]
+        is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
+        briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
+        briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
+        whole = [] if is_plain else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
         status = APPROXIMATED if roughly and not is_plain else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
+
+
+def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]) -> bool:
+    """Whether a clause only ends a posture of the arms, whose step it shares with the clause before."""
+    held = any(step.upper in ARM_POSTURES and step is not steps[-1] for step in own[-1:])
+    return held and bool(words_in(record.clause.lower()) & LOWERED)
 
 
 def _of_a_part(record: ClauseRecord) -> ClauseRecord:

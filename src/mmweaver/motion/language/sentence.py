@@ -36,12 +36,13 @@ from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
 from mmweaver.motion.language.shared_steps import says_again
+from mmweaver.motion.language.sideways import sideways_throughout
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.verbs import RECOVERING
-from mmweaver.motion.language.whole_walks import at_one_gait, sideways_throughout, with_shared_speeds
+from mmweaver.motion.language.whole_walks import at_one_gait, with_shared_speeds
 from mmweaver.motion.language.words import Word, words_of
 
 LONGEST_TEXT = 1000

@@ -11,6 +11,7 @@ from mmweaver.motion.language.sentence import parse
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
+PACING_S = 5.5  # of "walks to and fro": there and back
 REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
 
 
@@ -145,9 +146,18 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
 
 
 def _limits(step: Step) -> tuple[float, float]:
-    """Least and natural duration of a step, in seconds."""
+    """Least and natural duration of a step, in seconds: longer for 'slowly', shorter for 'quickly' on the spot."""
+    least, natural = _at_usual_speed(step)
+    if not step.speed or step.seconds or step.moves:  # who travels does so at another speed for the same time
+        return least, natural
+    slower = 1.0 if step.count and step.speed < 0 else (1.5, 1.0, 0.75)[step.speed + 1]  # counted: it is in the count
+    return least, max(slower * natural, least)
+
+
+def _at_usual_speed(step: Step) -> tuple[float, float]:
+    """Least and natural duration of a step, in seconds; only walks and counted movements take the speed in."""
     if step.other_hand is not None:
-        both = [_limits(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
+        both = [_at_usual_speed(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
         return max(least for least, _ in both), max(natural for _, natural in both)
     if step.seconds:
         return step.seconds, step.seconds
@@ -156,11 +166,13 @@ def _limits(step: Step) -> tuple[float, float]:
         return lasts, lasts + 0.2
     if step.direction == "circle" and step.moves and not step.count:
         return _circle_limits(step)
+    if step.direction == "pacing" and step.moves and not step.count:
+        return BY_KEY[step.lower].least_s, PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
     if step.style == "several" and not step.count:  # "does squats"
-        least, natural = _limits(replace(step, count=2))
+        least, natural = _at_usual_speed(replace(step, count=2, speed=0))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
     doing = BY_KEY[step.upper or step.lower]
     if step.upper and BY_KEY[step.lower].once and step.posture != "feet":  # "sits down reading"

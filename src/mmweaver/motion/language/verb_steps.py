@@ -220,8 +220,10 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     if step.facing:
         return replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
     facing = "towards" if texts & RADAR and step.direction != "away" else ""
+    if step.direction == "backwards" and word.lemma == "face":
+        return replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
     if step.direction == "away" or word.lemma == "face":
-        facing = facing or step.direction or "towards"
+        facing = facing or step.direction.removeprefix("forwards") or "towards"
         return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
     if facing:
         return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)

@@ -1,4 +1,4 @@
-"""What is said of a walk as a whole: its gait, that it is sideways, how fast all of its parts are."""
+"""What is said of a walk as a whole: its gait, how fast all of its parts are."""
 
 import re
 from collections.abc import Sequence
@@ -6,7 +6,6 @@ from dataclasses import replace
 from itertools import groupby
 
 from mmweaver.motion.language.lexicon import SPEEDS
-from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
 
@@ -22,20 +21,6 @@ def at_one_gait(steps: list[Step], given_text: str) -> list[Step]:
         replace(step, lower="jog", style=step.style or run.style) if step.lower == "walk" and step.arc_deg else step
         for step in steps
     ]
-
-
-def sideways_throughout(steps: list[Step]) -> list[Step]:
-    """ "Walks sideways, four steps to the left, four steps back": all of it sideways."""
-    is_aimless = len(steps) > 1 and steps[0].lower == "sidestep" and not (steps[0].direction or steps[0].count)
-    if not is_aimless or not all(step.lower == "walk" and step.count for step in steps[1:]):
-        return steps
-    result: list[Step] = []
-    for step in steps[1:]:
-        back = step.direction in ("back", "backwards") and result
-        side = OPPOSITE.get(result[-1].direction, "") if back else step.direction
-        result.append(replace(step, lower="sidestep", direction=side))
-    result[0] = replace(result[0], clauses=(*steps[0].clauses, *result[0].clauses))
-    return result
 
 
 def with_shared_speeds(steps: list[Step], every_clause: Sequence[ParsedClause], given_text: str) -> list[Step]:

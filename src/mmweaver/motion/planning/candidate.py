@@ -53,6 +53,7 @@ from mmweaver.motion.planning.targets import (
     walk_to_target,
 )
 from mmweaver.motion.planning.trajectory import (
+    SLOWER_TURNS,
     NoTrajectory,
     Trajectory,
     signed_angle_rad,
@@ -455,7 +456,8 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
         quarter = float(np.pi / 2 + trajectory.rng.normal(0, 0.08))
         about = float(trajectory.rng.choice([-1.0, 1.0]) * (np.pi - abs(trajectory.rng.normal(0, 0.06)) - 0.01))
         heading = trajectory.heading_rad + {"left": quarter, "right": -quarter}.get(step.direction, about)
-    trajectory.turn_to(heading, step.start_s)
+    span_s = step.end_s - step.start_s
+    trajectory.turn_to(heading, step.start_s, slower=SLOWER_TURNS[step.speed + 1], most_s=span_s)
 
 
 def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step, is_bed: bool) -> Sitting:

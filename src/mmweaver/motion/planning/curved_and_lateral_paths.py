@@ -10,6 +10,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
+    SLOWER_TURNS,
     SLOWEST_MPS,
     NoTrajectory,
     Trajectory,
@@ -143,7 +144,7 @@ def turn_by(trajectory: Trajectory, step: Step) -> None:
     """Turns by `step.turn_deg`, to the left where positive; more than half a turn is possible."""
     either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
-    lasts = min(0.25 + abs(angle_rad) / 3.2, max(span_s, 0.6))
+    lasts = min(SLOWER_TURNS[step.speed + 1] * (0.25 + abs(angle_rad) / 3.2), max(span_s, 0.6))
     trajectory.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
     trajectory.heading_rad += angle_rad
 

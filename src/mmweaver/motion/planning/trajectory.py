@@ -24,9 +24,12 @@ RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
+PACING_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
+SLOWER_TURNS = (1.5, 1.0, 0.8)  # times as long: slowly, as usual, quickly
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
 PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
+PACED_M = {"walk": 2.5, "jog": 4.0}  # the longest leg of "walks to and fro"
 CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: how fast, and the free floor around it
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 FASTER = 1.3  # than usual, to complete a circle
@@ -111,15 +114,19 @@ class Trajectory:
             self.position_m, directions_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0
         )
 
-    def turn_to(self, heading_rad: float, start_s: float) -> float:
-        """Turns on the spot through the smaller angle; returns how long that takes, in seconds."""
+    def turn_to(self, heading_rad: float, start_s: float, *, slower: float = 1.0, most_s: float = np.inf) -> float:
+        """Turns on the spot through the smaller angle; returns how long that takes, in seconds.
+
+        `slower` times as long as usual, but for that at most `most_s`.
+        """
         angle = signed_angle_rad(self.heading_rad, heading_rad)
         if abs(angle) < 0.02:
             self.heading_rad = self.heading_rad + angle
             if angle:
                 self.turns.append(Turn(start_s=start_s, end_s=start_s + 0.3, angle_rad=angle))
             return 0.0
-        lasts = TURN_OVERHEAD_S + abs(angle) / self.turn_rate_radps
+        usual_s = TURN_OVERHEAD_S + abs(angle) / self.turn_rate_radps
+        lasts = min(slower * usual_s, max(usual_s, most_s))
         self.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle))
         self.heading_rad += angle
         self.cost += 0.25 * abs(angle)
@@ -217,10 +224,16 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
     runs, slowest = step.lower == "jog", SLOWEST_MPS[step.lower]
     time, begun, ramp_s = step.start_s, first, _ramp_s(step)
     trajectory.turn_rate_radps = CRAWLING_TURN_RADPS if step.lower == "crawl" else TURN_RATE_RADPS
+    pacing_m = _pacing_m(step, speed)
     for _ in range(40):
         left = step.end_s - time
         faces_already = time == step.start_s and (not first or trajectory.heading_is_given)
-        direction, free = _open_direction(trajectory, speed * left, keep_heading=faces_already)
+        if pacing_m and time > step.start_s and trajectory.last_direction_rad is not None:
+            direction = trajectory.last_direction_rad + np.pi
+            free = trajectory.free_length_m(direction, pacing_m)
+        else:
+            direction, free = _open_direction(trajectory, speed * left, keep_heading=faces_already)
+            free = min(free, pacing_m or free)
         if begun and trajectory.heading_is_given:
             begin = time + trajectory.turn_to(direction, time)
             begun = begin == time
@@ -235,8 +248,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
-        if step.lower == "crawl":
-            free = _to_where_knees_turn_m(trajectory, direction, free)
+        free = _to_where_knees_turn_m(trajectory, direction, free) if step.lower == "crawl" else free
         if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
@@ -259,6 +271,13 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
             _say_stopped(trajectory, step, length)
             return
     raise NoTrajectory("too many turns")
+
+
+def _pacing_m(step: Step, speed_mps: float) -> float:
+    """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
+    lasts_s = step.end_s - step.start_s
+    is_pacing = step.direction == "pacing" and step.lower != "crawl" and PACING_S[0] < lasts_s < PACING_S[1]
+    return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - 1.2) / 2) if is_pacing else 0.0
 
 
 def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:

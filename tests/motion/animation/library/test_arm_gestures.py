@@ -68,3 +68,12 @@ def test_a_forearm_is_raised_as_often_as_asked():
     hand = hand_m("raises the right hand from the elbow twice", seed=0)[:, 2]
     high = hand > hand.min() + 0.6 * np.ptp(hand)
     assert (np.diff(high.astype(int)) == 1).sum() == 2
+
+
+@pytest.mark.parametrize("text", ["leans to the right, then leans to the left", "walks forward, then turns around"])
+def test_an_arm_that_is_kept_up_does_not_come_down_between_steps(text: str):
+    motion = act_out(f"a person lifts the left arm straight up and keeps it up, {text}", seed=1)
+    assert [step.upper for step in motion.plan.steps] == ["raise_hold"] * 3
+    over_m = motion.pose.joints_m[:, joint("left_wrist"), 2]
+    over_m = over_m - motion.pose.joints_m[:, joint("left_shoulder"), 2]
+    assert over_m[round(120 * motion.plan.steps[0].end_s) :].min() > 0.2

@@ -40,8 +40,9 @@ def _once(context: StepContext, slow: float, usual: float, fast: float) -> PerTi
 
 
 def raising_and_holding(context: StepContext, controls: Controls) -> Controls:
-    """The straight arm is lifted ahead, straight up, and stays above the head."""
-    return _lifted(context, controls, _once(context, 1.6, 1.0, 0.65))
+    """The straight arm is lifted ahead, straight up, and stays above the head; at once where it was there before."""
+    up = np.ones_like(context.time_s) if context.arms_before else _once(context, 1.6, 1.0, 0.65)
+    return _lifted(context, controls, up)
 
 
 def lowering(context: StepContext, controls: Controls) -> Controls:
