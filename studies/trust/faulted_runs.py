@@ -104,7 +104,7 @@ class FaultedRuns:
                 out
             )
         now = tree(out, self.command.varying)
-        if self.command.grows and second.status == 2 and "is not empty" in second.stderr:
+        if self.command.grows and second.status == 2 and "holds a stream already" in second.stderr:
             return _of_parts(now, self.expected)
         is_there = second.status == 2 and "exists" in second.stderr and now == self.expected
         if second.status != 0 and not is_there:

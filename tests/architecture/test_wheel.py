@@ -1,4 +1,4 @@
-"""What the wheel holds: the package with the files it needs, no study, at most 17.4 MB."""
+"""What the wheel holds: the package with the files it needs, no study, at most 17.6 MB."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ from setuptools import find_packages
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "mmweaver"
-LARGEST_BYTES = 17_400_000
+LARGEST_BYTES = 17_600_000
 
 
 def packaged_files() -> list[Path]:
@@ -41,7 +41,7 @@ def test_the_wheel_holds_what_it_needs_and_no_study():
 def test_the_wheel_is_small_enough():
     """Compressed as a wheel is; its own records take less than the margin."""
     compressed = sum(len(zlib.compress(path.read_bytes(), 6)) for path in packaged_files())
-    assert compressed < LARGEST_BYTES - 100_000
+    assert compressed < LARGEST_BYTES - 200_000
 
 
 @pytest.mark.slow
