@@ -398,7 +398,7 @@ def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...
 
 def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
     """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several or of nobody."""
-    described = [
+    described: list[dict[str, Any]] = [
         {"person": _person(pose, person), "plan": person.plan, "clauses": person.clauses}
         for pose, person in zip(poses, people, strict=True)
     ]
