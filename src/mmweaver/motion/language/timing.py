@@ -12,6 +12,8 @@ from mmweaver.motion.language.sentence import parse
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
 PACING_S = 5.5  # of "walks to and fro": there and back
+SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
+HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
 REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
 
 
@@ -36,7 +38,7 @@ def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
 
     What does not fit is cut at the end: fewer repetitions, the beginning of a movement, no more movements after it;
     notes and `clauses` say so. Raises InputError for a duration that is not positive or above `LONGEST_S`, and for one
-    of which nothing sensible would be left of several movements.
+    in which nothing sensible of the first movement would be seen.
     """
     _check(duration_s)
     plan = _cut(plan, duration_s)
@@ -85,20 +87,19 @@ def _posture_before(step: Step) -> str:
 
 def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
     """The steps that fit into a duration in their least times; the last of them perhaps in part."""
-    first = plan.steps[0]
-    alone = len(plan.steps) == 1 and not (first.count or first.seconds)
-    if alone or least_s(plan) <= duration_s + 1e-9:
+    if least_s(plan) <= duration_s + 1e-9:
         return plan
     kept: list[Step] = []
     left = duration_s
     for step in plan.steps:
-        fitting = _fitting(step, left)
+        fitting = _fitting(step, left, is_first=not kept)
         if fitting is None:
             break
         kept.append(fitting)
         left -= _limits(fitting)[0]
     if not kept:
-        needed = math.ceil(10 * SHORTEST_SHARE * _limits(first)[0]) / 10
+        first = plan.steps[0]
+        needed = math.ceil(10 * _shortest_s(first) - 1e-6) / 10
         raise InputError(
             f"nothing of {plan.text.strip()!r} can be shown in {duration_s:.3g} s; {first.name} alone takes at least"
             f" {needed:.1f} s: ask for more --seconds or --frames, or leave them out"
@@ -106,21 +107,35 @@ def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
     return _with_cut_recorded(replace(plan, steps=tuple(kept)), plan.steps, duration_s)
 
 
-def _fitting(step: Step, left_s: float) -> Step | None:
+def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
     """The step as it fits into the time that is left: fewer times, shorter, only its beginning, or not at all."""
     least = _limits(step)[0]
     if least <= left_s + 1e-9:
         return step
+    if left_s < (_shortest_s(step) if is_first else _shortest_later_s(step)) - 1e-9:
+        return None
     if step.seconds:
-        return replace(step, seconds=left_s) if left_s >= 0.3 else None
+        return replace(step, seconds=max(left_s, SHORTEST_OF_SECONDS_S))
     counted_s = BY_KEY[step.upper or step.lower].counted_s
     if step.count and counted_s:
-        count = int((left_s - counted_s[2]) / counted_s[0] + 1e-6)
-        if count >= 1:
-            return replace(step, count=count)
-        step = replace(step, count=1)
-        least = _limits(step)[0]
-    return step if left_s >= SHORTEST_SHARE * least else None
+        return replace(step, count=max(1, int((left_s - counted_s[2]) / counted_s[0] + 1e-6)))
+    return step
+
+
+def _shortest_s(step: Step) -> float:
+    """The shortest time in which something of a first step is seen: any, of one that goes on as it begins."""
+    whole = BY_KEY[step.lower]
+    is_whole = whole.once or (whole.counted_s is not None and not step.moves)  # a squat, unlike a walk
+    if not is_whole and (step.lower != "stand" or not step.upper or not BY_KEY[step.upper].once):
+        return 0.0
+    return _shortest_later_s(step)
+
+
+def _shortest_later_s(step: Step) -> float:
+    """The shortest time that is left for a step after others."""
+    if step.seconds:
+        return min(SHORTEST_OF_SECONDS_S, step.seconds)
+    return SHORTEST_SHARE * min(_limits(replace(step, count=count))[0] for count in {0, min(step.count, 1)})
 
 
 def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
@@ -133,16 +148,27 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             clauses[number] = clauses[number].lowered_to(status, how)
 
     kept = plan.steps
+    given = _in_words(duration_s)
     for k, (before, now) in enumerate(zip(wanted, kept, strict=False)):
+        is_begun = k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9 and not _is_held(now)
         if now.count < before.count:
-            record(before, APPROXIMATED, f"{now.count} of {before.count} times in {duration_s:.1f} s")
+            record(before, APPROXIMATED, f"{now.count} of {before.count} times in {given} s")
         elif now.seconds < before.seconds:
-            record(before, APPROXIMATED, f"{now.seconds:.1f} of {before.seconds:.1f} s")
-        elif k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9:
-            record(before, APPROXIMATED, f"only its beginning is shown in {duration_s:.1f} s")
+            record(before, APPROXIMATED, f"{_in_words(min(now.seconds, duration_s))} of {before.seconds:.1f} s")
+        if is_begun:
+            record(before, APPROXIMATED, f"only its beginning is shown in {given} s")
     for step in wanted[len(kept) :]:
-        record(step, NOT_DONE, f"the {duration_s:.1f} s are over before it")
+        record(step, NOT_DONE, f"the {given} s are over before it")
     return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
+
+
+def _in_words(seconds: float) -> str:
+    return f"{seconds:.1f}" if seconds >= 1 else f"{seconds:.2g}"
+
+
+def _is_held(step: Step) -> bool:
+    """Whether a step is a posture that is whole in any moment."""
+    return step.lower in HELD_POSTURES and not step.upper
 
 
 def _limits(step: Step) -> tuple[float, float]:
