@@ -27,7 +27,6 @@ MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
-TURN_M = 0.6  # a corner of a path takes as long as so many metres
 LEAST_SECONDS = 2.0  # of a sequence whose length the sentence decides
 MAX_BYTES = 2_000_000_000  # of the largest array
 
@@ -233,8 +232,7 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     steps = list(plan.steps)
     walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=length_m + TURN_M * (len(points) - 1), direction="", target="", place=None,
-        arc_deg=0.0, count=0,
+        walk, route_m=points, distance_m=round(length_m, 2), direction="", target="", place=None, arc_deg=0.0, count=0,
     )  # fmt: skip
     notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
     if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:

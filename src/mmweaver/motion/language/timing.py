@@ -12,6 +12,7 @@ from mmweaver.motion.language.sentence import parse
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
 PACING_S = 5.5  # of "walks to and fro": there and back
+TURN_M = 0.6  # a corner of a path takes as long as so many metres
 SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
 HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
 REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
@@ -196,7 +197,8 @@ def _at_usual_speed(step: Step) -> tuple[float, float]:
         return BY_KEY[step.lower].least_s, PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
-        return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
+        way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
+        return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
     if step.style == "several" and not step.count:  # "does squats"
         least, natural = _at_usual_speed(replace(step, count=2, speed=0))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
