@@ -6,7 +6,7 @@ from dataclasses import replace
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.named_steps import with_what_is_shown
-from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 
 LONGEST_S = 600.0
@@ -15,6 +15,7 @@ PACING_S = 5.5  # of "walks to and fro": there and back
 TURN_M = 0.6  # a corner of a path takes as long as so many metres
 SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
 HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
+FALLING_ON_S = (0.8, 1.0)  # least and natural time of a stumble that ends in a fall
 REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
 
 
@@ -191,6 +192,8 @@ def _at_usual_speed(step: Step) -> tuple[float, float]:
     if step.lower == "turn" and step.turn_deg:
         lasts = 0.3 + abs(step.turn_deg) / 185
         return lasts, lasts + 0.2
+    if step.style == FALLING_ON:
+        return FALLING_ON_S
     if step.direction == "circle" and step.moves and not step.count:
         return _circle_limits(step)
     if step.direction == "pacing" and step.moves and not step.count:
