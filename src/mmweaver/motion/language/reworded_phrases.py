@@ -60,6 +60,12 @@ def _limb_after_limb(found: re.Match[str]) -> str:
     return f"{one}the left {limb}, then {one}the right {limb}"
 
 
+def _faces_the_radar(found: re.Match[str]) -> str:
+    """Ahead of the picture is where the radar is; who sits or kneels would get up to turn."""
+    is_low = re.search(r"(?i)\b(?:sit|sat|seat|kneel|knelt|l[iy]|la[iy]|crouch|squat)[a-z]*\b", found.string[: found.start()])
+    return found[0] if is_low else "turns to face the radar"
+
+
 def _on_the_way(found: re.Match[str]) -> str:
     return f"{found[1]} while {found['verb']}{'n' * (found['verb'] == 'run')}ing"
 
@@ -176,6 +182,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # the trunk, and a step that is climbed
     (rf"\b(?:(?:turn|rotat|swivel|twist|pivot)(?:s|es|ing) and )?(?:turn|rotat|swivel|twist|pivot)(?P<ending>e?s|ing)(?P<way> (?:to (?:{_OWN})?)?(?:left|right)(?: and (?:to (?:{_OWN})?)?(?:left|right))?)? (?:at|from|in) {_OWN}?(?:waist|hips?|torso)\b", lambda found: f"twist{'ing' if found['ending'] == 'ing' else 's'} the upper body{found['way'] or ''}"),
     (r"\bclimb(s|ing)(?: up| onto| on)? (?:an?|one|the) (?:(?:single|small|large|big|high|low) )?step\b", r"walk\1 up a step"),
+    (rf"\b(?:turns?(?: (?:around|back|again))? to (?:be )?fac(?:e|ing)|faces) (?:straight |back )?(?:to )?(?:the )?(?:forwards?|front|ahead)(?: again)?{_ENDS}", _faces_the_radar),
     # each leg in turn
     (r"\b(?P<verb>(?:rais|lift|kick|stomp|stamp|wav)(?:es|s|ing|ping))(?P<with>(?: with| on)?) (?:the|his|her|their|both) (?P<limb>legs|feet|knees|arms|hands)(?: up)? (?:in turns?|one after the other|one at a time|alternately|alternatingly)(?P<often>)", _left_then_right),
     (r"(?<!while )\b(?P<verb>st[ao]mp(?:s|ing)) (?P<with>)(?:the|his|her|their|both) (?P<limb>feet)(?P<often> twice| once| (?:two|three|four|five|\d+) times)?(?= *(?:$|[.,;]| and\b| then\b))", _left_then_right),
