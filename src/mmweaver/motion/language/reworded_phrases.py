@@ -62,7 +62,9 @@ def _limb_after_limb(found: re.Match[str]) -> str:
 
 def _faces_the_radar(found: re.Match[str]) -> str:
     """Ahead of the picture is where the radar is; who sits or kneels would get up to turn."""
-    is_low = re.search(r"(?i)\b(?:sit|sat|seat|kneel|knelt|l[iy]|la[iy]|crouch|squat)[a-z]*\b", found.string[: found.start()])
+    is_low = re.search(
+        r"(?i)\b(?:sit|sat|seat|kneel|knelt|l[iy]|la[iy]|crouch|squat)[a-z]*\b", found.string[: found.start()]
+    )
     return found[0] if is_low else "turns to face the radar"
 
 
