@@ -45,6 +45,7 @@ def test_a_part_of_one_movement_is_shown():
         ("she waves", 0.1, "only its beginning is shown in 0.1 s"),
         ("walks two metres", 0.6, "only its beginning is shown in 0.6 s"),
         ("she waves for ten seconds", 2.0, "2.0 of 10.0 s"),
+        ("does ten jumping jacks", 1.0, "only the beginning of the first of 10 times is shown in 1.0 s"),
     ],
 )
 def test_one_movement_alone_is_not_done_where_it_is_cut(text: str, duration_s: float, how: str):

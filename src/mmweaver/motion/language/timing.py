@@ -153,12 +153,14 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
     given = _in_words(duration_s)
     for k, (before, now) in enumerate(zip(wanted, kept, strict=False)):
         is_begun = k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9 and not _is_held(now)
+        hows = [f"only its beginning is shown in {given} s"] * is_begun
         if now.count < before.count:
-            record(before, APPROXIMATED, f"{now.count} of {before.count} times in {given} s")
+            begun = f"only the beginning of the first of {before.count} times is shown in {given} s"
+            hows = [begun if is_begun and now.count == 1 else f"{now.count} of {before.count} times in {given} s"]
         elif now.seconds < before.seconds:
-            record(before, APPROXIMATED, f"{_in_words(min(now.seconds, duration_s))} of {before.seconds:.1f} s")
-        if is_begun:
-            record(before, APPROXIMATED, f"only its beginning is shown in {given} s")
+            hows.insert(0, f"{_in_words(min(now.seconds, duration_s))} of {before.seconds:.1f} s")
+        for how in hows:
+            record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
         record(step, NOT_DONE, f"the {given} s are over before it")
     return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
