@@ -129,7 +129,7 @@ def test_a_path_is_as_long_as_it_is_and_its_corners_take_time():
     straight = parse_request(AWR1843, "a person walks", path_m=[(0.0, 3.0), (0.0, 0.8)]).people[0].plan
     assert bent is not None
     assert straight is not None
-    assert bent.steps[0].distance_m == straight.steps[0].distance_m == 2.2
+    assert bent.clauses[0].shown == straight.clauses[0].shown == "walking 2.2 m"
     assert bent.duration_s > straight.duration_s + 0.3
 
 

@@ -13,6 +13,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
@@ -239,7 +240,9 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
         notes.append(f"{walk.clause!r} is shown along the path given, whatever way it names")
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
-    return replace(plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=tuple(clauses))
+    return replace(
+        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=with_what_is_shown(clauses, steps)
+    )  # fmt: skip
 
 
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
