@@ -49,3 +49,8 @@ def test_who_stumbles_falls_the_way_of_the_stumble(text: str, way: str, style: s
 def test_who_falls_another_way_than_the_stumble_comes_upright_first():
     stumble, fall = parse("trips, then falls backwards").steps
     assert (stumble.direction, stumble.style, fall.style) == ("forwards", "", "back")
+
+
+def test_a_stumble_that_lasts_as_long_as_is_said_is_no_short_one():
+    stumble, fall = parse("stumbles for three seconds, then falls").steps
+    assert (stumble.direction, stumble.style, stumble.seconds, fall.style) == ("forwards", "", 3.0, "front")

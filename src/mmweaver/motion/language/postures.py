@@ -155,7 +155,7 @@ def _falling_on(steps: list[Step]) -> list[Step]:
         if not says_how and way in _FALLS_ON:
             steps[k + 1] = step = replace(step, style=_FALLS_ON[way])
         if step.style == _FALLS_ON.get(way):
-            steps[k] = replace(before, direction=way, style=FALLING_ON)
+            steps[k] = replace(before, direction=way, style="" if before.seconds else FALLING_ON)
     return steps
 
 
