@@ -45,6 +45,8 @@ def test_a_part_of_one_movement_is_shown():
         ("she waves", 0.1, "only its beginning is shown in 0.1 s"),
         ("walks two metres", 0.6, "only its beginning is shown in 0.6 s"),
         ("she waves for ten seconds", 2.0, "2.0 of 10.0 s"),
+        ("she waves for ten seconds", 0.3, "only its beginning is shown in 0.3 s"),
+        ("she sits for ten seconds", 0.1, "0.1 of 10.0 s"),
         ("does ten jumping jacks", 1.0, "only the beginning of the first of 10 times is shown in 1.0 s"),
     ],
 )
@@ -53,6 +55,11 @@ def test_one_movement_alone_is_not_done_where_it_is_cut(text: str, duration_s: f
     assert plan.clauses[0].status == "approximated"
     assert plan.clauses[0].how.endswith(how)
     assert how in plan.notes[-1]
+
+
+def test_a_walk_that_is_cut_to_less_than_a_step_is_the_beginning_of_one():
+    cut, short = (schedule(parse(text), 0.2).steps[0] for text in ("walks for ten seconds", "walks"))
+    assert (cut.lower, cut.seconds, cut.end_s) == (short.lower, 0.0, short.end_s)
 
 
 def test_a_posture_is_whole_in_any_moment():

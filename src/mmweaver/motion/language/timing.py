@@ -117,7 +117,8 @@ def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
     if left_s < (_shortest_s(step) if is_first else _shortest_later_s(step)) - 1e-9:
         return None
     if step.seconds:
-        return replace(step, seconds=max(left_s, SHORTEST_OF_SECONDS_S))
+        usual = replace(step, seconds=0.0)
+        return usual if _limits(usual)[0] > left_s and not _is_held(step) else replace(step, seconds=left_s)
     counted_s = BY_KEY[step.upper or step.lower].counted_s
     if step.count and counted_s:
         return replace(step, count=max(1, int((left_s - counted_s[2]) / counted_s[0] + 1e-6)))
@@ -158,7 +159,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             begun = f"only the beginning of the first of {before.count} times is shown in {given} s"
             hows = [begun if is_begun and now.count == 1 else f"{now.count} of {before.count} times in {given} s"]
         elif now.seconds < before.seconds:
-            hows.insert(0, f"{_in_words(min(now.seconds, duration_s))} of {before.seconds:.1f} s")
+            hows = hows or [f"{_in_words(now.seconds)} of {before.seconds:.1f} s"]
         for how in hows:
             record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
