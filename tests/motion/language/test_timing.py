@@ -43,6 +43,7 @@ def test_a_part_of_one_movement_is_shown():
         ("she bows", 0.7, "only its beginning is shown in 0.7 s"),
         ("she falls forward", 0.8, "only its beginning is shown in 0.8 s"),
         ("she waves", 0.1, "only its beginning is shown in 0.1 s"),
+        ("she jogs on the spot", 0.1, "only its beginning is shown in 0.1 s"),
         ("walks two metres", 0.6, "only its beginning is shown in 0.6 s"),
         ("she waves for ten seconds", 2.0, "2.0 of 10.0 s"),
         ("she waves for ten seconds", 0.3, "only its beginning is shown in 0.3 s"),
@@ -66,7 +67,9 @@ def test_a_posture_is_whole_in_any_moment():
     assert schedule(parse("she sits"), 0.05).clauses[0].status == "done"
 
 
-@pytest.mark.parametrize("text", ["bows", "falls forward", "does ten jumping jacks", "stands up", "squats"])
+@pytest.mark.parametrize(
+    "text", ["bows", "jumps forward", "falls forward", "does ten jumping jacks", "stands up", "squats"]
+)
 def test_what_nothing_would_be_seen_of_is_refused_and_the_time_said_is_enough(text: str):
     with pytest.raises(InputError, match="alone takes at least") as refused:
         schedule(parse(text), 0.1)

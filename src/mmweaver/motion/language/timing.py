@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.named_counts import PACES
 from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
@@ -128,7 +129,7 @@ def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
 def _shortest_s(step: Step) -> float:
     """The shortest time in which something of a first step is seen: any, of one that goes on as it begins."""
     whole = BY_KEY[step.lower]
-    is_whole = whole.once or (whole.counted_s is not None and not step.moves)  # a squat, unlike a walk
+    is_whole = whole.once or (whole.counted_s is not None and step.lower not in PACES)  # a squat
     if not is_whole and (step.lower != "stand" or not step.upper or not BY_KEY[step.upper].once):
         return 0.0
     return _shortest_later_s(step)
