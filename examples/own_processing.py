@@ -11,7 +11,7 @@ import numpy as np
 from mmweaver import Weaver
 
 weaver = Weaver(radar="awr1843", method="physics")
-result = weaver.generate(weaver.sample_room(), "a person jumps", frames=2, keep_adc=True)
+result = weaver.generate(weaver.sample_room(), "a person walks", frames=2, keep_adc=True)
 adc = result.adc
 assert adc is not None  # kept
 samples = adc.samples[0]  # (loop, tx, rx, sample)

@@ -124,6 +124,15 @@ def test_a_path_is_gone_along_once_however_long_it_lasts():
     assert len(plan.steps) == 1
 
 
+def test_a_path_is_as_long_as_it_is_and_its_corners_take_time():
+    bent = parse_request(AWR1843, "a person walks", path_m=[(0.0, 3.0), (0.0, 2.0), (1.2, 2.0)]).people[0].plan
+    straight = parse_request(AWR1843, "a person walks", path_m=[(0.0, 3.0), (0.0, 0.8)]).people[0].plan
+    assert bent is not None
+    assert straight is not None
+    assert bent.clauses[0].shown == straight.clauses[0].shown == "walking 2.2 m"
+    assert bent.duration_s > straight.duration_s + 0.3
+
+
 def test_a_path_that_leads_elsewhere_than_the_sentence_is_said():
     path = [(0.0, 3.0), (0.0, 1.5)]
     for text, status in (("a person walks", "done"), ("a person walks backwards", "approximated")):

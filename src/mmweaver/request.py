@@ -13,6 +13,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
+from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
@@ -27,7 +28,6 @@ MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
-TURN_M = 0.6  # a corner of a path takes as long as so many metres
 LEAST_SECONDS = 2.0  # of a sequence whose length the sentence decides
 MAX_BYTES = 2_000_000_000  # of the largest array
 
@@ -233,15 +233,16 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     steps = list(plan.steps)
     walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=length_m + TURN_M * (len(points) - 1), direction="", target="", place=None,
-        arc_deg=0.0, count=0,
+        walk, route_m=points, distance_m=round(length_m, 2), direction="", target="", place=None, arc_deg=0.0, count=0,
     )  # fmt: skip
     notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
     if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:
         notes.append(f"{walk.clause!r} is shown along the path given, whatever way it names")
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
-    return replace(plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=tuple(clauses))
+    return replace(
+        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=with_what_is_shown(clauses, steps)
+    )  # fmt: skip
 
 
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:

@@ -50,8 +50,9 @@ def test_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
 
 
 def test_a_demo_too_short_for_its_sentence_says_how_long_it_takes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["generate", "--demo", "--frames", "2", "--out", str(tmp_path / "out")]) == 2
-    assert "at least 0.4 s: ask for more --seconds or --frames" in capsys.readouterr().err
+    argv = ["generate", "--demo", "--frames", "2", "--text", "a person bows, then waves"]
+    assert main([*argv, "--out", str(tmp_path / "out")]) == 2
+    assert "at least 0.7 s: ask for more --seconds or --frames" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 

@@ -50,3 +50,10 @@ def test_an_empty_place_has_no_steps_and_no_joints(tmp_path: Path, capsys: pytes
         assert file["frame_time_s"][-1] >= 1.0
     assert main(["motion", "nobody"]) == 0
     assert "nobody: an empty place" in capsys.readouterr().out
+
+
+def test_a_movement_that_is_cut_ends_with_its_time(capsys: pytest.CaptureFixture[str]):
+    assert main(["motion", "a person bows", "--seconds", "0.7", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["steps"][0]["end_s"] == facts["seconds"] == 0.7
+    assert facts["clauses"][0]["status"] == "approximated"

@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
             "name": step.name,
             "shown": doing(step),
             "start_s": round(step.start_s, 3),
-            "end_s": round(step.end_s, 3),
+            "end_s": round(min(step.end_s, motion.plan.duration_s), 3),  # of one that is cut, the time is over before
             "said": step.clause,
         }
         for step in motion.plan.steps

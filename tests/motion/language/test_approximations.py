@@ -131,3 +131,24 @@ def test_what_is_done_to_oneself(text: str, upper: str) -> None:
     plan = parse(f"a person {text}", in_part=True)
     assert [step.upper for step in plan.steps] == [upper]
     assert (plan.clauses[0].status == "approximated") == (upper != "wipe")
+
+
+@pytest.mark.parametrize(
+    ("text", "status"),
+    [
+        ("puts her jacket on", "approximated"),
+        ("puts on a red coat", "approximated"),
+        ("takes his jacket off", "done"),
+        ("puts off his coat", "done"),
+    ],
+)
+def test_putting_a_jacket_on_is_not_taking_it_off(text: str, status: str):
+    plan = parse(text, in_part=True)
+    assert ([step.upper for step in plan.steps], plan.clauses[0].status) == (["jacket_off"], status)
+
+
+def test_what_is_begun_and_given_up_is_said_to_be_done_wholly():
+    plan = parse("starts to sit down but stands up")
+    assert [clause.status for clause in plan.clauses] == ["approximated", "done"]
+    assert "only begun" in plan.clauses[0].how
+    assert parse("starts to sit down").clauses[0].status == "done"

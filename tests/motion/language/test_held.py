@@ -17,6 +17,7 @@ def doing(text: str) -> list[tuple[str, str]]:
         ("stretches the arms out and stands on one leg", [("stand", "arms_out"), ("one_leg", "arms_out")]),
         ("puts the hands on the hips and squats twice", [("stand", "hips"), ("squat", "hips")]),
         ("raises both arms and waits", [("stand", "raise_hold")]),
+        ("raises both arms, holds them for 3 seconds", [("stand", "raise_hold")]),
         ("raises the right arm, keeps it up and walks forward", [("stand", "raise_hold"), ("walk", "raise_hold")]),
     ],
 )
@@ -30,6 +31,9 @@ def test_arms_stay_where_they_are(text: str, steps: list[tuple[str, str]]) -> No
         ("stretches the arms out, lowers them and waits", ("stand", "")),
         ("folds the arms and kneels down and crawls", ("crawl", "")),
         ("folds the arms and waves", ("stand", "wave")),
+        ("raises the right arm, holds it, puts it down", ("stand", "")),
+        ("raises both arms, holds them for 3 seconds, and brings them down", ("stand", "")),
+        ("raises the right arm and puts it down", ("stand", "raise")),
         ("crosses their arms, then uncrosses them", ("stand", "")),
         ("sits with crossed arms and then uncrosses them", ("sit", "")),
         ("sits with his arms stretched out, he puts his hands in his lap", ("sit", "")),
@@ -53,6 +57,11 @@ def test_who_stays_down_is_not_up_again(text: str, lower: str, style: str) -> No
     plan = parse(f"a person {text}", in_part=True)
     assert [(step.lower, step.style) for step in plan.steps] == [(lower, style)]
     assert all(clause.status == "done" for clause in plan.clauses)
+
+
+def test_an_arm_that_is_put_down_after_it_was_held_is_held_before() -> None:
+    assert doing("raises the right arm, holds it, puts it down") == [("stand", "raise_hold"), ("stand", "")]
+    assert doing("raises the right arm and puts it down") == [("stand", "raise")]
 
 
 def test_a_posture_that_is_held_for_a_time_lasts_that_long() -> None:

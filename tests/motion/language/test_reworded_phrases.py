@@ -293,3 +293,41 @@ def test_arms_are_held_during_a_walk_and_leave_a_t_pose_before_it(text: str, ste
 )
 def test_what_is_gone_through_first_and_what_is_turned(text: str, steps: list[str]) -> None:
     assert [step.lower for step in parse(f"a person {text}", in_part=True).steps] == steps
+
+
+@pytest.mark.parametrize(
+    ("text", "sides"),
+    [
+        ("lifts both legs in turn", [("left", 0), ("right", 0)]),
+        ("lifts the legs in turn", [("left", 0), ("right", 0)]),
+        ("raises both arms in turn", [("left", 0), ("right", 0)]),
+        ("stamps their feet", [("left", 0), ("right", 0)]),
+        ("lifts the left arm and the right arm two times each", [("left", 2), ("right", 2)]),
+        ("raises the left and right leg twice each", [("left", 2), ("right", 2)]),
+        ("kicks with the left leg and the right leg three times each", [("left", 3), ("right", 3)]),
+    ],
+)
+def test_each_limb_has_its_turn_and_its_count(text: str, sides: list[tuple[str, int]]) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert [(step.hand or step.foot, step.count) for step in plan.steps] == sides
+    assert len({(step.lower, step.upper) for step in plan.steps}) == 1
+    assert all(clause.status == "done" for clause in plan.clauses)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "turns to face forward",
+        "walks to the left and faces forward",
+        "turns to the left and then faces forward again",
+        "walks away, then turns around to face the front",
+    ],
+)
+def test_who_faces_forward_turns_to_the_radar(text: str) -> None:
+    plan = parse(f"a person {text}", in_part=True)
+    assert (plan.steps[-1].lower, plan.steps[-1].facing) == ("turn", "towards")
+    assert all(clause.status == "done" for clause in plan.clauses)
+
+
+def test_who_sits_and_faces_forward_does_not_get_up_for_it() -> None:
+    assert [step.lower for step in parse("sits down and faces forward", in_part=True).steps] == ["sit_down"]

@@ -32,3 +32,18 @@ def test_one_or_several(text: str, shown: list[str]) -> None:
 )
 def test_what_is_left_open_has_no_number(text: str) -> None:
     assert all(step.count == 0 for step in parse(text, in_part=True).steps)
+
+
+@pytest.mark.parametrize(
+    ("text", "lower", "count"),
+    [
+        ("steps to the right three steps", "sidestep", 3),
+        ("steps to the right two steps", "sidestep", 2),
+        ("two steps to the right", "sidestep", 2),
+        ("walks three steps to the right", "walk", 3),
+        ("steps forward three steps", "walk", 3),
+    ],
+)
+def test_steps_to_a_side_are_sidesteps_however_many(text: str, lower: str, count: int) -> None:
+    (step,) = parse(f"a person {text}").steps
+    assert (step.lower, step.count) == (lower, count)

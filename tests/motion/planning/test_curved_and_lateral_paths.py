@@ -68,3 +68,13 @@ def test_a_walk_without_an_aim_begins_along_the_heading_that_is_given(text: str)
         across = pose.joints_m[:5, joint("left_hip"), :2] - pose.joints_m[:5, joint("right_hip"), :2]
         faces_rad = np.arctan2(-across[:, 0], across[:, 1]).mean()
         assert np.cos(faces_rad - heading_rad) > np.cos(np.radians(25))
+
+
+@pytest.mark.parametrize(("text", "is_said"), [("runs in a circle", True), ("walks in a circle", False)])
+def test_running_in_a_circle_is_said_to_be_slower_than_running(text: str, is_said: bool):
+    motion = compose(plan_motion(text, 5.0), room(), seed=1, range_window_m=WINDOW_M)
+    assert any("slower than running" in note for note in motion.assumptions) == is_said
+    assert (motion.clauses[0].status == "approximated") == is_said
+    pelvis_m = motion.pose.joints_m[120:-120, joint("pelvis"), :2]
+    speed_mps = np.linalg.norm(np.diff(pelvis_m, axis=0), axis=1).mean() * 120
+    assert speed_mps < 2.1

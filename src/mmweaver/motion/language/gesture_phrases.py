@@ -101,7 +101,9 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bcount(?:s|ing)? (?:up )?(?:from (?:one|1) )?to (\w+) (?:on|with|using) (?:the |his |her |their )?(?:own )?fingers\b", r" count_fingers \1 times "),
     (r"\bcount(?:s|ing)? (?:on|with|using) (?:the |his |her |their )?(?:own )?fingers\b", " count_fingers "),
     # Housework and breath
-    (r"\b(?:takes?|taking|pulls?|puts?) (?:off )?(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)(?: off)?\b",
+    (r"\b(?:takes?|taking) (?:off )?(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)(?: off)?\b"
+     r"|\b(?:pull|put)(?:s|ting|ing)? (?:off (?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)"
+     r"|(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover) off)\b",
      " jacket_off "),
     (r"\b(?:sweep(?:s|ing)?|mop(?:s|ping)?|rak(?:es|ing)) (?:up )?(?:the )?(?:floor|room|kitchen|leaves)\b", " sweeps "),
     (r"\b(?:vacuum(?:s|ing)?|hoover(?:s|ing)?)(?: cleans?)?(?: the)?(?: floor| carpet| room| rug)?\b", " vacuums "),

@@ -30,6 +30,7 @@ _COMING_BACK = words_in(
 )
 _RISING = _COMING_BACK | words_in("stand stands standing")
 LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
+_PUTTING = words_in("put puts putting bring brings bringing take takes taking let lets")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
@@ -99,7 +100,12 @@ def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
         and last.upper in ARM_POSTURES
         and last.other_hand is None
     )
-    return still and bool(own & LOWERED) and not own & (STAYING - {"rests", "resting", "rest"})
+    return still and _brings_down(own) and not own & (STAYING - {"rests", "resting", "rest"})
+
+
+def _brings_down(words: Collection[str]) -> bool:
+    """Whether the words of a clause bring the arms down: 'lowers them', 'puts it down'."""
+    return bool(LOWERED & {*words} or ("down" in words and _PUTTING & {*words}))
 
 
 def _follows(step: Step, afterwards: Collection[int]) -> bool:
@@ -126,7 +132,10 @@ def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
 def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
     """A raised arm or leg that a clause without a step of its own keeps up: 'raises an arm, keeps it up and walks'."""
     more = [words_in(clauses.get(number, "")) for number in step.clauses[1:]]
-    if step.count or not any(words & STAYING and "down" not in words for words in more):
+    if len(more) > 1 and _brings_down(more[-1]):  # "holds it, puts it down"
+        del more[-1]
+    staying = STAYING | {"for"} if step.seconds else STAYING  # "holds them" is taken out of "holds them for 3 seconds"
+    if step.count or not any(words & staying and "down" not in words for words in more):
         return step
     if step.lower == "raise_leg" and not step.upper:
         return replace(step, lower="one_leg", foot=OPPOSITE.get(step.foot, ""))

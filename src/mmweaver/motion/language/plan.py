@@ -7,6 +7,7 @@ from mmweaver.motion.language.described_person import DescribedPerson
 from mmweaver.motion.language.places import Place
 
 HOPPING = ("hop", "hop_one_leg")  # on the spot unless a way is named
+FALLING_ON = "falling_on"  # Step.style of a stumble that ends in a fall
 
 
 @dataclass(frozen=True, kw_only=True)

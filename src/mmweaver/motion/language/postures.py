@@ -2,11 +2,13 @@
 
 import re
 from dataclasses import replace
+from itertools import pairwise
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.held import STAYING
 from mmweaver.motion.language.modifiers import OPPOSITE
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import FALLING_ON, Step
+from mmweaver.motion.language.verbs import words_in
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
@@ -15,6 +17,8 @@ _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # What is done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
+_FALLS_ON = {"forwards": "front", "backwards": "back"}  # the way of a stumble -> style of the fall
+_WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
@@ -26,7 +30,7 @@ def with_postures(steps: list[Step]) -> list[Step]:
         for one in _with_transitions(step, posture, result):
             result.append(one)
             posture = one.posture
-    return merged(_styled(result))
+    return merged(_styled(_falling_on(result)))
 
 
 def _from_where_it_rises(steps: list[Step]) -> list[Step]:
@@ -139,6 +143,20 @@ def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:
 
 def _up_from(posture: str, step: Step) -> list[Step]:
     return [Step(lower=lower, clause=step.clause) for lower in RISING.get(posture, ())]
+
+
+def _falling_on(steps: list[Step]) -> list[Step]:
+    """Who stumbles and falls goes down the way of the stumble, without coming upright first: `FALLING_ON`."""
+    for k, (before, step) in enumerate(pairwise(steps)):
+        if before.lower != "stumble" or step.lower != "fall" or before.style:
+            continue
+        way = before.direction or ("forwards" if step.style == "front" or "stumbl" in before.clause else "backwards")
+        says_how = bool(words_in(step.clause) & _WAYS_OF_FALLING) or step.style not in ("front", "back")
+        if not says_how and way in _FALLS_ON:
+            steps[k + 1] = step = replace(step, style=_FALLS_ON[way])
+        if step.style == _FALLS_ON.get(way):
+            steps[k] = replace(before, direction=way, style="" if before.seconds else FALLING_ON)
+    return steps
 
 
 def _styled(steps: list[Step]) -> list[Step]:

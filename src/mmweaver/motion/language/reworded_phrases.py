@@ -27,7 +27,7 @@ def _limps(found: re.Match[str]) -> str:
 def _left_then_right(found: re.Match[str]) -> str:
     limb = {"feet": "foot"}.get(found["limb"], found["limb"].removesuffix("s"))
     often = found["often"] or ""
-    verb = f"{found['verb']} {found['with'] or ''}"
+    verb = f"{found['verb']} {found['with'].strip()} ".replace("  ", " ")
     return f"{verb}the left {limb}{often}, then {verb}the right {limb}{often}"
 
 
@@ -58,6 +58,14 @@ def _limb_after_limb(found: re.Match[str]) -> str:
     verb, limb = found["verb"], found["limb"]
     one = f"{verb} " if verb.startswith(("rais", "lift")) else f"{verb} with "
     return f"{one}the left {limb}, then {one}the right {limb}"
+
+
+def _faces_the_radar(found: re.Match[str]) -> str:
+    """Ahead of the picture is where the radar is; who sits or kneels would get up to turn."""
+    is_low = re.search(
+        r"(?i)\b(?:sit|sat|seat|kneel|knelt|l[iy]|la[iy]|crouch|squat)[a-z]*\b", found.string[: found.start()]
+    )
+    return found[0] if is_low else "turns to face the radar"
 
 
 def _on_the_way(found: re.Match[str]) -> str:
@@ -176,7 +184,11 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # the trunk, and a step that is climbed
     (rf"\b(?:(?:turn|rotat|swivel|twist|pivot)(?:s|es|ing) and )?(?:turn|rotat|swivel|twist|pivot)(?P<ending>e?s|ing)(?P<way> (?:to (?:{_OWN})?)?(?:left|right)(?: and (?:to (?:{_OWN})?)?(?:left|right))?)? (?:at|from|in) {_OWN}?(?:waist|hips?|torso)\b", lambda found: f"twist{'ing' if found['ending'] == 'ing' else 's'} the upper body{found['way'] or ''}"),
     (r"\bclimb(s|ing)(?: up| onto| on)? (?:an?|one|the) (?:(?:single|small|large|big|high|low) )?step\b", r"walk\1 up a step"),
+    (rf"\b(?:turns?(?: (?:around|back|again))? to (?:be )?fac(?:e|ing)|faces) (?:straight |back )?(?:to )?(?:the )?(?:forwards?|front|ahead)(?: again)?{_ENDS}", _faces_the_radar),
     # each leg in turn
+    (r"\b(?P<verb>(?:rais|lift|kick|stomp|stamp|wav)(?:es|s|ing|ping))(?P<with>(?: with| on)?) (?:the|his|her|their|both) (?P<limb>legs|feet|knees|arms|hands)(?: up)? (?:in turns?|one after the other|one at a time|alternately|alternatingly)(?P<often>)", _left_then_right),
+    (r"(?<!while )\b(?P<verb>st[ao]mp(?:s|ing)) (?P<with>)(?:the|his|her|their|both) (?P<limb>feet)(?P<often> twice| once| (?:two|three|four|five|\d+) times)?(?= *(?:$|[.,;]| and\b| then\b))", _left_then_right),
+    (rf"\b(?P<verb>(?:rais|lift|wav|kick|stomp|stamp|swing|stretch)(?:es|s|ing|ping))(?P<with>(?: with| on)?) {_OWN}?left(?: (?:leg|foot|knee|arm|hand))? and (?:with |on )?{_OWN}?right (?P<limb>leg|foot|knee|arm|hand)s?(?P<often> twice| once| (?:two|three|four|five|\d+) times) each\b", _left_then_right),
     (r"\b(?P<verb>(?:kick|stomp|stamp|hop|punch)(?:s|es|ing|ping))(?: (?:alternately|alternatingly|in turn))? (?:with |on )?(?:(?:the|his|her|their) )?(?P<one>left|right)(?: (?:leg|foot|hand|arm|fist))? and (?:(?:the|his|her|their) )?(?P<other>left|right)(?: (?P<limb>leg|foot|hand|arm|fist))?(?: (?:alternately|alternatingly|in turn))?(?=$|[,.;]| and\b| then\b)", _one_then_other),
     (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?:(?:the|his|her|their) )?(?P<one>left|right) (?:leg|knee|foot) and (?:(?:the|his|her|their) )?(?P<other>left|right) (?P<limb>leg|knee|foot)(?: (?:alternately|alternatingly|in turn))?\b", _one_then_other),
     (r"\b(?P<verb>(?:rais|lift)(?:es|s|ing)) (?P<with>)(?:each|both|alternating|(?:his|her|their|the) alternate) (?:of (?:his|her|their) )?(?:(?:his|her|their) )?(?P<limb>legs?|feet|foot|knees?)\b(?: (?:up|alternately|alternatingly|in turn|one after the other|one at a time))*(?P<often> twice| once| (?:two|three|four|five|\d+) times)?", _left_then_right),

@@ -5,13 +5,18 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.named_counts import PACES
 from mmweaver.motion.language.named_steps import with_what_is_shown
-from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
 PACING_S = 5.5  # of "walks to and fro": there and back
+TURN_M = 0.6  # a corner of a path takes as long as so many metres
+SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
+HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
+FALLING_ON_S = (0.8, 1.0)  # least and natural time of a stumble that ends in a fall
 REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
 
 
@@ -36,7 +41,7 @@ def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
 
     What does not fit is cut at the end: fewer repetitions, the beginning of a movement, no more movements after it;
     notes and `clauses` say so. Raises InputError for a duration that is not positive or above `LONGEST_S`, and for one
-    of which nothing sensible would be left of several movements.
+    in which nothing sensible of the first movement would be seen.
     """
     _check(duration_s)
     plan = _cut(plan, duration_s)
@@ -85,20 +90,19 @@ def _posture_before(step: Step) -> str:
 
 def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
     """The steps that fit into a duration in their least times; the last of them perhaps in part."""
-    first = plan.steps[0]
-    alone = len(plan.steps) == 1 and not (first.count or first.seconds)
-    if alone or least_s(plan) <= duration_s + 1e-9:
+    if least_s(plan) <= duration_s + 1e-9:
         return plan
     kept: list[Step] = []
     left = duration_s
     for step in plan.steps:
-        fitting = _fitting(step, left)
+        fitting = _fitting(step, left, is_first=not kept)
         if fitting is None:
             break
         kept.append(fitting)
         left -= _limits(fitting)[0]
     if not kept:
-        needed = math.ceil(10 * SHORTEST_SHARE * _limits(first)[0]) / 10
+        first = plan.steps[0]
+        needed = math.ceil(10 * _shortest_s(first) - 1e-6) / 10
         raise InputError(
             f"nothing of {plan.text.strip()!r} can be shown in {duration_s:.3g} s; {first.name} alone takes at least"
             f" {needed:.1f} s: ask for more --seconds or --frames, or leave them out"
@@ -106,21 +110,36 @@ def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
     return _with_cut_recorded(replace(plan, steps=tuple(kept)), plan.steps, duration_s)
 
 
-def _fitting(step: Step, left_s: float) -> Step | None:
+def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
     """The step as it fits into the time that is left: fewer times, shorter, only its beginning, or not at all."""
     least = _limits(step)[0]
     if least <= left_s + 1e-9:
         return step
+    if left_s < (_shortest_s(step) if is_first else _shortest_later_s(step)) - 1e-9:
+        return None
     if step.seconds:
-        return replace(step, seconds=left_s) if left_s >= 0.3 else None
+        usual = replace(step, seconds=0.0)
+        return usual if _limits(usual)[0] > left_s and not _is_held(step) else replace(step, seconds=left_s)
     counted_s = BY_KEY[step.upper or step.lower].counted_s
     if step.count and counted_s:
-        count = int((left_s - counted_s[2]) / counted_s[0] + 1e-6)
-        if count >= 1:
-            return replace(step, count=count)
-        step = replace(step, count=1)
-        least = _limits(step)[0]
-    return step if left_s >= SHORTEST_SHARE * least else None
+        return replace(step, count=max(1, int((left_s - counted_s[2]) / counted_s[0] + 1e-6)))
+    return step
+
+
+def _shortest_s(step: Step) -> float:
+    """The shortest time in which something of a first step is seen: any, of one that goes on as it begins."""
+    whole = BY_KEY[step.lower]
+    is_whole = whole.once or (whole.counted_s is not None and step.lower not in PACES)  # a squat
+    if not is_whole and (step.lower != "stand" or not step.upper or not BY_KEY[step.upper].once):
+        return 0.0
+    return _shortest_later_s(step)
+
+
+def _shortest_later_s(step: Step) -> float:
+    """The shortest time that is left for a step after others."""
+    if step.seconds:
+        return min(SHORTEST_OF_SECONDS_S, step.seconds)
+    return SHORTEST_SHARE * min(_limits(replace(step, count=count))[0] for count in {0, min(step.count, 1)})
 
 
 def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
@@ -133,16 +152,29 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             clauses[number] = clauses[number].lowered_to(status, how)
 
     kept = plan.steps
+    given = _in_words(duration_s)
     for k, (before, now) in enumerate(zip(wanted, kept, strict=False)):
+        is_begun = k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9 and not _is_held(now)
+        hows = [f"only its beginning is shown in {given} s"] * is_begun
         if now.count < before.count:
-            record(before, APPROXIMATED, f"{now.count} of {before.count} times in {duration_s:.1f} s")
+            begun = f"only the beginning of the first of {before.count} times is shown in {given} s"
+            hows = [begun if is_begun and now.count == 1 else f"{now.count} of {before.count} times in {given} s"]
         elif now.seconds < before.seconds:
-            record(before, APPROXIMATED, f"{now.seconds:.1f} of {before.seconds:.1f} s")
-        elif k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9:
-            record(before, APPROXIMATED, f"only its beginning is shown in {duration_s:.1f} s")
+            hows = hows or [f"{_in_words(now.seconds)} of {before.seconds:.1f} s"]
+        for how in hows:
+            record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
-        record(step, NOT_DONE, f"the {duration_s:.1f} s are over before it")
+        record(step, NOT_DONE, f"the {given} s are over before it")
     return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
+
+
+def _in_words(seconds: float) -> str:
+    return f"{seconds:.1f}" if seconds >= 1 else f"{seconds:.2g}"
+
+
+def _is_held(step: Step) -> bool:
+    """Whether a step is a posture that is whole in any moment."""
+    return step.lower in HELD_POSTURES and not step.upper
 
 
 def _limits(step: Step) -> tuple[float, float]:
@@ -164,13 +196,16 @@ def _at_usual_speed(step: Step) -> tuple[float, float]:
     if step.lower == "turn" and step.turn_deg:
         lasts = 0.3 + abs(step.turn_deg) / 185
         return lasts, lasts + 0.2
+    if step.style == FALLING_ON:
+        return FALLING_ON_S
     if step.direction == "circle" and step.moves and not step.count:
         return _circle_limits(step)
     if step.direction == "pacing" and step.moves and not step.count:
         return BY_KEY[step.lower].least_s, PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
-        return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
+        way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
+        return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
     if step.style == "several" and not step.count:  # "does squats"
         least, natural = _at_usual_speed(replace(step, count=2, speed=0))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)

@@ -198,6 +198,8 @@ def _bent(step: Step) -> Step:
 def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
     """Whether it is done sideways: 'takes one step to the left', but not 'walks to the left'."""
     noun = words[at].lemma == "step"
+    if noun and at + 1 < len(words) and any(word.text in ("step", "steps") for word in words[at + 1 :]):
+        return step.direction in SIDES and step.lower == "walk" and not step.arc_deg  # "steps to the right three steps"
     few = step.count in (0, 1, 2) if words[at].text in ("step", "steps") else step.count in (1, 2)
     return noun and few and step.direction in SIDES and step.lower == "walk" and not step.arc_deg
 

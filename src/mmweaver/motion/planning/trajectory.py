@@ -330,8 +330,18 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
             trajectory.heading_rad = direction + move.curvature_per_m * move.length_m
             trajectory.last_direction_rad = None
             trajectory.cost += float(trajectory.floor.cost_at(circle_m).mean()) + 0.3 * (widest_m - radius)
+            _say_slower(trajectory, step, radius, length / max(move.end_s - begin - sum(ramps) / 2, 0.2))
             return
     raise NoTrajectory(f"no room for a circle of {narrowest_m:g} m")
+
+
+def _say_slower(trajectory: Trajectory, step: Step, radius_m: float, speed_mps: float) -> None:
+    """Says that a circle is run more slowly than anybody runs elsewhere."""
+    least_mps = 1.8 if step.style == "jog" else 2.1  # of `preferred_speed_mps`
+    if step.lower == "jog" and speed_mps < least_mps * step.pace - 0.05:
+        trajectory.notes.append(
+            f"{step.clause!r} goes round in a circle of {radius_m:g} m, at {speed_mps:.1f} m/s: slower than running"
+        )
 
 
 def _rounds(step: Step, usual: float) -> float:

@@ -63,3 +63,17 @@ def test_walking_lunges_go_ahead_and_down_with_every_step():
         apart = np.linalg.norm(joints[:, joint("left_ankle"), :2] - joints[:, joint("right_ankle"), :2], axis=1)
         assert apart.max() > 0.5
         assert np.linalg.norm(joints[-1, 0, :2] - joints[0, 0, :2]) > 1.5
+
+
+def upright_between_s(text: str) -> float:
+    """How long the trunk is within 4 degrees of upright from the last catching step to the fall."""
+    motion = act_out(text, seed=1)
+    joints_m, time_s = motion.pose.joints_m, motion.pose.time_s
+    trunk_m = joints_m[:, joint("neck")] - joints_m[:, joint("pelvis")]
+    lean_rad = np.arctan2(np.linalg.norm(trunk_m[:, :2], axis=1), trunk_m[:, 2])
+    between = (time_s > 0.9) & (time_s < motion.plan.steps[0].end_s + 0.6)
+    return float((lean_rad[between] < np.radians(4)).sum() / 120)
+
+
+def test_who_trips_and_falls_does_not_stand_up_in_between():
+    assert upright_between_s("trips and falls") < 0.1 < 0.3 < upright_between_s("trips, then falls backwards")

@@ -12,7 +12,7 @@ from mmweaver.motion.language.sentence import parse
     [
         ("a person walks in all directions", "'in all directions' are not shown"),
         ("a person takes four steps and kicks with each step", "'with each step' is not shown"),
-        ("a person raises their arms one at a time", "'one at a time' is not shown"),
+        ("a person stretches their arms out one at a time", "'one at a time' is not shown"),
         ("the person is doing arm lifts with his right arm", "'arm lifts' is shown once"),
         ("a person takes a step to the left and then to the right", "that it is one step is not kept"),
         ("a person takes a step forward, then the step back", "that it is one step is not kept"),

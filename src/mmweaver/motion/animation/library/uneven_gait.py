@@ -9,7 +9,9 @@ from mmweaver.motion.animation.library.gait import cruise_mps, stepping, walking
 from mmweaver.motion.animation.library.movement_primitives import leg_side
 from mmweaver.motion.animation.profiles import bump, wander
 from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.language.plan import FALLING_ON
 
+_MOST_OUT_OF_BALANCE = 0.65  # share of a stumble after which the trunk leans most
 LUNGES_HZ = (0.58, 0.7, 0.9)  # steps a second of walking lunges: slowly, usually, quickly
 
 
@@ -82,7 +84,10 @@ def stumbling(context: StepContext) -> Controls:
         style = replace(style, spot_lift_m=style.lift_m)
     controls = stepping(context, style, jog=on_spot)
     time_s, jolt = context.time_s, float(context.rng.uniform(0.25, 0.45))
-    u = (time_s - context.start_s) / max(min(context.duration_s, 1.5), 0.9)
+    lasts_s = max(min(context.duration_s, 1.5), 0.9)
+    if context.step.style == FALLING_ON:  # it ends where the trunk is farthest ahead of the feet
+        lasts_s = context.duration_s / _MOST_OUT_OF_BALANCE
+    u = (time_s - context.start_s) / lasts_s
     early, late = bump(u / 0.6), bump((u - 0.3) / 0.7)
     direction = context.moves[0].direction_rad if context.moves else float(controls.heading_rad[0]) + np.pi
     away = direction - controls.heading_rad

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.checks.given import Given
@@ -103,7 +104,15 @@ def _in_turn(given: Given) -> Iterator[tuple[int, str]]:
         limbs = {step.hand for step in own if step.upper} | {step.foot for step in own}
         if {"left", "right"} <= limbs or any({step.lower, step.upper} & _ALTERNATES for step in own):
             continue
+        if any(_is_one_side_after_the_other(*pair) and {*pair} & {*own} for pair in pairwise(given.steps)):
+            continue
         yield token.clause, f"{found[0]!r} is not shown"
+
+
+def _is_one_side_after_the_other(before: Step, step: Step) -> bool:
+    """Whether a movement is done with one limb and then with that of the other side."""
+    same = (before.lower, before.upper) == (step.lower, step.upper)
+    return same and {"left", "right"} in ({before.hand, step.hand}, {before.foot, step.foot})
 
 
 def _plural(given: Given) -> Iterator[tuple[int, str]]:
