@@ -103,3 +103,19 @@ def test_a_clause_without_a_step_of_its_own_is_shown_as_its_neighbour(status: st
 )
 def test_arms_that_only_come_down_are_not_said_to_stay(text: str) -> None:
     assert parse(text).clauses[1].how == "is shown as the arms coming down after that"
+
+
+@pytest.mark.parametrize(
+    ("text", "status", "how"),
+    [
+        (
+            "a person scratches their back with the left hand, then the right hand", APPROXIMATED,
+            "is shown as waving with the right hand repeatedly",
+        ),
+        ("a person tilts the head left and right", APPROXIMATED, "is shown as looking to the right in the photo"),
+        ("a person walks forward with a rope, then backwards", DONE, ""),
+    ],
+)  # fmt: skip
+def test_what_goes_on_from_another_movement_is_not_done(text: str, status: str, how: str) -> None:
+    first, second = parse(text, in_part=True).clauses
+    assert (first.status, second.status, second.how) == (APPROXIMATED, status, how)

@@ -37,18 +37,19 @@ def saying_what_is_shown(
     of_each = steps_of_each(len(records), steps)
     records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
     said: list[ClauseRecord] = []
-    for record, own in zip(records, of_each, strict=True):
+    for number, (record, own) in enumerate(zip(records, of_each, strict=True)):
         if record.status == NOT_DONE or not record.shown:
             said.append(record)
             continue
-        shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
+        otherwise = number > 0 and _goes_on(record, own, said[-1], of_each[number - 1])
+        shown, is_plain = record.shown.removeprefix("then "), _says(record, own) and not otherwise
         is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
         briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
         whole = [] if is_plain else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
-        status = APPROXIMATED if roughly and not is_plain else record.status
+        status = APPROXIMATED if otherwise or (roughly and not is_plain) else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
 
@@ -57,6 +58,17 @@ def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]
     """Whether a clause only ends a posture of the arms, whose step it shares with the clause before."""
     held = any(step.upper in ARM_POSTURES and step is not steps[-1] for step in own[-1:])
     return held and bool(words_in(record.clause.lower()) & LOWERED)
+
+
+def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:
+    """Whether a clause only says how a movement goes on that is shown as another: "scratches it with the left, then
+    the right hand".
+    """
+    words = _stems(record.clause) - _NO_WORDS
+    same = {(step.lower, step.upper) for step in own} & {(step.lower, step.upper) for step in steps}
+    if before.status != APPROXIMATED or "is shown as" not in before.how or not words or not same:
+        return False
+    return not (words | _stems(before.clause) & _stems(before.shown)) - _NO_WORDS - _OF_NUMBERS - _OF_SIDES
 
 
 def _of_a_part(record: ClauseRecord) -> ClauseRecord:
@@ -146,4 +158,5 @@ _NO_WORDS = _stems(
     " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do still"))
 )
 _OF_NUMBERS = _stems(" ".join((*NUMBERS, *TIMES, "times seconds")))
+_OF_SIDES = _stems("left right both other side one hand arm leg foot with again forward back backwards and then")
 _TELLING = _stems("left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling")
