@@ -113,9 +113,15 @@ def test_arms_that_only_come_down_are_not_said_to_stay(text: str) -> None:
             "is shown as waving with the right hand repeatedly",
         ),
         ("a person tilts the head left and right", APPROXIMATED, "is shown as looking to the right in the photo"),
-        ("a person walks forward with a rope, then backwards", DONE, ""),
+        ("a person walks forward with a rope, then backwards", DONE, "is shown as walking backwards"),
     ],
 )  # fmt: skip
 def test_what_goes_on_from_another_movement_is_not_done(text: str, status: str, how: str) -> None:
     first, second = parse(text, in_part=True).clauses
     assert (first.status, second.status, second.how) == (APPROXIMATED, status, how)
+
+
+def test_what_goes_on_from_a_movement_that_says_what_is_shown_says_so_too() -> None:
+    first, second = parse("a person does side lunges to the left and right").clauses
+    assert (first.status, second.status) == (DONE, DONE)
+    assert second.how == first.how.replace("left", "right")

@@ -41,15 +41,16 @@ def saying_what_is_shown(
         if record.status == NOT_DONE or not record.shown:
             said.append(record)
             continue
-        otherwise = number > 0 and _goes_on(record, own, said[-1], of_each[number - 1])
-        shown, is_plain = record.shown.removeprefix("then "), _says(record, own) and not otherwise
+        goes_on = number > 0 and _goes_on(record, own, said[-1], of_each[number - 1])
+        shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
         is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
         briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
-        whole = [] if is_plain else [f"is shown as {briefly}"]
+        whole = [] if is_plain and not goes_on else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
-        status = APPROXIMATED if otherwise or (roughly and not is_plain) else record.status
+        otherwise = (goes_on and _is_another(said[-1])) or (roughly and not is_plain)
+        status = APPROXIMATED if otherwise else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
 
@@ -61,14 +62,16 @@ def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]
 
 
 def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:
-    """Whether a clause only says how a movement goes on that is shown as another: "scratches it with the left, then
-    the right hand".
-    """
+    """Whether a clause only says with which limb or which way the movement goes on whose record says what is shown."""
     words = _stems(record.clause) - _NO_WORDS
     same = {(step.lower, step.upper) for step in own} & {(step.lower, step.upper) for step in steps}
-    if before.status != APPROXIMATED or "is shown as" not in before.how or not words or not same:
-        return False
-    return not (words | _stems(before.clause) & _stems(before.shown)) - _NO_WORDS - _OF_NUMBERS - _OF_SIDES
+    return "is shown as" in before.how and bool(words and same) and words <= _OF_NUMBERS | _OF_SIDES
+
+
+def _is_another(record: ClauseRecord) -> bool:
+    """Whether a movement is shown as another one, no word for it being the same: "scratches", "waving"."""
+    alike = _stems(record.clause) & _stems(record.shown)
+    return record.status == APPROXIMATED and alike <= _NO_WORDS | _OF_NUMBERS | _OF_SIDES
 
 
 def _of_a_part(record: ClauseRecord) -> ClauseRecord:
