@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.checks.given import Given
 from mmweaver.motion.language.lexicon import NUMBERS
+from mmweaver.motion.language.named_hands import hand_of
 from mmweaver.motion.language.named_steps import doing
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
@@ -41,6 +42,7 @@ _FULL_TURNS = re.compile(
     r"\b(two|three|four|five|several|multiple|few|\d+) (?:full|complete|whole|entire)"
     r" (?:turns|rotations|spins|circles|revolutions)\b"
 )
+_BOTH_HANDS = re.compile(r"\bboth (?:of )?(?:his |her |their |the )?(?:hands|arms)\b")
 _SIDES_OFTEN = re.compile(r"\b(?:left|right) and (?:then )?(?:left|right) (twice|\w+ times|repeatedly)\b")
 _REVERSES = re.compile(
     r"\b(?:then|and|before) (?:reverses?|reversing|changes? directions?|switch(?:es)? directions?)\b"
@@ -49,7 +51,7 @@ _REVERSES = re.compile(
 
 def counts_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for repetitions and changes of direction that no step has."""
-    for check in (_several, _various, _in_turn, _plural, _uncounted, _more, _reversed, _full_turns, _both):
+    for check in (_several, _various, _in_turn, _plural, _uncounted, _more, _reversed, _full_turns, _both, _one_hand):
         yield from check(given)
 
 
@@ -171,3 +173,12 @@ def _both(given: Given) -> Iterator[tuple[int, str]]:
         counts = {step.count for step in given.steps if step.direction in ("left", "right")}
         if len(counts) > 1:
             yield token.clause, f"{found[1]!r} is shown for one side"
+
+
+def _one_hand(given: Given) -> Iterator[tuple[int, str]]:
+    """ "Drinks with both hands", where the activity moves one."""
+    for _, token in given.matches(_BOTH_HANDS):
+        of_hands = [part for step in given.of_clause(token.clause) for part in step.each if part.upper]
+        hands = [hand_of(part, part.upper) for part in of_hands]
+        if len(hands) == 1 and hands[0] in ("one", "left", "right"):
+            yield token.clause, "one hand is shown, not both"
