@@ -41,7 +41,7 @@ def test_what_is_not_repeated_is_said(sentence: str, how: str) -> None:
         "a person takes one step to the left and one step to the right",
         "a person spins three times to the left",
         "a person punches with both hands alternately",
-        "a person raises one hand and then the other",
+        "a person raises one hand and then the other.",
         "a person kicks with one foot then the other",
         "a person waves with both hands",
         "a person picks up a box with both hands",

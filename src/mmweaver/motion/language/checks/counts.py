@@ -101,7 +101,8 @@ def _various(given: Given) -> Iterator[tuple[int, str]]:
 
 def _in_turn(given: Given) -> Iterator[tuple[int, str]]:
     for found, token in given.matches(_IN_TURN):
-        own = [*given.own(token), *given.own(given.token_at(found.end() - 1))]  # "one hand and then the other"
+        last = given.token_at(found.start() + found[0].rfind(" ") + 1)  # "one hand and then the other": another clause
+        own = [*given.own(token), *given.own(last)]
         limbs = {step.hand for step in own if step.upper} | {step.foot for step in own}
         if {"left", "right"} <= limbs or any({step.lower, step.upper} & _ALTERNATES for step in own):
             continue
