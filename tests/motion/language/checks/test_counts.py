@@ -22,6 +22,7 @@ from mmweaver.motion.language.sentence import parse
         ("a person kicks with the left leg, then the right leg, then both", "'both' is not shown"),
         ("a person drinks with both hands", "one hand is shown, not both"),
         ("a person points to the left with both of his arms", "one hand is shown, not both"),
+        ("a person swings the golf club with the right hand", "both hands are shown, not one"),
         ("a person runs to the right and then reverses", "is shown as running backwards"),
         ("a person sits down and stands up repeatedly", "'repeatedly' is not shown"),
     ],

@@ -43,6 +43,8 @@ _FULL_TURNS = re.compile(
     r" (?:turns|rotations|spins|circles|revolutions)\b"
 )
 _BOTH_HANDS = re.compile(r"\bboth (?:of )?(?:his |her |their |the )?(?:hands|arms)\b")
+_NAMED_HAND = re.compile(r"\b(?:with|using) (?:his |her |their |the |only )*(?:left|right|one) (?:hand|arm)\b")
+_WITH_BOTH = words_in("golf sweep")
 _SIDES_OFTEN = re.compile(r"\b(?:left|right) and (?:then )?(?:left|right) (twice|\w+ times|repeatedly)\b")
 _REVERSES = re.compile(
     r"\b(?:then|and|before) (?:reverses?|reversing|changes? directions?|switch(?:es)? directions?)\b"
@@ -51,7 +53,18 @@ _REVERSES = re.compile(
 
 def counts_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for repetitions and changes of direction that no step has."""
-    for check in (_several, _various, _in_turn, _plural, _uncounted, _more, _reversed, _full_turns, _both, _one_hand):
+    for check in (
+        _several,
+        _various,
+        _in_turn,
+        _plural,
+        _uncounted,
+        _more,
+        _reversed,
+        _full_turns,
+        _both,
+        _other_hands,
+    ):
         yield from check(given)
 
 
@@ -176,10 +189,13 @@ def _both(given: Given) -> Iterator[tuple[int, str]]:
             yield token.clause, f"{found[1]!r} is shown for one side"
 
 
-def _one_hand(given: Given) -> Iterator[tuple[int, str]]:
-    """ "Drinks with both hands", where the activity moves one."""
+def _other_hands(given: Given) -> Iterator[tuple[int, str]]:
+    """ "Drinks with both hands", where the activity moves one, and "swings the club with the right hand"."""
     for _, token in given.matches(_BOTH_HANDS):
         of_hands = [part for step in given.of_clause(token.clause) for part in step.each if part.upper]
         hands = [hand_of(part, part.upper) for part in of_hands]
         if len(hands) == 1 and hands[0] in ("one", "left", "right"):
             yield token.clause, "one hand is shown, not both"
+    for _, token in given.matches(_NAMED_HAND):
+        if any(step.upper in _WITH_BOTH for step in given.of_clause(token.clause)):
+            yield token.clause, "both hands are shown, not one"
