@@ -125,3 +125,14 @@ def test_what_goes_on_from_a_movement_that_says_what_is_shown_says_so_too() -> N
     first, second = parse("a person does side lunges to the left and right").clauses
     assert (first.status, second.status) == (DONE, DONE)
     assert second.how == first.how.replace("left", "right")
+
+
+@pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        ("a person walks forward with arms stretched out in front like a zombie", "the unsteady gait is not shown"),
+        ("a person walks like a zombie", "is shown as staggering"),
+    ],
+)
+def test_staggering_that_is_not_shown_is_not_said_to_be(text: str, how: str) -> None:
+    assert parse(text).clauses[-1].how.endswith(how)

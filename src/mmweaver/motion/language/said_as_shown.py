@@ -15,6 +15,7 @@ _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
 _NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
+_STAGGERS = "an unsteady gait is shown as staggering"  # of "like a zombie", whatever else the clause says
 _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
     "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
@@ -84,6 +85,7 @@ def _of_a_part(record: ClauseRecord) -> ClauseRecord:
 
 def _more_than(shown: str, hows: list[str]) -> list[str]:
     """Reasons without those that say in general what `shown` says wholly, and without vague ones that add nothing."""
+    hows = [how if how != _STAGGERS or "stagger" in shown else "the unsteady gait is not shown" for how in hows]
     more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
     vague = {weaker for better in more for weaker in _VAGUE.get(better, ())}
     return [how for how in more if how not in vague]
