@@ -20,7 +20,7 @@ def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' 
         ("a person waves", Step(upper="wave")),
         ("she kneels down", Step(lower="kneel_down")),
         ("walks three steps forward", Step(lower="walk", direction="forwards", count=3)),
-        ("raises the left arm", Step(upper="raise", hand="left")),
+        ("raises the left arm overhead and lowers it", Step(upper="raise", hand="left")),
         ("walks to the couch", Step(lower="walk", seat="couch", direction="seat")),
         ("turns left", Step(lower="turn", direction="left")),
         ("claps twice", Step(upper="clap", count=2)),
@@ -34,6 +34,7 @@ def test_words_that_say_just_what_is_shown_need_no_others(words: str, step: Step
     ("words", "steps", "shown"),
     [
         ("waves", [Step(upper="wave", hand="both")], "waving with both hands repeatedly"),
+        ("raises an arm", [Step(upper="raise")], "raising one hand overhead and lowering it once"),
         ("waves twice", [Step(upper="wave")], "waving with one hand repeatedly"),
         ("waves with the left hand", [Step(upper="wave", hand="right")], "waving with the right hand repeatedly"),
         ("walks to his left", [Step(lower="walk", direction="right")], "walking to the right in the photo"),

@@ -164,4 +164,6 @@ _NO_WORDS = _stems(
 )
 _OF_NUMBERS = _stems(" ".join((*NUMBERS, *TIMES, "times seconds")))
 _OF_SIDES = _stems("left right both other side one hand arm leg foot with again forward back backwards and then")
-_TELLING = _stems("left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling")
+_TELLING = _stems(
+    "left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling overhead lowering"
+)
