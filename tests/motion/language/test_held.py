@@ -161,3 +161,15 @@ def test_a_leg_that_is_held_up_is_held() -> None:
 def test_arms_that_were_up_during_a_walk_come_down_after_it() -> None:
     plan = parse("a person walks forward with the arms raised and then lowers them")
     assert [(step.lower, step.upper) for step in plan.steps] == [("walk", "raise_hold"), ("stand", "")]
+
+
+@pytest.mark.parametrize(
+    ("text", "upper"),
+    [
+        ("a person raises the right hand and keeps it up while walking", "raise_hold"),
+        ("a person raises both arms and holds them there while he jogs", "raise_hold"),
+        ("a person raises the right hand while he keeps walking", "raise"),
+    ],
+)
+def test_an_arm_that_is_kept_up_during_a_walk_is_kept_up(text: str, upper: str) -> None:
+    assert [step.upper for step in parse(text).steps] == [upper]

@@ -64,7 +64,8 @@ def test_all_that_a_step_shows_is_said(step: Step, words: str) -> None:
 
 def test_order_and_repetitions_of_several_steps() -> None:
     assert in_turn([WALK, WAVE]) == "walking, then waving with one hand repeatedly"
-    assert in_turn([WALK, WAVE] * 2) == "walking, then waving with one hand repeatedly, twice in a row"
+    assert in_turn([WALK, WAVE] * 2) == "walking, then waving with one hand repeatedly, all of this twice"
+    assert in_turn([WALK] * 2) == "walking, twice in a row"
     assert in_turn([WALK, WALK, WAVE]) == "walking, and again, then waving with one hand repeatedly"
 
 

@@ -20,7 +20,7 @@ def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' 
         ("a person waves", Step(upper="wave")),
         ("she kneels down", Step(lower="kneel_down")),
         ("walks three steps forward", Step(lower="walk", direction="forwards", count=3)),
-        ("raises the left arm", Step(upper="raise", hand="left")),
+        ("raises the left arm overhead and lowers it", Step(upper="raise", hand="left")),
         ("walks to the couch", Step(lower="walk", seat="couch", direction="seat")),
         ("turns left", Step(lower="turn", direction="left")),
         ("claps twice", Step(upper="clap", count=2)),
@@ -34,6 +34,7 @@ def test_words_that_say_just_what_is_shown_need_no_others(words: str, step: Step
     ("words", "steps", "shown"),
     [
         ("waves", [Step(upper="wave", hand="both")], "waving with both hands repeatedly"),
+        ("raises an arm", [Step(upper="raise")], "raising one hand overhead and lowering it once"),
         ("waves twice", [Step(upper="wave")], "waving with one hand repeatedly"),
         ("waves with the left hand", [Step(upper="wave", hand="right")], "waving with the right hand repeatedly"),
         ("walks to his left", [Step(lower="walk", direction="right")], "walking to the right in the photo"),
@@ -103,3 +104,36 @@ def test_a_clause_without_a_step_of_its_own_is_shown_as_its_neighbour(status: st
 )
 def test_arms_that_only_come_down_are_not_said_to_stay(text: str) -> None:
     assert parse(text).clauses[1].how == "is shown as the arms coming down after that"
+
+
+@pytest.mark.parametrize(
+    ("text", "status", "how"),
+    [
+        (
+            "a person scratches their back with the left hand, then the right hand", APPROXIMATED,
+            "is shown as waving with the right hand repeatedly",
+        ),
+        ("a person tilts the head left and right", APPROXIMATED, "is shown as looking to the right in the photo"),
+        ("a person walks forward with a rope, then backwards", DONE, "is shown as walking backwards"),
+    ],
+)  # fmt: skip
+def test_what_goes_on_from_another_movement_is_not_done(text: str, status: str, how: str) -> None:
+    first, second = parse(text, in_part=True).clauses
+    assert (first.status, second.status, second.how) == (APPROXIMATED, status, how)
+
+
+def test_what_goes_on_from_a_movement_that_says_what_is_shown_says_so_too() -> None:
+    first, second = parse("a person does side lunges to the left and right").clauses
+    assert (first.status, second.status) == (DONE, DONE)
+    assert second.how == first.how.replace("left", "right")
+
+
+@pytest.mark.parametrize(
+    ("text", "how"),
+    [
+        ("a person walks forward with arms stretched out in front like a zombie", "the unsteady gait is not shown"),
+        ("a person walks like a zombie", "is shown as staggering"),
+    ],
+)
+def test_staggering_that_is_not_shown_is_not_said_to_be(text: str, how: str) -> None:
+    assert parse(text).clauses[-1].how.endswith(how)

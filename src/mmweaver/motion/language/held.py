@@ -29,6 +29,7 @@ _COMING_BACK = words_in(
     " uncrosses unfolds back stand_up"
 )
 _RISING = _COMING_BACK | words_in("stand stands standing")
+_IT = words_in("it them up there")
 LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _PUTTING = words_in("put puts putting bring brings bringing take takes taking let lets")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
@@ -139,7 +140,8 @@ def _kept_up(step: Step, clauses: Mapping[int, str]) -> Step:
         return step
     if step.lower == "raise_leg" and not step.upper:
         return replace(step, lower="one_leg", foot=OPPOSITE.get(step.foot, ""))
-    is_arm = step.upper == "raise" and step.lower == "stand" and not any("down" in words for words in more)
+    goes = step.lower in ("walk", "jog") and any(words & STAYING and words & _IT for words in more)
+    is_arm = step.upper == "raise" and (step.lower == "stand" or goes) and not any("down" in words for words in more)
     return replace(step, upper="raise_hold") if is_arm else step
 
 

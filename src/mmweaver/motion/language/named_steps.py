@@ -79,7 +79,8 @@ def in_turn(steps: Iterable[Step]) -> str:
     for length in range(1, len(names) // 2 + 1):
         times, rest = divmod(len(names), length)
         if not rest and names == names[:length] * times:
-            return f"{', then '.join(names[:length])}, {times_said(times)} in a row"
+            often = f"all of this {times_said(times)}" if length > 1 else f"{times_said(times)} in a row"
+            return f"{', then '.join(names[:length])}, {often}"
     return ", then ".join(name if len([*same]) == 1 else f"{name}, and again" for name, same in groupby(names))
 
 

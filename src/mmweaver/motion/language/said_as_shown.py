@@ -15,6 +15,7 @@ _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
 _NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
+_STAGGERS = "an unsteady gait is shown as staggering"  # of "like a zombie", whatever else the clause says
 _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
     "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
@@ -37,18 +38,20 @@ def saying_what_is_shown(
     of_each = steps_of_each(len(records), steps)
     records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
     said: list[ClauseRecord] = []
-    for record, own in zip(records, of_each, strict=True):
+    for number, (record, own) in enumerate(zip(records, of_each, strict=True)):
         if record.status == NOT_DONE or not record.shown:
             said.append(record)
             continue
+        goes_on = number > 0 and _goes_on(record, own, said[-1], of_each[number - 1])
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
         is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
         briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
-        whole = [] if is_plain else [f"is shown as {briefly}"]
+        whole = [] if is_plain and not goes_on else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
-        status = APPROXIMATED if roughly and not is_plain else record.status
+        otherwise = (goes_on and _is_another(said[-1])) or (roughly and not is_plain)
+        status = APPROXIMATED if otherwise else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
 
@@ -57,6 +60,19 @@ def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]
     """Whether a clause only ends a posture of the arms, whose step it shares with the clause before."""
     held = any(step.upper in ARM_POSTURES and step is not steps[-1] for step in own[-1:])
     return held and bool(words_in(record.clause.lower()) & LOWERED)
+
+
+def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:
+    """Whether a clause only says with which limb or which way the movement goes on whose record says what is shown."""
+    words = _stems(record.clause) - _NO_WORDS
+    same = {(step.lower, step.upper) for step in own} & {(step.lower, step.upper) for step in steps}
+    return "is shown as" in before.how and bool(words and same) and words <= _OF_NUMBERS | _OF_SIDES
+
+
+def _is_another(record: ClauseRecord) -> bool:
+    """Whether a movement is shown as another one, no word for it being the same: "scratches", "waving"."""
+    alike = _stems(record.clause) & _stems(record.shown)
+    return record.status == APPROXIMATED and alike <= _NO_WORDS | _OF_NUMBERS | _OF_SIDES
 
 
 def _of_a_part(record: ClauseRecord) -> ClauseRecord:
@@ -69,6 +85,7 @@ def _of_a_part(record: ClauseRecord) -> ClauseRecord:
 
 def _more_than(shown: str, hows: list[str]) -> list[str]:
     """Reasons without those that say in general what `shown` says wholly, and without vague ones that add nothing."""
+    hows = [how if how != _STAGGERS or "stagger" in shown else "the unsteady gait is not shown" for how in hows]
     more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
     vague = {weaker for better in more for weaker in _VAGUE.get(better, ())}
     return [how for how in more if how not in vague]
@@ -146,4 +163,7 @@ _NO_WORDS = _stems(
     " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do still"))
 )
 _OF_NUMBERS = _stems(" ".join((*NUMBERS, *TIMES, "times seconds")))
-_TELLING = _stems("left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling")
+_OF_SIDES = _stems("left right both other side one hand arm leg foot with again forward back backwards and then")
+_TELLING = _stems(
+    "left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling overhead lowering"
+)

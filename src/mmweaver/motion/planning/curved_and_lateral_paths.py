@@ -84,7 +84,8 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
         if trajectory.floor.can_stand(places).all():
             _append_move(trajectory, move, places, extra_cost=0.5 * stops)
             trajectory.heading_rad += bend
-            trajectory.last_direction_rad = None
+            across, along = move.end_shift_m[::-1]  # who walks back goes straight to where the bend began
+            trajectory.last_direction_rad = float(np.arctan2(across, along))
             return
     raise NoTrajectory("no room for the bend")
 

@@ -328,7 +328,7 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
             trajectory.moves[-1].append(move)
             trajectory.position_m = trajectory.position_m + move.end_shift_m
             trajectory.heading_rad = direction + move.curvature_per_m * move.length_m
-            trajectory.last_direction_rad = None
+            trajectory.last_direction_rad = trajectory.heading_rad
             trajectory.cost += float(trajectory.floor.cost_at(circle_m).mean()) + 0.3 * (widest_m - radius)
             _say_slower(trajectory, step, radius, length / max(move.end_s - begin - sum(ramps) / 2, 0.2))
             return

@@ -20,6 +20,9 @@ from mmweaver.motion.language.sentence import parse
         ("a person turns in place for two full turns", "'two full turns' is not shown"),
         ("a person steps left and right twice", "'twice' is shown for one side"),
         ("a person kicks with the left leg, then the right leg, then both", "'both' is not shown"),
+        ("a person drinks with both hands", "one hand is shown, not both"),
+        ("a person points to the left with both of his arms", "one hand is shown, not both"),
+        ("a person swings the golf club with the right hand", "both hands are shown, not one"),
         ("a person runs to the right and then reverses", "is shown as running backwards"),
         ("a person sits down and stands up repeatedly", "'repeatedly' is not shown"),
     ],
@@ -39,6 +42,10 @@ def test_what_is_not_repeated_is_said(sentence: str, how: str) -> None:
         "a person takes one step to the left and one step to the right",
         "a person spins three times to the left",
         "a person punches with both hands alternately",
+        "a person raises one hand and then the other.",
+        "a person kicks with one foot then the other",
+        "a person waves with both hands",
+        "a person picks up a box with both hands",
     ],
 )
 def test_what_is_repeated_is_done(sentence: str) -> None:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.checks.given import Given
 from mmweaver.motion.language.lexicon import NUMBERS
+from mmweaver.motion.language.named_hands import hand_of
 from mmweaver.motion.language.named_steps import doing
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
@@ -42,6 +43,9 @@ _FULL_TURNS = re.compile(
     r"\b(two|three|four|five|several|multiple|few|\d+) (?:full|complete|whole|entire)"
     r" (?:turns|rotations|spins|circles|revolutions)\b"
 )
+_BOTH_HANDS = re.compile(r"\bboth (?:of )?(?:his |her |their |the )?(?:hands|arms)\b")
+_NAMED_HAND = re.compile(r"\b(?:with|using) (?:his |her |their |the |only )*(?:left|right|one) (?:hand|arm)\b")
+_WITH_BOTH = words_in("golf sweep")
 _SIDES_OFTEN = re.compile(r"\b(?:left|right) and (?:then )?(?:left|right) (twice|\w+ times|repeatedly)\b")
 _REVERSES = re.compile(
     r"\b(?:then|and|before) (?:reverses?|reversing|changes? directions?|switch(?:es)? directions?)\b"
@@ -50,7 +54,18 @@ _REVERSES = re.compile(
 
 def counts_not_shown(given: Given) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is said) for repetitions and changes of direction that no step has."""
-    for check in (_several, _various, _in_turn, _plural, _uncounted, _more, _reversed, _full_turns, _both):
+    for check in (
+        _several,
+        _various,
+        _in_turn,
+        _plural,
+        _uncounted,
+        _more,
+        _reversed,
+        _full_turns,
+        _both,
+        _other_hands,
+    ):
         yield from check(given)
 
 
@@ -100,7 +115,8 @@ def _various(given: Given) -> Iterator[tuple[int, str]]:
 
 def _in_turn(given: Given) -> Iterator[tuple[int, str]]:
     for found, token in given.matches(_IN_TURN):
-        own = given.own(token)
+        last = given.token_at(found.start() + found[0].rfind(" ") + 1)  # "one hand and then the other": another clause
+        own = [*given.own(token), *given.own(last)]
         limbs = {step.hand for step in own if step.upper} | {step.foot for step in own}
         if {"left", "right"} <= limbs or any({step.lower, step.upper} & _ALTERNATES for step in own):
             continue
@@ -180,3 +196,15 @@ def _both(given: Given) -> Iterator[tuple[int, str]]:
         counts = {step.count for step in given.steps if step.direction in ("left", "right")}
         if len(counts) > 1:
             yield token.clause, f"{found[1]!r} is shown for one side"
+
+
+def _other_hands(given: Given) -> Iterator[tuple[int, str]]:
+    """ "Drinks with both hands", where the activity moves one, and "swings the club with the right hand"."""
+    for _, token in given.matches(_BOTH_HANDS):
+        of_hands = [part for step in given.of_clause(token.clause) for part in step.each if part.upper]
+        hands = [hand_of(part, part.upper) for part in of_hands]
+        if len(hands) == 1 and hands[0] in ("one", "left", "right"):
+            yield token.clause, "one hand is shown, not both"
+    for _, token in given.matches(_NAMED_HAND):
+        if any(step.upper in _WITH_BOTH for step in given.of_clause(token.clause)):
+            yield token.clause, "both hands are shown, not one"
