@@ -188,23 +188,17 @@ def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] |
 
 def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
     """The goal, with one corner before it where the straight path is blocked; None where that is not enough."""
-    if _is_free(trajectory.floor, trajectory.position_m, goal):
+    floor, start = trajectory.floor, trajectory.position_m
+    if bool(floor.are_free_ways(start[None], goal[None])[0]):
         return [goal]
-    places = trajectory.floor.walkable_m
+    places = floor.walkable_m
     if not len(places):
         return None
     some = places[trajectory.rng.integers(len(places), size=_NUM_CORNERS)]
-    order = np.argsort(np.hypot(*(some - trajectory.position_m).T) + np.hypot(*(some - goal).T))
-    for corner in some[order]:
-        if _is_free(trajectory.floor, trajectory.position_m, corner) and _is_free(trajectory.floor, corner, goal):
-            return [corner, goal]
-    return None
-
-
-def _is_free(floor: FloorMap, start: Float[Array, "2"], end: Float[Array, "2"]) -> bool:
-    gap = end - start
-    length = float(np.hypot(*gap))
-    return floor.free_length_m(start, float(np.arctan2(gap[1], gap[0])), length) >= length - 1e-6
+    some = some[np.argsort(np.hypot(*(some - start).T) + np.hypot(*(some - goal).T))]
+    some = some[floor.are_free_ways(np.broadcast_to(start, some.shape), some)]
+    some = some[floor.are_free_ways(some, np.broadcast_to(goal, some.shape))]
+    return [some[0], goal] if len(some) else None
 
 
 def _lay_legs(
