@@ -38,15 +38,16 @@ _LENGTH = (
     r"(?: (?:and )?(?P<in{0}>\d+(?= ?(?:in|inch|inches|tall)\b)"
     r"(?: ?(?:in|inch|inches))?)?)?)"
 )
-# "a 1.6 m tall man", "a man 1.6 m tall", "a woman of 1.6 m"
+# "a 1.6 m tall man", "a man 1.6 m tall", "a woman of 1.6 m", "he is 1.6 m tall and"
 _HEIGHTS = (
     re.compile(
         rf"\b{_LENGTH.format(0).replace(' ?', '[ -]?')}(?:[ -]tall)?,? (?=(?:(?:{_ADJECTIVES})[ ,]+)*{_NOUN}\b)"
     ),
     re.compile(
         rf"(?<=[a-z]),?(?: (?:who|that) (?:is|measures)| of)? {_LENGTH.format(1)} tall\b,?"
-        rf"| (?:of|(?:who|that) measures) {_LENGTH.format(2)}(?! tall| away| from| to)\b"
+        rf"| (?:of|(?:who|that) measures) {_LENGTH.format(2)}(?! tall| away| from| to)\b(?: height\b)?"
     ),
+    re.compile(rf"(?<=[a-z]) is {_LENGTH.format(3)} tall(?:,? and\b)"),
 )
 _WORDS = {"one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7}
 PACE = {"old": 0.75, "toddler": 0.6, "baby": 0.5}  # of walking, relative to the usual one
@@ -89,7 +90,7 @@ def described_person(text: str) -> DescribedPerson:
         pronoun = _PRONOUN.search(folded)
         sex = "" if pronoun is None else "female" if pronoun[1] in ("she", "her", "herself") else "male"
         if found is None:
-            return DescribedPerson(words=pronoun[1] if pronoun else "", sex=sex)
+            return DescribedPerson(words=f"{pronoun[1]}{after}" if pronoun else "", sex=sex, height_m=height_m)
     else:
         sex = "female" if found["noun"] in _WOMEN.split("|") else "male" if found["noun"] in _MEN.split("|") else ""
     adjectives = re.split(r"[ ,]+", found["words"])
@@ -136,9 +137,10 @@ def _without_height(text: str) -> tuple[str, float, tuple[str, str]]:
         for found in pattern.finditer(text):
             person = _person(text[: found.start()])
             is_first = person is None if number == 0 else person is not None and person.end() == found.start()
+            is_first |= number == 2 and text[: found.start()] in ("he", "she")
             if is_first:
                 kept = text[: found.start()] + text[found.end() :]
-                words = found[0].rstrip(", ")
+                words = found[0].removesuffix(" and").rstrip(", ")
                 return kept, _metres(found), ("", words) if number else (f"{words} ", "")
     return text, 0.0, ("", "")
 
