@@ -235,7 +235,7 @@ class FloorMap:
         longest = float(lengths.max(initial=0.0))
         steps = np.minimum(np.append(np.arange(0.0, longest, _STEP_M), longest), lengths[:, None])
         ways = np.stack([np.cos(directions), np.sin(directions)], axis=-1)
-        return self.can_stand(starts_m[:, None] + steps[..., None] * ways[:, None]).all(axis=1)
+        return np.all(self.can_stand(starts_m[:, None] + steps[..., None] * ways[:, None]), axis=1)
 
     @cached_property
     def _starts(self) -> dict[str, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
