@@ -63,4 +63,75 @@ def test_running_is_running_where_there_is_room():
 
 def test_who_is_held_is_not_who_holds():
     assert described_person("she rocks a baby").age == ""
-    assert described_person("a baby crawls").age == "child"
+    assert described_person("a baby crawls").age == "baby"
+
+
+@pytest.mark.parametrize(
+    ("text", "height_m"),
+    [
+        ("a 1.6 m tall man waves", 1.6),
+        ("a man, 1.6 m tall, waves", 1.6),
+        ("a man who is 1.85 metres tall waves", 1.85),
+        ("a 180 cm tall person waves", 1.8),
+        ("a woman of 1.5 m waves", 1.5),
+        ("a person of 1.6 m height waves", 1.6),
+        ("he is 1.6 m tall and waves", 1.6),
+        ("a man is 1.7 m tall and waves", 1.7),
+        ("a six foot tall man waves", 1.829),
+        ("a 5 foot 6 tall woman waves", 1.676),
+    ],
+)
+def test_a_stated_height_is_kept_and_is_no_distance(text: str, height_m: float):
+    made = act_out(text, seed=3)
+    assert made.person.height_m == pytest.approx(height_m, abs=0.001)
+    assert {record.status for record in made.clauses} == {"done"}
+    assert f"{height_m:.2f} m tall" in made.person.note
+    assert person_of(3, described_person(text), height_m=1.7).height_m == 1.7
+
+
+def test_what_stands_elsewhere_is_no_height_of_the_person():
+    for text in ("a person jumps over a 1 m tall wall", "a man walks 1.6 m to the left", "a person waves 2 m away"):
+        assert described_person(text).height_m == 0.0
+    with pytest.raises(InputError, match="a body height of 3 m"):
+        act_out("a 3 m tall man waves")
+    assert act_out("a 1.6 m tall man walks to the left").plan.steps[0].distance_m == 0.0
+
+
+@pytest.mark.parametrize(
+    ("words", "low_m", "high_m"),
+    [
+        ("a toddler", 0.79, 0.93),
+        ("a baby", 0.79, 0.84),
+        ("a small boy", 1.18, 1.27),
+        ("a teenage girl", 1.44, 1.78),
+        ("a giant", 1.88, 2.15),
+        ("a giant man", 2.02, 2.15),
+    ],
+)
+def test_ages_and_statures_show_and_are_said(words: str, low_m: float, high_m: float):
+    people = drawn(words, 60)
+    assert low_m <= min(one.height_m for one in people) < max(one.height_m for one in people) <= high_m
+    made = act_out(f"{words} waves", seed=3)
+    assert made.clauses[0].status == "done"
+    assert any("is taken as" in note for note in made.assumptions)
+
+
+def test_teenagers_are_smaller_than_adults_and_another_is_not_described():
+    adults, teenagers = (np.mean([one.height_m for one in drawn(words, 200)]) for words in ("a person", "a teenager"))
+    assert 0.02 < adults - teenagers < 0.1
+    assert described_person("a person takes a giant step").stature == 0
+    assert described_person("a man waves to a small boy").stature == 0
+
+
+@pytest.mark.parametrize("text", ["waves three times", "claps", "does three squats", "nods twice"])
+def test_the_pace_of_who_is_described_holds_on_the_spot(text: str):
+    child, man, old = (act_out(f"{who} {text}", seed=3).plan for who in ("a child", "a man", "an old man"))
+    assert child.duration_s < man.duration_s < old.duration_s or man.duration_s == 2.0
+    paces = [plan.steps[0].pace for plan in (child, man, old)]
+    assert paces[0] / paces[1] == pytest.approx(1.15)
+    assert paces[2] / paces[1] == pytest.approx(0.75)
+
+
+def test_children_walk_as_fast_as_adults():
+    child, man = (act_out(f"{who} walks to the left", seed=3).plan.steps[0].pace for who in ("a child", "a man"))
+    assert child == pytest.approx(man)

@@ -4,7 +4,10 @@ Adults: stature and girth after the 2012 anthropometric survey of US Army person
 The old are 4 cm shorter (Sorkin et al., Am. J. Epidemiol. 150, 1999: 3 cm of men and 5 cm of women are lost from 30 to
 70 years) and walk at three quarters of the pace (after Bohannon and Andrews, Physiotherapy 97, 2011: means from 1.43
 m/s, men of 40 to 49 years, to 0.94 m/s, women of 80 to 99). Children are those of about 7 to 11 years, after the CDC
-growth charts of 2000. One person in ten is left-handed (Papadatou-Pastou et al., Psychol. Bull. 2020: 10.6 %).
+growth charts of 2000, toddlers of 18 to 30 months, babies of 12 to 18, teenagers of 13 to 17 years; all have the
+proportions of adults. Children walk as fast as adults, with more steps. Their pace on the spot (1.15: shorter limbs
+swing faster, as the square root of the height) and that of toddlers and babies are chosen, not measured. One person in
+ten is left-handed (Papadatou-Pastou et al., Psychol. Bull. 2020: 10.6 %).
 """
 
 from dataclasses import dataclass, replace
@@ -19,11 +22,14 @@ from mmweaver.motion.language.plan import MotionPlan
 
 MOST_SUBJECTS = 10_000
 ADULT_M = {"male": (1.756, 0.069), "female": (1.629, 0.064)}  # mean, standard deviation
-CHILD_M = (1.33, 0.07)
-OLD_SHORTER_M, OLD_PACE = 0.04, 0.75
+YOUNG_M = {"baby": (0.81, 0.01), "toddler": (0.85, 0.03), "child": (1.33, 0.07)}
+TEENAGER_M = {"male": (1.68, 0.08), "female": (1.61, 0.065)}
+OLD_SHORTER_M = 0.04
 MOST_SDS = 2.5  # nobody is farther from the mean
 TALL_SDS = (1.0, 2.0)  # of "tall", and the other way of "short"
-GIRTH = {"male": 1.0, "female": 0.96, "child": 0.84}  # relative to the average man's, at equal height
+GIANT_SDS = (4.0, 5.0)  # of "giant", and the other way of "dwarf"
+# relative to the average man's, at equal height
+GIRTH = {"male": 1.0, "female": 0.96, "baby": 1.05, "toddler": 1.0, "child": 0.84, "teenager": 0.92}
 GIRTH_SPREAD = 0.07
 HEAVY, SLIM = (1.14, 1.3), (0.8, 0.9)
 PACE_SPREAD = 0.05
@@ -37,9 +43,10 @@ class Person:
     height_m: float
     subject: int = 0  # identifies skin and micro-motion
     sex: str = ""  # female | male | "": not drawn
-    age: str = "adult"  # child | adult | old
+    age: str = "adult"  # baby | toddler | child | teenager | adult | old
     girth: float = 1.0  # thickness of trunk and limbs relative to an average body of this height
     pace: float = 1.0  # tempo relative to the usual one
+    pace_on_the_spot: float = 1.0  # of what is done on the spot
     hand: str = ""  # left | right: the one that is used mostly
     described: str = ""  # the words of the sentence that say so
 
@@ -49,7 +56,9 @@ class Person:
         build = "slim" if self.girth < 0.91 else "heavy" if self.girth > 1.1 else "of average build"
         who = f"a {self.sex} {self.age}".replace(" old", " old person").replace("  ", " ")
         pace = "" if 0.9 < self.pace < 1.1 else f", at {self.pace:.2f} of the usual pace"
-        return f"{self.described!r} is taken as {who} {self.height_m:.2f} m tall, {build}{pace}"
+        of_both = abs(self.pace_on_the_spot - self.pace) < 1e-6
+        on_spot = "" if of_both else f", on the spot at {self.pace_on_the_spot:.2f} of the usual pace"
+        return f"{self.described!r} is taken as {who} {self.height_m:.2f} m tall, {build}{pace}{on_spot}"
 
 
 def subject_of(seed: int, index: int = 0) -> int:
@@ -75,28 +84,30 @@ def person_of(subject: int, described: DescribedPerson | None = None, height_m: 
     sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MOST_SDS, MOST_SDS)
     sex = said.sex or ("male" if draws[0] < 0.5 else "female")
     if said.stature:
-        sds = said.stature * float(np.interp(draws[2], (0, 1), TALL_SDS))
-    mean, spread = CHILD_M if said.age == "child" else ADULT_M[sex]
+        usual_sds = GIANT_SDS if abs(said.stature) > 1 else TALL_SDS
+        sds = float(np.sign(said.stature) * np.interp(draws[2], (0, 1), usual_sds))
+    mean, spread = YOUNG_M.get(said.age) or (TEENAGER_M if said.age == "teenager" else ADULT_M)[sex]
     if said.age == "old":
         mean -= OLD_SHORTER_M
     low, high = ALLOWED_M
     drawn_m = float(np.clip(mean + spread * sds, low + 0.02, high))
-    girth = GIRTH["child" if said.age == "child" else sex] * float(np.exp(GIRTH_SPREAD * girth_sds))
+    if height_m is None:
+        height_m = said.height_m or drawn_m
+    girth = GIRTH[said.age if said.age in GIRTH else sex] * float(np.exp(GIRTH_SPREAD * girth_sds))
     if said.build:
         girth = float(np.interp(draws[2], (0, 1), HEAVY if said.build > 0 else SLIM))
+    own_pace, usual_pace = float(np.exp(PACE_SPREAD * pace_sds)), (said.pace(moves=True), said.pace(moves=False))
     return Person(
-        height_m=drawn_m if height_m is None else height_m, subject=subject, sex=sex, age=said.age or "adult",
-        girth=round(girth, 4), pace=float(np.exp(PACE_SPREAD * pace_sds)) * usual_pace(said),
+        height_m=height_m, subject=subject, sex=sex, age=said.age or "adult", girth=round(girth, 4),
+        pace=own_pace * usual_pace[0], pace_on_the_spot=own_pace * usual_pace[1],
         hand="left" if draws[1] < LEFT_HANDED else "right", described=said.words if said.is_described else "",
     )  # fmt: skip
 
 
-def usual_pace(said: DescribedPerson) -> float:
-    """The tempo of people as described, relative to the usual one."""
-    return OLD_PACE if said.age == "old" else 1.0
-
-
 def with_habits(plan: MotionPlan, person: Person) -> MotionPlan:
     """The plan as this person carries it out: at their pace, mostly with their usual hand."""
-    steps = tuple(replace(step, pace=person.pace, usual_hand=person.hand) for step in plan.steps)
+    steps = tuple(
+        replace(step, pace=person.pace if step.moves else person.pace_on_the_spot, usual_hand=person.hand)
+        for step in plan.steps
+    )
     return replace(plan, steps=steps)

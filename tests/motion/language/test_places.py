@@ -28,6 +28,17 @@ TABLE = Landmark(kind="table", position_m=np.array([0.0, 2.0, -0.5]), approach_m
         ("a person claps on the right near the window", "near the window, on the right"),
         ("a man on the left waves to a woman on the right", "on the left"),
         ("a tall woman in the background claps", "in the background"),
+        ("a person waves in the corner", "in the corner"),
+        ("a person in the corner waves", "in the corner"),
+        ("a person walks to the left corner", "in the corner, on the left"),
+        ("a person claps between the table and the wall", "between the table and the wall"),
+        ("a person sits between the two chairs", "between two chairs"),
+        ("a person stands in the doorway", "in the doorway"),
+        ("a person claps next to the wall", "near the wall"),
+        ("a person stands with the back against the wall", "against the wall"),
+        ("a person walks into the middle of the room", "in the middle"),
+        ("a person crawls under the table", "under the table"),
+        ("a person waves outside", "outside"),
     ],
 )
 def test_places_are_read(text: str, words: str):
@@ -41,6 +52,24 @@ def test_somebody_else_is_faced_where_they_are():
     plan = parse("a man on the left waves to a woman on the right")
     assert plan.steps[0].facing == "right"
     assert plan.clauses[0].status == "done"
+
+
+def test_places_that_are_obeyed_are_done_or_say_what_is_not_shown():
+    for text in ("a person waves in the far right corner", "a person claps between the table and the wall",
+                 "a person walks to the wall", "a person goes to the middle of the room"):  # fmt: skip
+        plan = parse(text)
+        assert len(plan.clauses) == 1
+        assert plan.clauses[0].status == "done"
+    for text, how in (("stands against the wall", "is not touched"), ("waves in the doorway", "just before the door")):
+        record = parse(f"a person {text}").clauses[0]
+        assert record.status == "approximated"
+        assert how in record.how
+
+
+def test_what_only_hands_or_eyes_do_there_leaves_the_person_where_he_is():
+    for text in ("puts a bag under the table", "kicks a ball outside", "picks up a ball from under the table",
+                 "points to the corner", "walks around the corner"):  # fmt: skip
+        assert "place_" not in mark_places(f"a person {text}")
 
 
 def test_sides_of_the_body_are_no_places():

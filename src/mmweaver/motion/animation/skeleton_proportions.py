@@ -8,7 +8,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 
-ALLOWED_M = (1.2, 2.2)
+ALLOWED_M = (0.78, 2.2)
+RECORDED_M = (1.2, 2.2)  # of recorded people, whose size tells the unit of a file
 
 # Fractions of the height, in the body's own frame: x forward, y to its left, z up; arms hang, feet point forward.
 # Segment lengths after Drillis and Contini (Winter, Biomechanics and Motor Control, 2009), spine split as SMPL does.

@@ -57,7 +57,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
     places = [word.text for word in words if word.text.startswith(PLACE)]
     clause.words = words = [word for word in words if word.text not in places]
     _refuse(clause)
-    verbs = _verbs(words)
+    verbs = _verbs(words, is_placed=any(place_of(token).is_goal for token in places))
     if not verbs:
         parsed.about = replace(
             modifiers(words, clause.text, parsed.notes),
@@ -113,14 +113,19 @@ def _limb_goes(words: list[Word], at: int) -> bool:
 def _put_at(parsed: ParsedClause, place: Place) -> None:
     """Gives a place to the clause's last step: where it is done, or where or how far a walk goes."""
     last = parsed.steps[-1]
-    if last.moves and place.relation == "range":
+    how = {"against": "the wall is not touched", "in": "is shown just before the door" * (place.landmark == "door")}
+    if how.get(place.relation):
+        parsed.approximations.append(how[place.relation])
+    if place.relation in ("under", "outside"):
+        last = replace(last, place=place)
+    elif last.moves and place.relation == "range":
         last = replace(last, distance_m=place.distance_m)
     elif last.moves and last.lower not in ("walk", "jog"):
         parsed.approximations.append(f"{place.words!r} is left open for {last.name}")
     else:
         both = place if last.place is None else last.place.together_with(place)
-        last = replace(last, place=both, target="" if place.landmark else last.target)
-        if place.landmark and last.direction in ("towards", "forwards", "seat"):
+        last = replace(last, place=both, target="" if place.is_goal else last.target)
+        if place.is_goal and last.direction in ("towards", "forwards", "seat"):
             last = replace(last, direction="")
     parsed.steps[-1] = last
 
@@ -188,8 +193,11 @@ _IT = ("them", "it", "him", "her")
 _OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head", "legs", "leg", "knees", "body"})
 
 
-def _verbs(words: list[Word]) -> list[int]:
-    """Places of the words that name an activity; light verbs and nouns that only repeat a verb are left out."""
+def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
+    """Places of the words that name an activity; light verbs and nouns that only repeat a verb are left out.
+
+    `is_placed`: the clause names a place to go to.
+    """
     found: list[int] = []
     texts = {word.text for word in words}
     for i, word in enumerate(words):
@@ -210,7 +218,7 @@ def _verbs(words: list[Word]) -> list[int]:
             continue  # "moving the right hamd"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
-        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
+        goes_somewhere = is_placed or bool(texts & {*DIRECTIONS, *RADAR, *SEATS, *TARGETS})
         if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
     if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":

@@ -7,6 +7,7 @@ from dataclasses import replace
 from mmweaver.motion.language.accounts import as_given, unaccounted
 from mmweaver.motion.language.confirmed import unconfirmed
 from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
+from mmweaver.motion.language.described_person import without_stature
 from mmweaver.motion.language.mentions import not_in_any_step, risings_that_no_clause_names, without_no_limbs
 from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.parsed_clause import ParsedClause
@@ -23,7 +24,7 @@ def note_what_is_not_shown(
     given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
 ) -> None:
     """Records what of each clause its steps do not show; sizes are looked for in the sentence: phrases lose them."""
-
+    given_text = without_stature(given_text.lower())
     steps = [part for step in steps for part in step.each]
 
     def say(number: int, how: str) -> None:

@@ -1,4 +1,4 @@
-"""Where something is done: 'near the window', 'behind the sofa', 'two metres away', 'on the left'."""
+"""Where something is done: 'near the window', 'behind the sofa', 'in the corner', 'two metres away', 'on the left'."""
 
 import re
 from dataclasses import dataclass, replace
@@ -24,17 +24,51 @@ _END = (
     r"(?= *(?:$|[,.;!]|and\b|then\b|while\b|with\b|for\b|facing\b|near\b|next\b|beside\b|behind\b|in\b|on\b|at\b|waving\b"
     rf"|{MARK}))"
 )
+_ARTICLE = "(?:the|an?|one|his|her|their)"
+_AT_ONE = rf"{_ARTICLE} {_ADJECTIVES}"
+_ANY_OBJECT = f"{_OBJECT}|wall"
+_MIDDLE_OF = r"(?:very |exact )?(?:middle|centre|center)(?: of the (?:room|picture|photo|image|scene|floor))?"
+_GOES = (
+    r"(?:walk|go|run|jogg?|mov|head|com|return|stroll|stepp?|stagger|limp|sneak|hobbl|wander|march|saunter|trudg|strid)"
+    r"(?:e?s|e|ing|ed)?"
+)
+# What is done to something under furniture, or with the eyes, and what is thrown outside, leaves the person where he is.
+_DONE_THERE = (
+    r"(?:put|plac|tak|pick|look|peer|peek|reach|push|pull|roll|kick|throw|toss|slid|sweep|vacuum|clean|mopp?|wip|search"
+    r"|dropp?|stor|lay|chas|point|star|gaz|glanc|listen|grab|get|fetch)(?:e?s|e|t?ing|ed)?"
+)
+_UNDER = "table|desk|bed|chair|couch|sofa|settee|counter"
 _PATTERNS = (
+    (re.compile(rf"\bbetween {_AT_ONE}(?P<object>{_ANY_OBJECT}) and (?:{_AT_ONE})?(?P<other>{_ANY_OBJECT})\b"), "between"),
+    (re.compile(rf"\bbetween (?:(?:the|two|both|his|her|their) )+{_ADJECTIVES}(?P<object>{_OBJECT})(?:e?s)\b"), "between"),
+    (re.compile(r"\b(?:in|into) the (?:open )?(?P<object>doorway|door|entrance)\b(?! frame)"), "in"),
+    (re.compile(rf"\b(?:near|next to|beside|besides|close to|by|at|in front of) {_AT_ONE}(?P<object>wall)\b"), "near"),
+    (re.compile(r"(?:(?<=stands )|(?<=standing )|(?<=stand )|(?<=sits )|(?<=sitting )|(?<=waits )|(?<=squats )|(?<=crouches )"
+                rf"|(?<= back )|(?<=kneels ))against {_AT_ONE}(?P<object>wall)\b"), "against"),
     *((re.compile(rf"\b(?:{words}) (?:the |a |an |his |her |their )?{_ADJECTIVES}(?P<object>{_OBJECT})\b"), relation)
       for relation, words in _RELATIONS.items()),
     (re.compile(rf"\b(?:at |about |some |around )*(?:a distance of )?{_NUMBER}(?P<half> and a half)? ?(?:m|met(?:er|re)s?)"
                 rf" (?:away|off|distant)?(?: ?(?:from|in front of|before|ahead of) (?:the )?(?:{'|'.join(RADAR)}))?{_END}"), "range"),
     (re.compile(rf"\b(?:on|at|in) the (?P<object>left|right)(?: hand(?= (?:side|half|corner|part)))?(?: side| half| corner| part)?"
                 rf"(?: of the (?:room|picture|photo|image|scene))?{_END}"), "side"),
-    (re.compile(r"\bin the (?:middle|centre|center)(?: of the (?:room|picture|photo|image|scene|floor))?" + _END), "middle"),
+    (re.compile(rf"\bin the {_MIDDLE_OF}{_END}"), "middle"),
     (re.compile(r"\b(?:in the background|(?:in|at) the back(?: of the (?:room|picture|scene))|at the (?:far|other) end(?: of the room)?)" + _END), "far"),
     (re.compile(rf"\b(?:in the foreground|(?:close to|near|next to|right in front of) (?:the )?(?:{'|'.join(RADAR)}))" + _END), "close"),
 )  # fmt: skip
+# Places of which a part of the sentence before them decides whether the person is there; the first group is kept.
+_CORNER = r"(?:the|a|one) (?:far |near |back )?(?:(?P<side>left|right)(?: hand)? )?(?:far |back )?corner\b(?: of the room\b)?(?! of)"
+_FURTHER = r"(?: (?!and\b|then\b|while\b|with\b)[a-z_]+){0,4}?"
+_THERE = (
+    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:in)?to(?:wards?)? {_CORNER}"), "in_corner"),
+    (re.compile(rf"\b(?P<goes>)(?:in|inside|at) {_CORNER}"), "in_corner"),
+    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:to|into|towards?) the {_MIDDLE_OF}{_END}"), "middle_go"),
+    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:up )?to {_AT_ONE}wall\b"), "near_wall"),
+)
+_AWAY_FROM_IT = (
+    (re.compile(rf"(?<!from )\b(?:under|underneath|beneath|below) {_AT_ONE}(?P<object>{_UNDER})\b"), "under"),
+    (re.compile(r"\b(?P<object>)(?:outside|outdoors)\b(?! of| the)"), "outside"),
+)
+_ACTS_THERE = re.compile(rf"\b{_DONE_THERE}\b(?:(?!\band\b|\bthen\b|\bwhile\b|[,.;]).)*$")
 _ROOM = re.compile(rf"\b(?:in|inside|across|through|around) (?:the|a|his|her|their|an) ({_ROOMS})\b")
 
 
@@ -66,8 +100,12 @@ AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
 class Place:
     """A place of a sentence, for the planner to find in the room."""
 
-    relation: str  # near | behind | front | leftof | rightof | range | left | right | middle | far | close
-    landmark: str = ""  # the Landmark.kind that it is relative to
+    # near | behind | front | leftof | rightof | in | against | between | under | outside | range | left | right | middle
+    # | far | close
+    relation: str
+    landmark: str = ""  # the Landmark.kind that it is relative to; wall, corner: of the room
+    other: str = ""  # of "between", the other one
+    is_end: bool = False  # of "middle": the walk goes there
     distance_m: float = 0.0  # of "range"
     also: "Place | None" = None  # where it is at the same time: 'two metres away on the left'
 
@@ -82,20 +120,33 @@ class Place:
         return {self.relation} & {"left", "right"} | (set() if self.also is None else self.also.sides)
 
     @property
+    def is_goal(self) -> bool:
+        """Whether a walk to it goes there, instead of beginning there."""
+        return bool(self.landmark) or self.is_end or self.relation == "outside"
+
+    @property
     def words(self) -> str:
         """As it is shown in messages."""
         if self.also is not None:
             return f"{replace(self, also=None).words}, {self.also.words}"
         if self.relation == "range":
             return f"{self.distance_m:g} m from the radar"
+        if self.relation == "between":
+            same = self.landmark == self.other
+            return f"between two {self.landmark}s" if same else f"between the {self.landmark} and the {self.other}"
+        if self.landmark == "door" and self.relation == "in":
+            return "in the doorway"
         relation = {"front": "in front of", "leftof": "left of", "rightof": "right of"}.get(
             self.relation, self.relation
         )
         if self.landmark:
             return f"{relation} the {self.landmark}"
-        return {"middle": "in the middle", "far": "in the background", "close": "close to the radar"}.get(
-            self.relation, f"on the {self.relation}"
-        )
+        return {
+            "middle": "in the middle",
+            "far": "in the background",
+            "close": "close to the radar",
+            "outside": "outside",
+        }.get(self.relation, f"on the {self.relation}")
 
 
 def mark_places(text: str) -> str:
@@ -104,9 +155,26 @@ def mark_places(text: str) -> str:
     text = _WHOSE.sub(lambda found: f"{found[1]} {MARK}{found['side'] or found.lastgroup} ", text)
     for pattern in (_AIMED, _FACED):
         text = pattern.sub(lambda found: f"{found[1]} {AIM}{TARGETS[found[2]]} ", text)
+    for pattern, token in _THERE:
+        text = pattern.sub(lambda found, token=token: f"{found['goes']} {_with_side(found, token)} ", text)
+    for pattern, relation in _AWAY_FROM_IT:
+        text = pattern.sub(lambda found, relation=relation: _unless_acted_there(found, relation), text)
     for pattern, relation in _PATTERNS:
         text = pattern.sub(lambda found, relation=relation: f" {_token(found, relation)} ", text)
     return text
+
+
+def _with_side(found: re.Match[str], token: str) -> str:
+    side = found.groupdict().get("side")
+    return f"{MARK}{token} {MARK}{side}" if side else MARK + token
+
+
+def _unless_acted_there(found: re.Match[str], relation: str) -> str:
+    """The token of a place where nobody can be shown; the words where only something is done there."""
+    if _ACTS_THERE.search(found.string[: found.start()]):
+        return found[0]
+    kind = TARGETS.get(found["object"], "")
+    return f" {MARK}{relation}_{kind} " if kind else f" {MARK}{relation} "
 
 
 def _token(found: re.Match[str], relation: str) -> str:
@@ -117,6 +185,9 @@ def _token(found: re.Match[str], relation: str) -> str:
         return f"{MARK}range_{round(100 * (value + 0.5 * bool(groups['half'])))}"
     if relation == "side":
         return MARK + groups["object"]
+    if relation == "between":
+        other = groups.get("other") or groups["object"]
+        return f"{MARK}between_{TARGETS[groups['object']]}_{TARGETS[other]}"
     return f"{MARK}{relation}_{TARGETS[groups['object']]}" if "object" in groups else MARK + relation
 
 
@@ -127,7 +198,12 @@ def place_of(token: str) -> Place:
     ('behind the couch', 2.5)
     """
     relation, _, rest = token.removeprefix(MARK).partition("_")
-    return Place(relation, distance_m=int(rest) / 100) if relation == "range" else Place(relation, rest)
+    if relation == "range":
+        return Place(relation, distance_m=int(rest) / 100)
+    if relation == "middle":
+        return Place(relation, is_end=rest == "go")
+    landmark, _, other = rest.partition("_")
+    return Place(relation, landmark, other=other)
 
 
 def room_of(text: str) -> str:

@@ -127,3 +127,12 @@ class MotionPlan:
     clauses: tuple[ClauseRecord, ...] = ()
     person: DescribedPerson = field(default_factory=DescribedPerson)
     duration_s: float = 0.0  # 0 until the plan is scheduled
+
+    def __post_init__(self) -> None:
+        """Steps get the pace of people as described, by which the plan is scheduled; `people` adds the person's own."""
+        if self.person.age:
+            paced = (
+                replace(step, pace=self.person.pace(moves=step.moves)) if step.pace == 1.0 else step
+                for step in self.steps
+            )
+            object.__setattr__(self, "steps", tuple(paced))

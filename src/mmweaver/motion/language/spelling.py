@@ -53,7 +53,10 @@ OTHER_VERBS = words_in(
     handle hang wave wag speak stare store stir star strain train trim tap tape taste trade
     """
 )
-_MORE = "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
+_MORE = (
+    "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
+    " teenage teenaged gigantic adolescent infant dwarf"
+)
 _WORD = re.compile(r"[a-z]+")
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mmweaver.motion.language.described_person import without_stature
 from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
 from mmweaver.motion.language.places import mark_places
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
@@ -36,7 +37,7 @@ class Word:
 def words_of(text: str) -> list[Word]:
     """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
-    folded = mark_places(folded)
+    folded = mark_places(without_stature(folded))
     for pattern, replacement in _phrases():
         folded = " ".join(re.sub(pattern, replacement, folded).split())
     return [word_of(token) for token in _TOKEN.findall(folded)]

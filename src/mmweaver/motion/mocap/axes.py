@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
+from mmweaver.motion.animation.skeleton_proportions import RECORDED_M
 from mmweaver.motion.mocap.clip import body_height
 
 Array = np.ndarray
@@ -24,7 +24,7 @@ def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, sourc
     if given is not None:
         return metres_of(given), ""
     size = body_height(joints)
-    low, high = ALLOWED_M
+    low, high = RECORDED_M
     fits = [name for name, metres in UNITS_M.items() if low <= size * metres <= high]
     if len(fits) == 1:
         metres = UNITS_M[fits[0]]

@@ -283,7 +283,7 @@ class CandidateSampler:
         route_m = next((step.route_m for step in self.plan.steps if step.route_m), ())
         if route_m:
             return np.array(route_m[0], float)
-        if first.place is not None and not (first.moves and first.place.landmark):
+        if first.place is not None and not (first.moves and first.place.is_goal):
             cells = self.floor.place_cells[first.place]
             return cells[int(self.rng.integers(len(cells)))]
         if first.moves and goes_to_target(first) and self.rng.random() < 0.8:

@@ -228,6 +228,15 @@ class FloorMap:
         reached = steps[np.maximum(first - 1, 0)]
         return np.where(is_free.all(axis=1), wanted_m, reached)
 
+    def are_free_ways(self, starts_m: Float[Array, "way 2"], ends_m: Float[Array, "way 2"]) -> Bool[Array, " way"]:
+        """Whether a body can go straight from each start to its end."""
+        gaps = ends_m - starts_m
+        lengths, directions = np.hypot(*gaps.T), np.arctan2(gaps[:, 1], gaps[:, 0])
+        longest = float(lengths.max(initial=0.0))
+        steps = np.minimum(np.append(np.arange(0.0, longest, _STEP_M), longest), lengths[:, None])
+        ways = np.stack([np.cos(directions), np.sin(directions)], axis=-1)
+        return np.all(self.can_stand(starts_m[:, None] + steps[..., None] * ways[:, None]), axis=1)
+
     @cached_property
     def _starts(self) -> dict[str, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
         return {}

@@ -1,12 +1,13 @@
 """The free floor of a place that the sentence names, and the steps that lead there."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.errors import InputError, NoRoomError
-from mmweaver.core.records import Scene
+from mmweaver.core.records import Plane, Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
@@ -16,6 +17,11 @@ Array = np.ndarray
 NEAR_M = 1.2  # from the middle of what one stands near
 BESIDE_M, REACH_M = 0.25, 1.8  # from the middle of what one stands behind, in front or at a side of: least and most
 WIDTH_M = 0.9  # half the width of that strip
+BETWEEN_M, BETWEEN_SHARE = 0.5, (0.15, 0.85)  # from the line that joins two things, and along it
+AT_WALL_M, NEAR_WALL_M = 0.6, 0.9  # from a wall: who stands against it, and near it
+DOORWAY_M = 0.8  # from the middle of the door
+SQUARE_RAD = 0.5  # walls that make a corner are within so much of a right angle
+MEETING_M = 0.6  # beyond its end, where the photo shows no more of it, a wall may go on to a corner
 RANGE_TOLERANCE_M = 0.2
 SHARE = 1 / 3  # of the free floor that is left, right, far ...
 
@@ -53,10 +59,16 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
     Raises NoRoomError where the room has none, InputError where it lacks what the place is relative to.
     """
     cells = floor.walkable_m
+    _check_possible(place)
     inside, part = np.ones(len(cells), bool), place
     while part is not None and len(cells):
-        if part.landmark:
-            inside &= np.any([_at(part, middle, cells) for middle in _middles(part, floor.scene)], axis=0)
+        if part.relation == "between":
+            inside &= _between(part, floor.scene, cells)
+        elif part.landmark == "wall":
+            inside &= _at_wall(part, floor.scene, cells)
+        elif part.landmark:
+            middles = _middles(part.landmark, part, floor.scene)
+            inside &= np.any([_at(part, middle, cells) for middle in middles], axis=0)
         else:
             inside &= _within(part, cells)
         part = part.also
@@ -69,18 +81,120 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
     return cells
 
 
-def _middles(place: Place, scene: Scene) -> list[Float[Array, "2"]]:
+def _check_possible(place: Place) -> None:
+    """Raises InputError for places where nobody can be shown in any room."""
+    part: Place | None = place
+    while part is not None:
+        if part.relation == "under":
+            raise InputError(
+                f"nobody is shown {part.words}, where the radar would see little of them; say 'near the"
+                f" {part.landmark}' or another place, or leave it out"
+            )
+        if part.relation == "outside":
+            raise InputError(
+                "nobody is shown outside, which the photo does not show; say a place of the room, 'to the door', or"
+                " leave it out"
+            )
+        part = part.also
+
+
+def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
     """Middles of what the place is relative to. Raises InputError where the photo shows none."""
-    if place.landmark in SEATS:
+    if kind == "corner":
+        found = _corners(scene)
+    elif kind in SEATS:
         found = [np.asarray(seat.position_m[:2], float) for seat in scene.seats]
     else:
-        kinds = kinds_of(place.landmark)
+        kinds = kinds_of(kind)
         found = [np.asarray(mark.position_m[:2], float) for mark in scene.landmarks if mark.kind in kinds]
     if not found:
+        way_on = "" if kind == "corner" else f" give its position with --landmark {kinds_of(kind)[0]}=X,Y, or"
+        what = "corner of two walls" if kind == "corner" else kind
         raise InputError(
-            f"{place.words!r}: no {place.landmark} was found in the photo; {what_was_found(scene)}; give its position"
-            f" with --landmark {kinds_of(place.landmark)[0]}=X,Y, or say another place"
+            f"{place.words!r}: no {what} was found in the photo; {what_was_found(scene)};{way_on} say another place"
         )
+    return found
+
+
+def _walls(place: Place, scene: Scene) -> list[Float[Array, "2 2"]]:
+    """The ends (x, y) of the walls of a room. Raises InputError where the photo shows none."""
+    given = [np.tile(np.asarray(mark.position_m[:2], float), (2, 1)) for mark in scene.landmarks if mark.kind == "wall"]
+    walls = given or [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
+    if not walls:
+        raise InputError(
+            f"{place.words!r}: no wall was found in the photo; {what_was_found(scene)}; give its position with"
+            " --landmark wall=X,Y, or say another place"
+        )
+    return walls
+
+
+def _ends(wall: Plane) -> Float[Array, "2 2"]:
+    """Where a wall begins and ends on the floor, (x, y) in metres."""
+    axes = ((wall.axis_u, wall.half_size_m[0]), (wall.axis_v, wall.half_size_m[1]))
+    axis, half_m = min(axes, key=lambda one: abs(float(one[0][2])))
+    along = np.asarray(axis, float)[:2] * half_m
+    middle = np.asarray(wall.centre_m, float)[:2]
+    return np.stack([middle - along, middle + along])
+
+
+def _corners(scene: Scene) -> list[Float[Array, "2"]]:
+    """Where two walls of the photo meet, or would a little beyond what it shows of them."""
+    walls = [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
+    found = []
+    for (a, b), (c, d) in combinations(walls, 2):
+        one, other = b - a, d - c
+        lengths = float(np.hypot(*one)), float(np.hypot(*other))
+        cross = float(one[0] * other[1] - one[1] * other[0])
+        if min(lengths) == 0 or abs(cross) < np.cos(SQUARE_RAD) * lengths[0] * lengths[1]:
+            continue
+        gap = c - a
+        along = (gap[0] * other[1] - gap[1] * other[0]) / cross, (gap[0] * one[1] - gap[1] * one[0]) / cross
+        beyond = [max(-share, share - 1.0) * length for share, length in zip(along, lengths, strict=True)]
+        if max(beyond) <= MEETING_M:
+            found.append(a + along[0] * one)
+    return found
+
+
+def _nearest_on(wall: Float[Array, "2 2"], points: Float[Array, "point 2"]) -> Float[Array, "point 2"]:
+    """The points of a wall that are nearest to others."""
+    along = wall[1] - wall[0]
+    share = np.clip((points - wall[0]) @ along / max(float(along @ along), 1e-9), 0.0, 1.0)
+    return wall[0] + share[:, None] * along
+
+
+def _at_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+    """Which cells are at, or near, one of the walls."""
+    away = np.min([np.hypot(*(cells - _nearest_on(wall, cells)).T) for wall in _walls(place, scene)], axis=0)
+    return away <= (AT_WALL_M if place.relation == "against" else NEAR_WALL_M)
+
+
+def _between(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+    """Which cells lie between two things: near the line from the one to the other, at neither of its ends."""
+    inside = np.zeros(len(cells), bool)
+    for one, other in _pairs(place, scene):
+        gap = other - one
+        length = max(float(np.hypot(*gap)), 1e-6)
+        along = (cells - one) @ gap / length**2
+        across = np.abs((cells - one) @ np.array([gap[1], -gap[0]])) / length
+        inside |= (along > BETWEEN_SHARE[0]) & (along < BETWEEN_SHARE[1]) & (across < BETWEEN_M)
+    return inside
+
+
+def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Array, "2"]]]:
+    """The two ends of each line on which a place between two things may lie. Raises InputError without two things."""
+    kinds = sorted((place.landmark, place.other), key=lambda kind: kind == "wall")
+    if kinds[0] == "wall":
+        raise InputError(f"{place.words!r} is anywhere in the room; say one thing that stands there, or leave it out")
+    ones = _middles(kinds[0], place, scene)
+    if kinds[1] == "wall":
+        return [(one, _nearest_on(wall, one[None])[0]) for one in ones for wall in _walls(place, scene)]
+    others = _middles(kinds[1], place, scene)
+    if kinds[0] == kinds[1]:
+        found = list(combinations(ones, 2))
+    else:
+        found = [(one, other) for one in ones for other in others if float(np.hypot(*(one - other))) > 1e-6]
+    if not found:
+        raise InputError(f"{place.words!r}: only one of them was found in the photo; {what_was_found(scene)}")
     return found
 
 
@@ -89,9 +203,11 @@ def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) 
     away = middle / max(float(np.hypot(*middle)), 1e-6)
     aside = np.array([away[1], -away[0]])  # to the right in the picture
     along, across = (cells - middle) @ away, (cells - middle) @ aside
-    if place.relation == "near":
+    if place.relation == "near" or place.landmark == "corner":
         near = np.hypot(*(cells - middle).T)
         return near <= max(NEAR_M, float(near.min(initial=np.inf)) + 0.3) * (near.min(initial=np.inf) < 1.6)
+    if place.relation == "in" and place.landmark == "door":
+        return np.hypot(*(cells - middle).T) <= DOORWAY_M
     if place.relation in ("behind", "front"):
         depth = along if place.relation == "behind" else -along
         return (depth > BESIDE_M) & (depth < REACH_M) & (np.abs(across) < WIDTH_M)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene
 from mmweaver.motion.language.lexicon import TARGETS
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
@@ -40,7 +40,7 @@ def kinds_of(target: str) -> tuple[str, ...]:
 
 def goes_to_target(step: Step) -> bool:
     """Whether a step goes to a landmark other than a seat."""
-    return (bool(step.target) and step.target not in SEATS) or (step.place is not None and bool(step.place.landmark))
+    return (bool(step.target) and step.target not in SEATS) or (step.place is not None and step.place.is_goal)
 
 
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
@@ -75,8 +75,8 @@ def without_targets(plan: MotionPlan) -> MotionPlan:
     lost = [step for step in plan.steps if _goes_to_landmark(step)]
     aimed = [step for step in plan.steps if step.facing in TARGETS]
     notes = tuple(
-        f"for {step.clause or step.target!r}: without a photo there is no"
-        f" {step.target if step.place is None else step.place.landmark}; the walk leads where there is room"
+        f"for {step.clause or step.target!r}: without a photo there is no {_lost(step)};"
+        f" {'the walk leads' if step.moves else 'it is shown'} where there is room"
         for step in lost
     ) + tuple(f"for {step.clause!r}: without a photo there is no {step.facing} to face" for step in aimed)
     steps = tuple(
@@ -84,11 +84,22 @@ def without_targets(plan: MotionPlan) -> MotionPlan:
                 facing="" if step in aimed else step.facing)
         for step in plan.steps
     )  # fmt: skip
-    return replace(plan, steps=steps, notes=plan.notes + notes)
+    clauses = list(plan.clauses)
+    for step, note in zip((*lost, *aimed), notes, strict=True):
+        for number in step.clauses:
+            if number < len(clauses):
+                clauses[number] = clauses[number].lowered_to(APPROXIMATED, note)
+    return replace(plan, steps=steps, notes=plan.notes + notes, clauses=tuple(clauses))
+
+
+def _lost(step: Step) -> str:
+    """What a step goes to or is at, of which there is none without a photo."""
+    return step.target if step.place is None else step.place.landmark or step.place.relation
 
 
 def _goes_to_landmark(step: Step) -> bool:
-    return (step.place is not None and bool(step.place.landmark)) or (step.moves and goes_to_target(step))
+    is_placed = step.place is not None and bool(step.place.landmark or step.place.relation == "outside")
+    return is_placed or (step.moves and goes_to_target(step))
 
 
 def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
@@ -177,23 +188,17 @@ def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] |
 
 def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
     """The goal, with one corner before it where the straight path is blocked; None where that is not enough."""
-    if _is_free(trajectory.floor, trajectory.position_m, goal):
+    floor, start = trajectory.floor, trajectory.position_m
+    if bool(floor.are_free_ways(start[None], goal[None])[0]):
         return [goal]
-    places = trajectory.floor.walkable_m
+    places = floor.walkable_m
     if not len(places):
         return None
     some = places[trajectory.rng.integers(len(places), size=_NUM_CORNERS)]
-    order = np.argsort(np.hypot(*(some - trajectory.position_m).T) + np.hypot(*(some - goal).T))
-    for corner in some[order]:
-        if _is_free(trajectory.floor, trajectory.position_m, corner) and _is_free(trajectory.floor, corner, goal):
-            return [corner, goal]
-    return None
-
-
-def _is_free(floor: FloorMap, start: Float[Array, "2"], end: Float[Array, "2"]) -> bool:
-    gap = end - start
-    length = float(np.hypot(*gap))
-    return floor.free_length_m(start, float(np.arctan2(gap[1], gap[0])), length) >= length - 1e-6
+    some = some[np.argsort(np.hypot(*(some - start).T) + np.hypot(*(some - goal).T))]
+    some = some[floor.are_free_ways(np.broadcast_to(start, some.shape), some)]
+    some = some[floor.are_free_ways(some, np.broadcast_to(goal, some.shape))]
+    return [some[0], goal] if len(some) else None
 
 
 def _lay_legs(

@@ -93,5 +93,7 @@ def _has_to_do_with(step: Step, text: str) -> bool:
         return True
     names = " ".join(BY_KEY[key].name for key in keys if key).split()
     stem = text.removesuffix("s")[:4]
+    if step.place is not None and text.removesuffix("s") in re.findall("[a-z]+", step.place.words):
+        return True  # the corner, the two chairs
     placed = step.target or step.place is not None or step.seat or step.uses_seat or step.facing
     return any(name.startswith(stem) for name in names) or (text in _PLACES and bool(placed or keys & _HANDLING))
