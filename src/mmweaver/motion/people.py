@@ -4,9 +4,10 @@ Adults: stature and girth after the 2012 anthropometric survey of US Army person
 The old are 4 cm shorter (Sorkin et al., Am. J. Epidemiol. 150, 1999: 3 cm of men and 5 cm of women are lost from 30 to
 70 years) and walk at three quarters of the pace (after Bohannon and Andrews, Physiotherapy 97, 2011: means from 1.43
 m/s, men of 40 to 49 years, to 0.94 m/s, women of 80 to 99). Children are those of about 7 to 11 years, after the CDC
-growth charts of 2000, toddlers of 18 to 30 months, babies of 12 to 18, teenagers of 13 to 17 years; all have the
-proportions of adults. Children walk as fast as adults, with more steps. Their pace on the spot (1.15: shorter limbs
-swing faster, as the square root of the height) and that of toddlers and babies are chosen, not measured. One person in
+growth charts of 2000. Heights of teenagers, toddlers and babies, and girths of all the young, are round figures of
+ours, babies as tall as bodies may be short here; all have the proportions of adults. Children walk as fast as adults,
+with more steps. Their pace on the spot (1.15: shorter limbs swing faster, as the square root of the height) and that
+of toddlers and babies are chosen, not measured. One person in
 ten is left-handed (Papadatou-Pastou et al., Psychol. Bull. 2020: 10.6 %).
 """
 

@@ -203,7 +203,8 @@ def _other_hands(given: Given) -> Iterator[tuple[int, str]]:
     for _, token in given.matches(_BOTH_HANDS):
         of_hands = [part for step in given.of_clause(token.clause) for part in step.each if part.upper]
         hands = [hand_of(part, part.upper) for part in of_hands]
-        if len(hands) == 1 and hands[0] in ("one", "left", "right"):
+        in_turn = {step.hand for step in given.steps if of_hands and step.upper == of_hands[0].upper}
+        if len(hands) == 1 and hands[0] in ("one", "left", "right") and not in_turn >= {"left", "right"}:
             yield token.clause, "one hand is shown, not both"
     for _, token in given.matches(_NAMED_HAND):
         if any(step.upper in _WITH_BOTH for step in given.of_clause(token.clause)):
