@@ -7,13 +7,14 @@ import numpy as np
 from hypothesis import strategies as st
 
 from mmweaver.compression.cell_choice import active_cells
-from mmweaver.compression.mmw_codec import compress_cube, values_of_bytes
+from mmweaver.compression.mmw_codec import MOST_PEAK, compress_cube, values_of_bytes
 from mmweaver.compression.rate_search import FLOAT32_DB, error_db
 from mmweaver.core.records import CubeGrid, RadarCube
 from tests.fields.echoes import SMALL
 from tests.fuzz.test_properties import deep, hold
 
 SMALL_FILE, WORDS = 300, 12  # bytes below which a few words of the stream matter; what may then be left over
+FEW_BYTES = 24  # by which the search for the best file of a quality may miss it
 Shape = tuple[int, ...]
 
 
@@ -72,6 +73,7 @@ class Drawn:
         )  # fmt: skip
         grid = CubeGrid.of(config, self.frames)
         values = CONTENTS[self.content](np.random.default_rng(self.seed), grid.shape) * self.scale
+        values *= min(1.0, 0.9 * MOST_PEAK / max(np.abs(values).max(), 1e-300))  # more is refused
         return RadarCube(values=values.astype(np.complex64), grid=grid, config=config, scale=float("nan"))
 
 
@@ -106,6 +108,6 @@ def test_quality_is_met_and_exceeded_only_by_files_that_cannot_be_smaller(depth:
         assert found_db >= quality_db
         if found_db > quality_db + 0.3 and len(data) > SMALL_FILE:
             worse = compress_cube(cube, quality_db=max(1.0, quality_db - 0.5), keep_noise=keep_noise)
-            assert found_db > -FLOAT32_DB or len(worse) <= len(data)
+            assert found_db > -FLOAT32_DB or len(worse) <= len(data) + FEW_BYTES
 
     hold(depth, 12, example, drawn=CUBES, quality_db=st.floats(1, 90), keep_noise=st.booleans())

@@ -16,6 +16,7 @@ from mmweaver.motion.language.sentence import parse
 from rooms import WINDOW_M, room, sofa_room
 
 PERIOD_S = 0.1
+SEAM_S = 0.5  # in which one motion goes over into the next
 SENTENCES = (
     "a person walks towards the radar", "waves with the left hand", "", "sits down", "drinks", "stands up", "claps",
     "walks to the left", "kneels down", "walks away from the radar",
@@ -53,11 +54,12 @@ def test_no_seam_shows_in_places_or_velocities(seed: int):
         assert np.diff(pose.time_s).max() < 1.6 / 120
 
 
-def steps_of(part: MotionPart) -> tuple[float, float]:
+def steps_of(part: MotionPart, until_s: float | None = None) -> tuple[float, float]:
     """Of a part with its seam: the largest change of a joint's velocity from one sample at 120 Hz to the next (m/s),
     and by how much a joint is farthest from where its own motion leads: the line between its neighbours (m)."""
-    pose = part.pose
-    own = slice(int(np.searchsorted(pose.time_s, part.first_frame * PERIOD_S - 0.05)), None)
+    pose, first_s = part.pose, part.first_frame * PERIOD_S
+    bounds = [first_s - 0.05] if until_s is None else [first_s - 0.05, first_s + until_s]
+    own = slice(*map(int, np.searchsorted(pose.time_s, bounds)), None if until_s is None else 1)
     time_s, joints_m = pose.time_s[own], pose.joints_m[own]
     velocity = np.diff(joints_m, axis=0) / np.diff(time_s)[:, None, None]
     off_m = joints_m[1:-1] - (joints_m[:-2] + joints_m[2:]) / 2
@@ -68,8 +70,8 @@ def assert_smooth(seeds: Iterable[int]) -> None:
     """Any three activities in a row, half of them interrupted within a second of waiting: nothing jumps.
 
     A joint may move several centimetres a sample, as a fist at 4 m/s does; what may not be is a jump from where it
-    moves. 150 m/s2 (1.25 m/s a sample) is less than the raw peaks of recorded clips (CMU, 89 clips at 120 Hz: 309 m/s2
-    and more in 95 of 100), landings and punches included.
+    moves. At a seam no joint changes its velocity by 1.25 m/s a sample (150 m/s2); throws and punches in themselves may
+    by 2 m/s (240 m/s2), less than recorded clips at 120 Hz (CMU, 89 clips: 309 m/s2 and more in 95 of 100).
     """
     for seed in seeds:
         rng, motion = np.random.default_rng(seed), continuous(room() if seed % 2 else sofa_room(), seed=seed)
@@ -84,9 +86,10 @@ def assert_smooth(seeds: Iterable[int]) -> None:
                 parts.append(motion.go_on())
                 motion.cut(parts[-1].first_frame + int(rng.integers(1, 9)))
             for one in parts:
-                step_mps, off_m = steps_of(one)
-                assert step_mps < 1.25, (seed, EXAMPLES[number])
-                assert off_m < 0.006, (seed, EXAMPLES[number])
+                for until_s, most_mps, most_m in ((SEAM_S, 1.25, 0.006), (None, 2.0, 0.009)):
+                    step_mps, off_m = steps_of(one, until_s)
+                    assert step_mps < most_mps, (seed, EXAMPLES[number], until_s)
+                    assert off_m < most_m, (seed, EXAMPLES[number], until_s)
             before += len(parts)
         assert before
 

@@ -24,7 +24,12 @@ def test_every_study_asks_a_question():
 @pytest.mark.slow  # its functions are found by their names in the test above; here all are imported
 @pytest.mark.parametrize("name", study_files())
 def test_a_study_follows_the_protocol(name: str):
-    assert isinstance(load_study(name), Study)
+    try:
+        assert isinstance(load_study(name), Study)
+    except InputError as error:
+        if "needs the package" not in str(error):
+            raise
+        pytest.skip(str(error))
 
 
 def test_no_module_is_run_by_itself():

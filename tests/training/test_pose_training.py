@@ -10,18 +10,24 @@ from mmweaver.metrics.pose_errors import joint_errors_cm
 from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.train_pose import posed_frames
-from mmweaver.training.pose_examples import PoseWindows
+from mmweaver.training.pose_examples import Disturbance, PoseWindows
 from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
 from tests.training.moving_arm import moving_arm
 
 RECIPE = PoseRecipe(
-    steps=150, batch_size=4, warm_up_steps=5, learning_rate=2e-3, validate_every=50, validation_batches=1
+    steps=300, batch_size=8, warm_up_steps=5, learning_rate=1e-3, validate_every=100, validation_batches=1
 )
 
 
 @pytest.mark.slow  # tests/cli/test_pose.py trains two steps
 def test_it_learns_what_moves(tmp_path: Path):
-    trained = PoseWindows(recordings=[posed_frames(moving_arm(k)) for k in range(6)], window_frames=6, disturbance=None)
+    # what the estimator averages over: mirrors and time backwards
+    turned = Disturbance(
+        mirrored=0.5, backwards=0.5, shift_m=(0.0, 0.0, 0.0), tilt_deg=0.0, point_m=0.0, strength_db=0.0, thinned=0.0,
+        with_gaps=0.0,
+    )  # fmt: skip
+    arms = [posed_frames(moving_arm(k)) for k in range(6)]
+    trained = PoseWindows(recordings=arms, window_frames=6, disturbance=turned)
     other = posed_frames(moving_arm(9))
     unseen = PoseWindows(recordings=[other], window_frames=6, disturbance=None)
     trainer = train_pose(trained, unseen, tmp_path, RECIPE)
