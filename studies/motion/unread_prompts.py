@@ -30,11 +30,12 @@ widen them; twelve that an earlier draw holds, so or swapped, are left out, and 
 of the last), after `captions_seventh` had been used to mend the checks and records and those from 128,000 and 232,000
 had been read to develop the records; 64 that an earlier draw holds, so or swapped, understood or not, are left out,
 and the same was not checked. `captions_ninth`: 300 more: 175 from 486,000 to 498,000, 788,000 to 795,000, 889,000 to
-895,000, 946,000 to 954,000, 970,000 to 975,000 and 1,044,000 to 1,045,000, and 125 that public code and papers quote
-(found by five strings that were set before: jumping jacks, a raised left arm, walking in a circle, waving, walking
-forward and then; names of actions, prompts and answers of models among them), after `captions_eighth` and 320 sentences
-in its style by the developers had been used to mend what is shown and recorded; those in an earlier draw, understood or
-not, or in these sentences, so or swapped, are left out. Each prompt counts once, without those read to widen the
+895,000, 946,000 to 954,000, 970,000 to 975,000 and 1,044,000 to 1,045,000, and 125 that public code and papers quote,
+in the order in which "a person is doing jumping jacks" and "person raises his left arm" find them (three further
+strings set before were not needed; names of actions, prompts and answers of models among them; two without a person
+left out), after `captions_eighth` and 320 sentences in its style by the developers had been used to mend what is shown
+and recorded; those in an earlier draw, understood or not, or in 200 of these sentences, so or swapped, and repeats but
+for case and full stop are left out. Each prompt counts once, without those read to widen the
 grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
 3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb, a88c8ccf,
