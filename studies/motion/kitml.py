@@ -35,7 +35,7 @@ from studies.result_rows import complete_rows
 from studies.study import Reads
 
 DRAWN = 300  # sentences of the checking half that were never judged before
-Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | said | wrong), why
+Judgements = dict[str, dict[str, Any]]  # name -> reading, verdict (right | said | wrong), why, done_though
 DEVELOPED = 1100  # sentences of the checking half that were read to widen the grammar
 SEED, SEVENTH_SEED, SIXTH_SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2031, 2030, 2029, 2028, 4242
 BEFORE_DEVELOPMENT = ("first", "second", "third", "fourth", "fifth")

@@ -1,4 +1,4 @@
-"""How many sentences of others are understood, and how many correctly? Fifteen draws, each read once.
+"""How many sentences of others are understood, and how many correctly? Sixteen draws, each read once.
 
 python -m studies run unread_prompts --prompts prompts.txt --draw second
 
@@ -29,13 +29,21 @@ widen them; twelve that an earlier draw holds, so or swapped, are left out, and 
 `captions_eighth`: 300 more (from 310,000, 470,000, 772,000, 1,000,000 and 1,028,000; at most the first 75 of each, 65
 of the last), after `captions_seventh` had been used to mend the checks and records and those from 128,000 and 232,000
 had been read to develop the records; 64 that an earlier draw holds, so or swapped, understood or not, are left out,
-and the same was not checked. Each prompt counts once, without those read to widen the grammar or in an earlier draw,
-or the same with left and right swapped.
+and the same was not checked. `captions_ninth`: 300 more: 175 from 486,000 to 498,000, 788,000 to 795,000, 889,000 to
+895,000, 946,000 to 954,000, 970,000 to 975,000 and 1,044,000 to 1,045,000, and 125 that public code and papers quote,
+in the order in which "a person is doing jumping jacks" and "person raises his left arm" find them (three further
+strings set before were not needed; names of actions, prompts and answers of models among them; two without a person
+left out), after `captions_eighth` and 320 sentences in its style by the developers had been used to mend what is shown
+and recorded; those in an earlier draw, understood or not, or in 200 of these sentences, so or swapped, and repeats but
+for case and full stop are left out. Each prompt counts once, without those read to widen the
+grammar or in an earlier draw, or the same with left and right swapped.
 Each draw was read once, after a commit had frozen the grammar (5a2a9e6 before the first, 0a28cc6 before the next two,
-3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb, a88c8ccf
-and 6808b0c9 before the last ten);
-what was understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). The verdicts are in
-results/unread_prompts/judgements*.json, named by the prompts' sha256.
+3755052 before the next two, abf0c79, 5af3c0b, eb79a6a, ea0c8b6, 8f1f1f1, b85c0dc, 41538419, 1f1fe4eb, a88c8ccf,
+6808b0c9 and 2a8417a6 before the last eleven);
+what was understood was evaluated by hand, once, as the sentences of KIT-ML are (`kitml`). Since `captions_ninth` a
+difference is said only where the words of its own clause's record, done or not, or a note let a reader see it, and
+`done_though` marks whatever stands in a clause that is done and is shown otherwise or not at all, said or not. The
+verdicts are in results/unread_prompts/judgements*.json, named by the prompts' sha256.
 """
 
 import argparse
@@ -60,6 +68,7 @@ DRAWS = {  # -> ending of the names of their files
     "strangers_third": "_strangers_third", "strangers_fourth": "_strangers_fourth",
     "captions_fifth": "_captions_fifth", "captions_sixth": "_captions_sixth",
     "captions_seventh": "_captions_seventh", "captions_eighth": "_captions_eighth",
+    "captions_ninth": "_captions_ninth",
 }  # fmt: skip
 
 
@@ -80,6 +89,7 @@ def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
         in_part += any(clause.status == NOT_DONE for clause in plan.clauses)
     judged = [judgements[name] for name in map(name_of, prompts) if name in judgements]
     verdicts = Counter(one["verdict"] for one in judged)
+    done_though = sum(bool(one.get("done_though")) for one in judged)
     return {
         "n": len(prompts),
         "seeds": [],
@@ -89,6 +99,11 @@ def result_row(prompts: list[str], judgements: Judgements) -> dict[str, Any]:
             "understood": share(len(judged), len(prompts), "prompts that gave a plan, of all; frozen grammar"),
             "wrong": share(verdicts["wrong"], len(judged), "wrong by hand without a word, of those understood"),
             "said": share(verdicts["said"], len(judged), "shown otherwise or in part, which the clause's record says"),
+            **(
+                {"recorded_done": share(done_though, len(judged), "recorded as done though shown otherwise, by hand")}
+                if done_though
+                else {}
+            ),
             "in_part_today": share(
                 in_part, len(today), "with a clause that is not done, of those that give a plan today"
             ),

@@ -273,7 +273,8 @@ KITML = MetricTable(
     ),
 )  # fmt: skip
 UNDERSTOOD_SINCE = (("understood_today", "understood by the grammar that the faults found have changed"),)
-CAPTIONS = ("fifth", "sixth", "seventh", "eighth")  # the newest draws of people's captions
+RECORDED_DONE = (("recorded_done", "recorded as done though shown otherwise, said or not, of the same"),)
+CAPTIONS = ("fifth", "sixth", "seventh", "eighth", "ninth")  # the newest draws of people's captions
 UNREAD = {
     f"unread_{'captions' if 'captions' in name else 'prompts'}{name.removeprefix('_captions')}": MetricTable(
         sources=(f"unread_prompts/reading{name}",),
@@ -282,6 +283,7 @@ UNREAD = {
             ("understood", "understood, of all (frozen grammar)"),
             ("wrong", f"wrong by hand without a word, of the understood{' (mended since)' if is_mended else ''}"),
             ("said", "shown otherwise or in part, which is said, of the same"),
+            *(RECORDED_DONE if name == "_captions_ninth" else ()),
             *(UNDERSTOOD_SINCE if is_mended else ()),
             *((("in_part_today", "of these, a clause is not done, which is said"),) if in_part else ()),
         ),
@@ -299,6 +301,7 @@ CAPTIONS_DRAWS = RowTable(
         ("draw", "{label}"), ("captions", "{n}"), ("understood", "{metrics.understood:percent_interval.1}"),
         ("of these wrong without a word", "{metrics.wrong:percent_interval.1}"),
         ("of these shown otherwise, which is said", "{metrics.said:percent_interval.1}"),
+        ("of these recorded as done though shown otherwise", "{metrics.recorded_done:percent_interval.1}"),
     ),
     labels={f"prompts of other projects, captions_{draw} draw": draw for draw in CAPTIONS},
     key="dataset.name",
