@@ -65,4 +65,4 @@ def test_what_is_no_model_or_no_motion_is_refused():
     with pytest.raises(InputError, match="not finite"):
         clip_of(lambda task: bad, MotionTask(sentence="x"))
     with pytest.raises(InputError, match="22, 3"):
-        clip_of(lambda task: None, MotionTask(sentence="x"))  # pyright: ignore
+        clip_of(lambda task: None, MotionTask(sentence="x"))

@@ -146,7 +146,7 @@ def _end_with_parent() -> None:
 def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
     """One task per room; a lost task is retried elsewhere, for rooms are written atomically."""
     try:
-        import ray  # pyright: ignore[reportMissingImports]
+        import ray
     except ImportError as error:
         raise InputError("--ray-address needs Ray; install it with: pip install 'mmweaver[cluster]'") from error
     if address == "local":

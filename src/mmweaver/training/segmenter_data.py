@@ -112,7 +112,7 @@ def _recoloured(colours: np.ndarray, groups: np.ndarray, rng: np.random.Generato
         from scipy import ndimage
 
         for group in np.unique(groups):
-            labels, count = ndimage.label(groups == group)  # pyright: ignore[reportGeneralTypeIssues]
+            labels, count = ndimage.label(groups == group)
             tints = rng.normal(0, rng.choice([0.1, 0.35]), (min(count, _MOST_PIECES) + 1, 3))
             tints[0] = 0.0
             colours = colours + np.moveaxis(tints[np.minimum(labels, len(tints) - 1)], -1, 0)

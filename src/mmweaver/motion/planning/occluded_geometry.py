@@ -131,7 +131,7 @@ def _long_patches(cells: np.ndarray) -> np.ndarray:
     """The occupied cells (y, x) of connected patches whose diagonal is at least `_LONG_M`."""
     from scipy import ndimage
 
-    labels, _ = ndimage.label(cells, structure=np.ones((3, 3)))  # pyright: ignore[reportGeneralTypeIssues]
+    labels, _ = ndimage.label(cells, structure=np.ones((3, 3)))
     long = [0]
     for number, place in enumerate(ndimage.find_objects(labels), start=1):
         if place is not None and np.hypot(*(part.stop - part.start for part in place)) * _CELL_M >= _LONG_M:

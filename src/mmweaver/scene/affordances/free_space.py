@@ -55,7 +55,7 @@ def _is_rim(height_map: HeightMap, squares: GridMask) -> GridMask:
     from scipy import ndimage
 
     hollow = squares & (height_map.bottom_m > _MIN_CLEARANCE_M)
-    labels, _ = ndimage.label(hollow, structure=np.ones((3, 3)))  # pyright: ignore[reportGeneralTypeIssues]
+    labels, _ = ndimage.label(hollow, structure=np.ones((3, 3)))
     is_rim = np.zeros_like(hollow)
     for label, region in enumerate(bounding_slices(labels), start=1):
         if max(part.stop - part.start for part in region) * CELL_M >= _MIN_LENGTH_M:
