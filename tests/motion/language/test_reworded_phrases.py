@@ -55,6 +55,11 @@ from mmweaver.motion.language.verbs import words_in
         ("turns head left then right", "turns the head left then right"),
         ("does two kicks, one with each leg", "does one kick with the left leg, then one kick with the right leg"),
         ("leans quickly backward", "leans backward quickly"),
+        ("throws a couple balls", "throws two balls"),
+        ("picks up a couple of boxes", "picks up two boxes"),
+        ("waves to a couple of friends", "waves to a couple of friends"),
+        ("a couple dances", "a couple dances"),
+        ("waits while a couple dances", "waits while a couple dances"),
         ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
     ],
 )

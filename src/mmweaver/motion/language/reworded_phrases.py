@@ -87,7 +87,8 @@ _TURNS = ["", "", "two", "three", "four", "five"]
 # Replaced in this order.
 _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:over and over(?: again)?|again and again|time and (?:time )?again)\b", "repeatedly"),
-    (r"\ba couple (?=times\b|(?:more |small |quick |slow )?steps\b)", "two "),
+    (r"\ba couple (?:of )?(?=(?:(?:more|small|big|quick|slow|short|long|little) )?(?:seconds|minutes|times|steps|strides|paces|punches|kicks|hops|jumps|squats)\b)", "two "),
+    (r"\b(?<!\bas )(?<!\bis )(?<!\bthis )([a-z]{2,}(?:s|ing|ed)(?: (?:up|down|out|off|over))?) a couple (?:of )?(?!people\b|(?:[a-z]+ )?(?:friends|persons|dancers|guys|girls|boys|kids|others)\b)(?=(?:[a-z-]+ )?[a-z-]+s\b)", r"\1 two "),
     (r"\bwhile (?:still )?standing (?:still|upright|in place)(?=$|[,.])", "while standing"),
     (r"\b(crawl(?:s|ing)?(?: [a-z]+){0,2}?) on (?:(?:his|her|their|the|both) )*(?:hands and (?:knees|feet)|knees and hands|all fours)\b", r"\1"),
     (r"\bstill,? like an? (?:statue|stone|rock|log|tree)\b", "still"),
