@@ -31,7 +31,7 @@ from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.postures import carried_over, with_postures
+from mmweaver.motion.language.postures import ENTERING, carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
@@ -139,6 +139,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     sequence = with_shared_speeds(
         at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
     )
+    sequence[0] = _going_down_first(sequence[0], every_clause, records)
     on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
@@ -170,6 +171,16 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
+
+
+def _going_down_first(first: Step, every_clause: list[ParsedClause], records: dict[int, ClauseRecord]) -> Step:
+    """The first step; who sits, kneels or lies "then", or after what is not shown, goes down to it."""
+    clause = next((one for one in every_clause if one.steps and one.number in first.clauses), None)
+    if clause is None or clause.form == "ing" or first.lower not in ENTERING:
+        return first
+    not_shown = any(records[number].status == NOT_DONE for number in records if number < clause.number)
+    follows = clause.link == "then" or (clause.link in ("and", "comma") and not_shown)
+    return replace(first, lower=ENTERING[first.lower]) if clause.number and follows else first
 
 
 def _is_understood_alone(part: str) -> bool:
