@@ -60,6 +60,8 @@ from mmweaver.motion.language.verbs import words_in
         ("waves to a couple of friends", "waves to a couple of friends"),
         ("a couple dances", "a couple dances"),
         ("waits while a couple dances", "waits while a couple dances"),
+        ("uses their right hand and arm to throw", "uses their right arm to throw"),
+        ("throws right arm and hand in the air", "throws right arm and hand in the air"),
         ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
     ],
 )

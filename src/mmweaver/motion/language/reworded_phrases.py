@@ -141,6 +141,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # limbs
     (r"\b((?:turn|tilt|rotat|roll|mov|twist)(?:s|es|ing)) (?=(?:head|upper body|torso|neck)\b)", r"\1 the "),
     (r"\b(?:two|2) (kick|punch)e?s,? one with each (leg|foot|hand|arm|fist)\b", r"one \1 with the left \2, then one \1 with the right \2"),
+    (r"\b(left|right) (?:hand and (?=arm\b)|arm and (?=hand\b))(?=[a-z]+(?: to\b| *(?:$|[.,;])))", r"\1 "),
     (r"\b(arms|hands) straight out (?=to )", r"\1 out "),
     (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )+(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
     (rf"\b(hold(?:s|ing)?|stretch(?:es|ing)?|extend(?:s|ing)?) ((?:{_OWN}|both )*(?:arms|hands)) out (?:straight )?(?:in front(?: of (?:him|her|them|it)(?:self|selves)?)?|ahead|forwards?)\b", r"\1 \2 forward"),
