@@ -62,6 +62,7 @@ from mmweaver.motion.language.verbs import words_in
         ("waits while a couple dances", "waits while a couple dances"),
         ("uses their right hand and arm to throw", "uses their right arm to throw"),
         ("throws right arm and hand in the air", "throws right arm and hand in the air"),
+        ("hops from point to point", "hops from place to place"),
         ("lifts each knee twice", "lifts the left knee twice, then lifts the right knee twice"),
     ],
 )

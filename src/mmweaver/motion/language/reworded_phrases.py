@@ -122,6 +122,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bin (?:the shape of an? s|an? s[- ]?(?:shaped? )?(?:pattern|motion|line|path|way|curve|shape))\b", "in a 90 degree curve to the left, then walks in a 90 degree curve to the right"),
     (r"\b(?:appears?|seems?) to be (?=[a-z]+ing\b)", "is "),
     (r"\bside ways\b", "sideways"),
+    (r"\bfrom (one )?(?:point|spot) to (point|spot|another|the next)\b(?: (?:point|spot))?", lambda found: "from one place to another" if found[1] else "from place to place"),
     (r"\b(reach(?:es|ing)?)((?: (?!up\b)[a-z]+){0,4}?) (?:into|towards?|for) the (?:air|sky|ceiling)\b", r"\1 up\2"),
     # one step, one way, the other way
     (r"\bsteps (one|two|three|four|five|six|\d) (back(?:wards?)?|forwards?|to the (?:left|right|side))\b(?! steps?)", r"takes \1 step \2"),
