@@ -158,3 +158,9 @@ def test_who_hops_from_point_to_point_points_at_nothing():
     plan = parse("a person carefully hops from point to point")
     assert [(step.lower, step.upper) for step in plan.steps] == [("hop", "")]
     assert "from where to where is not shown" in plan.clauses[0].how
+
+
+def test_who_goes_around_something_to_sit_does_not_walk_to_and_fro():
+    plan = parse("a person went around to sit on the chair")
+    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", ""), ("sit_down", "")]
+    assert "around what the person walks is not shown" in plan.clauses[0].how
