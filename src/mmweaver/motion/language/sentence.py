@@ -35,7 +35,7 @@ from mmweaver.motion.language.postures import ENTERING, carried_over, with_postu
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
-from mmweaver.motion.language.shared_steps import says_again
+from mmweaver.motion.language.shared_steps import says_again, says_how_far_it_pivots
 from mmweaver.motion.language.sideways import sideways_throughout
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
@@ -273,6 +273,9 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             speed=last.speed or more.speed, direction=last.direction or more.direction,
             clauses=(*last.clauses, parsed.number),
         )  # fmt: skip
+    elif parsed.steps and says_how_far_it_pivots(found, parsed):
+        last, turn = found[-1].steps[-1], parsed.steps[0]
+        found[-1].steps[-1] = replace(turn, foot=last.foot, clauses=(*last.clauses, parsed.number))
     elif parsed.steps and not _is_its_end(found, parsed):
         found.append(parsed)
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
