@@ -60,7 +60,8 @@ def test_what_goes_to_both_sides_shows_both() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["lifts right foot to left knee then lifts left foot to right knee", "lifts their left leg up to their right knee"]
+    "text",
+    ["lifts right foot to left knee then lifts left foot to right knee", "lifts their left leg up to their right knee"],
 )
 def test_the_leg_that_another_one_is_lifted_to_is_not_the_one_that_is_lifted(text: str) -> None:
     plan = parse(f"a person {text}")
