@@ -65,3 +65,9 @@ def test_who_paces_comes_back(text: str):
         way_m = float(np.linalg.norm(np.diff(pelvis_m, axis=0), axis=-1).sum())
         farthest_m = float(np.linalg.norm(pelvis_m - pelvis_m[0], axis=-1).max())
         assert way_m > 1.5 * farthest_m
+
+
+def test_jumping_up_and_down_leaves_the_floor_twice_in_the_least_time():
+    pelvis_height_m = act_out("a person is jumping up and down", duration_s=2.45, seed=6).pose.joints_m[:, 0, 2]
+    is_up = pelvis_height_m > pelvis_height_m[0] + 0.08
+    assert np.count_nonzero(np.diff(is_up.astype(int)) == 1) >= 2
