@@ -20,6 +20,7 @@ from mmweaver.motion.language.left_out import (
     LEAVING_OUT,
     MISSING,
     ROUGH,
+    follows_another,
     may_be_missed,
     parse_with_less,
     says_more_of,
@@ -111,10 +112,15 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
         first = replace(first, count=repeated.times, clauses=(*first.clauses, number))
         steps = [first]
     else:
-        again = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-        steps = carried_over(with_postures([*plan.steps, *again]))
-    clauses = with_what_is_shown((*plan.clauses, ClauseRecord(repeated.words)), steps)
-    return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
+        more = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
+        steps = carried_over(with_postures([*plan.steps, *more]))
+    again = ClauseRecord(repeated.words)
+    if any(clause.status == NOT_DONE for clause in plan.clauses):
+        again = again.lowered_to(APPROXIMATED, "what is not shown once is not shown again")
+    clauses = with_what_is_shown((*plan.clauses, again), steps)
+    said = {before.sentence: now.sentence for before, now in zip(plan.clauses, clauses, strict=False)}
+    notes = [said.get(note, note) for note in plan.notes] + [again.sentence] * (again.status != DONE)
+    return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses, notes=tuple(notes))
 
 
 def _parsed(text: str, given_text: str, leaving: int = EXACT) -> MotionPlan:
@@ -139,7 +145,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     sequence = with_shared_speeds(
         at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
     )
-    sequence[0] = _going_down_first(sequence[0], every_clause, records)
+    if sequence[0].lower in ENTERING and follows_another(sequence[0], every_clause, records):  # sits down then
+        sequence[0] = replace(sequence[0], lower=ENTERING[sequence[0].lower])
     on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
@@ -171,16 +178,6 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
     )  # fmt: skip
-
-
-def _going_down_first(first: Step, every_clause: list[ParsedClause], records: dict[int, ClauseRecord]) -> Step:
-    """The first step; who sits, kneels or lies "then", or after what is not shown, goes down to it."""
-    clause = next((one for one in every_clause if one.steps and one.number in first.clauses), None)
-    if clause is None or clause.form == "ing" or first.lower not in ENTERING:
-        return first
-    not_shown = any(records[number].status == NOT_DONE for number in records if number < clause.number)
-    follows = clause.link == "then" or (clause.link in ("and", "comma") and not_shown)
-    return replace(first, lower=ENTERING[first.lower]) if clause.number and follows else first
 
 
 def _is_understood_alone(part: str) -> bool:
