@@ -65,3 +65,18 @@ def test_who_paces_comes_back(text: str):
         way_m = float(np.linalg.norm(np.diff(pelvis_m, axis=0), axis=-1).sum())
         farthest_m = float(np.linalg.norm(pelvis_m - pelvis_m[0], axis=-1).max())
         assert way_m > 1.5 * farthest_m
+
+
+def test_jumping_up_and_down_leaves_the_floor_twice_in_the_least_time():
+    pelvis_height_m = act_out("a person is jumping up and down", duration_s=2.45, seed=6).pose.joints_m[:, 0, 2]
+    is_up = pelvis_height_m > pelvis_height_m[0] + 0.08
+    assert np.count_nonzero(np.diff(is_up.astype(int)) == 1) >= 2
+
+
+def test_crawling_to_and_fro_leads_there_and_back():
+    made = act_out("a person steps back, then crawls back and forth, then stands", seed=1)
+    crawl = next(step for step in made.plan.steps if step.lower == "crawl")
+    begin, end = (int(at_s / made.plan.duration_s * len(made.pose.joints_m)) for at_s in (crawl.start_s, crawl.end_s))
+    way_m = np.linalg.norm(made.pose.joints_m[begin:end, 0, :2] - made.pose.joints_m[begin, 0, :2], axis=1)
+    assert way_m.max() > 0.5
+    assert way_m[-1] < 0.5 * way_m.max()

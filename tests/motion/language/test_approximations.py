@@ -152,3 +152,15 @@ def test_what_is_begun_and_given_up_is_said_to_be_done_wholly():
     assert [clause.status for clause in plan.clauses] == ["approximated", "done"]
     assert "only begun" in plan.clauses[0].how
     assert parse("starts to sit down").clauses[0].status == "done"
+
+
+def test_who_hops_from_point_to_point_points_at_nothing():
+    plan = parse("a person carefully hops from point to point")
+    assert [(step.lower, step.upper) for step in plan.steps] == [("hop", "")]
+    assert "from where to where is not shown" in plan.clauses[0].how
+
+
+def test_who_goes_around_something_to_sit_does_not_walk_to_and_fro():
+    plan = parse("a person went around to sit on the chair")
+    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", ""), ("sit_down", "")]
+    assert "around what the person walks is not shown" in plan.clauses[0].how

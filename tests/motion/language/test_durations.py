@@ -18,6 +18,7 @@ from mmweaver.motion.language.timing import plan_motion
         ("1 min 30 s", 90.0),
         ("a second and a half", 1.5),
         ("10.5 secs", 10.5),
+        ("a couple seconds", 2.0),
         ("forty seconds", 40.0),
     ],
 )

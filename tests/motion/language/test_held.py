@@ -173,3 +173,18 @@ def test_arms_that_were_up_during_a_walk_come_down_after_it() -> None:
 )
 def test_an_arm_that_is_kept_up_during_a_walk_is_kept_up(text: str, upper: str) -> None:
     assert [step.upper for step in parse(text).steps] == [upper]
+
+
+@pytest.mark.parametrize(
+    ("text", "uppers"),
+    [
+        ("punches the air, then lowers his arms down", ["punch", ""]),
+        ("raises both arms and then lowers his arms down", ["raise_hold", "lower_arm"]),
+        ("raises his arms, walks slowly, stops, and then lowers his arms", ["raise_hold"] * 3 + [""]),
+        ("raises his arms, walks, stops, lowers his arms and walks back", ["raise_hold"] * 3 + [""]),
+        ("crosses the arms, waits, then lowers his arms", ["cross_arms", ""]),
+        ("lowers the right arm straight down", ["lower_arm"]),
+    ],
+)
+def test_arms_are_lowered_from_where_they_are(text: str, uppers: list[str]) -> None:
+    assert [step.upper for step in parse(f"a person {text}", in_part=True).steps] == uppers

@@ -51,3 +51,10 @@ def test_sitting_down_and_standing_up_is_counted_as_the_exercise_it_is():
     steps = parse("sit to stand, five reps, arms folded across the chest").steps
     assert len(steps) == 10
     assert {step.upper for step in steps if step.lower == "stand_up"} == {"cross_arms"}
+
+
+def test_notes_of_what_is_repeated_say_what_the_records_say():
+    plan = parse("a person sways back and forth, photosynthesises, and then does this again", in_part=True)
+    assert plan.steps[0].count == 2
+    assert {note for note in plan.notes if "is shown as" in note} <= {clause.sentence for clause in plan.clauses}
+    assert plan.clauses[-1].status == "approximated"

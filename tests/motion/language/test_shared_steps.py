@@ -109,3 +109,16 @@ def test_an_arm_out_and_the_other_ahead() -> None:
         ("left", ""),
         ("right", "forwards"),
     }
+
+
+@pytest.mark.parametrize(
+    ("text", "turns"),
+    [
+        ("pivots on his left foot and does a half turn", 1),
+        ("pivots on his left foot, then turns to the left", 2),
+        ("pivots on his left foot and turns around again", 2),
+        ("turns around and turns to the left", 2),
+    ],
+)
+def test_how_far_a_pivot_turns_is_no_second_turn(text: str, turns: int) -> None:
+    assert [step.lower for step in parse(f"a person {text}").steps] == ["turn"] * turns

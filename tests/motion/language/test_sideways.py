@@ -17,3 +17,15 @@ def test_steps_without_a_verb_go_on_sideways(text: str) -> None:
 def test_a_walk_after_sidesteps_is_a_walk() -> None:
     there, back = parse("a person sidesteps left, then walks four steps right").steps
     assert (there.lower, back.lower) == ("sidestep", "walk")
+
+
+@pytest.mark.parametrize(
+    ("text", "ways"),
+    [
+        ("takes side steps to the left, then to the right, then back to the starting position", ["left", "right"]),
+        ("sidesteps to the left, then back to the starting position", ["left", "right"]),
+        ("sidesteps to the left, then to the right, then back to the left", ["left", "right", "left"]),
+    ],
+)
+def test_who_has_come_back_is_at_the_starting_position(text: str, ways: list[str]) -> None:
+    assert [step.direction for step in parse(f"a person {text}").steps] == ways

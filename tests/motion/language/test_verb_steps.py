@@ -47,3 +47,18 @@ def test_what_is_left_open_has_no_number(text: str) -> None:
 def test_steps_to_a_side_are_sidesteps_however_many(text: str, lower: str, count: int) -> None:
     (step,) = parse(f"a person {text}").steps
     assert (step.lower, step.count) == (lower, count)
+
+
+@pytest.mark.parametrize(
+    ("text", "style", "count"),
+    [
+        ("jumps up and down", "several", 0),
+        ("is jumping up and down for 5 seconds", "several", 0),
+        ("jumps up and down three times", "", 3),
+        ("jumps up", "", 0),
+    ],
+)
+def test_jumping_up_and_down_is_jumping_more_than_once(text: str, style: str, count: int) -> None:
+    plan = parse(f"a person {text}")
+    assert [(step.style, step.count) for step in plan.steps] == [(style, count)]
+    assert plan.clauses[0].status == "done"

@@ -12,7 +12,7 @@ _FRACTIONS = {"half": 0.5, "quarter": 0.25, "three quarters": 0.75}
 
 _ALONE = "|".join(sorted(_SMALL, key=len, reverse=True))
 _WORD = rf"(?:{_TIES.replace(' ', '|')})(?:[- ](?:{_DIGITS.replace(' ', '|')}))?|{_ALONE}"
-_NUMBER = rf"\d+(?:\.\d+)?|{_WORD}|an?|another|a couple of|a few|several"
+_NUMBER = rf"\d+(?:\.\d+)?|{_WORD}|an?|another|a couple(?: of)?|a few|several"
 _UNIT = r"(?P<{}>hours?|hrs?|minutes?|mins?|seconds?|secs?)\b"
 _MORE = r"(?: and (?:a |one )?(?P<{}>half|quarter|three quarters))?"
 _PART = re.compile(
@@ -28,7 +28,7 @@ _LASTING = re.compile(
 _NO_DURATION = re.compile(
     r" (?:later|afterwards|time|try|attempt|step|one|hand|man|woman|person|set|round)\b", re.IGNORECASE
 )
-_VAGUE = {"a couple of": 2.0, "a few": 3.0, "several": 3.0}
+_VAGUE = {"a couple of": 2.0, "a couple": 2.0, "a few": 3.0, "several": 3.0}
 
 
 def in_seconds(text: str) -> str:

@@ -33,6 +33,7 @@ _IT = words_in("it them up there")
 LOWERED = words_in("lower lowers lowering lowered drop drops dropping down release releases releasing")
 _PUTTING = words_in("put puts putting bring brings bringing take takes taking let lets")
 _WITH_A_RAISED_HAND, _WITH_WHAT_IS_TAKEN = words_in("throw punch"), words_in("throw drink eat pull")
+_AS_HANGING = "arms that go down are shown as hanging"
 _SETTLING_S = 1.2  # into a posture that is held for a given time
 
 Lost = list[tuple[int, str]]
@@ -49,6 +50,7 @@ def with_what_is_held(
     result: list[Step] = []
     lost: Lost = []
     for given in steps:
+        given = _lowered_from_there(result, given, lost)
         before = result[-1] if result else None
         step = _with_the_raised_hand(before, _kept_up(given, clauses))
         own = words_in(" ".join(clauses.get(number, "") for number in step.clauses))
@@ -75,16 +77,24 @@ def with_what_is_held(
         result[-1] = replace(result[-1], style="released")
     elif rises is not None and result[-1].lower in _HELD_LOW.values():
         result.append(Step(lower="stand", clauses=(rises,), clause=clauses[rises]))
-    if result and _is_brought_back(result[-1], clauses):
-        result.append(
-            Step(
-                lower="stand" if result[-1].moves else result[-1].lower,
-                seat=result[-1].seat,
-                clauses=result[-1].clauses[-1:],
-                clause=clauses[result[-1].clauses[-1]],
-            )
-        )
+    down = _brought_back_by(result[-1], clauses) if result else None
+    if down is not None:
+        lower = "stand" if result[-1].moves else result[-1].lower
+        result.append(Step(lower=lower, seat=result[-1].seat, clauses=(down,), clause=clauses[down]))
     return result, lost
+
+
+def _lowered_from_there(result: list[Step], step: Step, lost: Lost) -> Step:
+    """A step that lowers arms, which stay up in the step before it; one that stands where they have not been up."""
+    if not result or step.upper != "lower_arm" or step.lower != "stand" or step.other_hand is not None:
+        return step
+    before = result[-1]
+    if before.upper == "raise" and before.lower == "stand" and before.count < 2 and before.other_hand is None:
+        result[-1] = replace(before, upper="raise_hold", count=0)
+    elif before.upper not in ("raise_hold", "lower_arm"):
+        lost += [(number, _AS_HANGING) for number in step.clauses[:1]]
+        return replace(step, upper="", hand="", count=0)
+    return step
 
 
 def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
@@ -93,15 +103,21 @@ def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
     return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
 
 
-def _is_brought_back(last: Step, clauses: Mapping[int, str]) -> bool:
-    """Whether the last clause brings down arms that would else stay up: 'folds the arms and lowers them'."""
-    own = words_in(clauses.get(last.clauses[-1], "") if len(last.clauses) > 1 else "")
+def _brought_back_by(last: Step, clauses: Mapping[int, str]) -> int | None:
+    """The last clause, if it brings down arms that would else stay up: 'folds the arms and lowers them'."""
     still = (
         last.lower in ("stand", "sit", "kneel", "walk", "jog")
         and last.upper in ARM_POSTURES
         and last.other_hand is None
     )
-    return still and _brings_down(own) and not own & (STAYING - {"rests", "resting", "rest"})
+    after = [number for number in clauses if number > max(last.clauses, default=-1)]  # two postures that are one step
+    for number in [*last.clauses[1:][-1:], *after] if still else []:
+        own = words_in(clauses.get(number, ""))
+        if _AS_HANGING in clauses.get(number, ""):
+            return number
+        if number in last.clauses and _brings_down(own) and not own & (STAYING - {"rests", "resting", "rest"}):
+            return number
+    return None
 
 
 def _brings_down(words: Collection[str]) -> bool:
@@ -149,8 +165,10 @@ def _comes_back(before: Step, step: Step, clauses: Mapping[int, str]) -> bool:
     """Whether a clause that needs no step has brought arms, legs or trunk back: 'lowers them', 'straightens up'."""
     first, last = max(before.clauses, default=-1), min(step.clauses, default=-1)
     between = [*before.clauses[1:], *range(first + 1, last)]
-    words = [words_in(clauses.get(number, "")) for number in between]
-    return any(own & _COMING_BACK and not own & STAYING for own in words)
+    said = [clauses.get(number, "") for number in between]
+    return any(_AS_HANGING in words for words in said) or any(
+        own & _COMING_BACK and not own & STAYING for own in map(words_in, said)
+    )
 
 
 def _held_pose(before: Step, step: Step) -> Step | None:

@@ -5,7 +5,7 @@ or looking like what may go ("walks over a beam", "stands up, using a hand as su
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations, pairwise
 
 from mmweaver.core.errors import InputError
@@ -25,6 +25,7 @@ from mmweaver.motion.language.lexicon import (
 )
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import MARK as PLACE
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
 from mmweaver.motion.language.verb_steps import LEGS
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
@@ -159,3 +160,12 @@ def _phrases(words: list[Word], verb: int) -> list[tuple[int, int]]:
     starts = [i for i in range(verb + 1, len(words)) if words[i].text in _OPENING]
     near = [(i, j) for i, j in pairwise([*starts, len(words)]) if words[i].text not in _TO_THE_END]
     return list(dict.fromkeys([*((start, len(words)) for start in reversed(starts)), *reversed(near)]))
+
+
+def follows_another(first: Step, every_clause: list[ParsedClause], records: Mapping[int, ClauseRecord]) -> bool:
+    """Whether the first step comes "then", or after a clause that is not shown, in words that begin it."""
+    clause = next((one for one in every_clause if one.steps and one.number in first.clauses), None)
+    if clause is None or clause.form == "ing" or not clause.number:
+        return False
+    not_shown = any(records[number].status == NOT_DONE for number in records if number < clause.number)
+    return clause.link == "then" or (clause.link in ("and", "comma") and not_shown)

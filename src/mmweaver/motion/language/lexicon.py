@@ -69,6 +69,7 @@ PHRASES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
      " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
     (r"\bup and down (?:the |some )?(?:steps|stairs)\b", " stairs "),
+    (r"\b(jump(?:s|ing|ed)?) up and down\b", r"\1 up_and_down"),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
     (r"\b(?:starting|beginning|starts?|begins?) (?:with|by|on) (?:the |his |her |their )?(?:left|right)"
      r"(?: (?:leg|foot))?\b",

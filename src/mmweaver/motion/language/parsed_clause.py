@@ -1,6 +1,7 @@
 """A clause with its steps, and what a clause without an activity adds to the steps of the one before."""
 
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import NUMBERS, SPEEDS, TIMES
@@ -69,7 +70,7 @@ class ParsedClause:
             self.forms.append("s")
             return
         if last.direction and about.direction and last.direction != about.direction:
-            if last.moves and self._leads_back(last, about, more.number):
+            if last.moves and self._leads_back(last, more):
                 return
             raise InputError(
                 f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
@@ -108,8 +109,12 @@ class ParsedClause:
         """The speed that the clause after it says of both."""
         self.steps[-1] = replace(self.steps[-1], speed=self.steps[-1].speed or more.speed_of_both)
 
-    def _leads_back(self, last: Step, about: Step, number: int) -> bool:
+    def _leads_back(self, last: Step, more: "ParsedClause") -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
+        about, number = more.about, more.number
+        if any(word.text == "back_to_start" for word in more.words) and self._has_come_back():
+            self.steps[-1] = replace(last, clauses=(*last.clauses, number))
+            return True
         if last.lower == "sidestep":
             other = {"left": "right", "right": "left"}.get(last.direction, "")
             if about.direction not in ("back", "backwards", other) or not other:
@@ -124,6 +129,14 @@ class ParsedClause:
         self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
+
+    def _has_come_back(self) -> bool:
+        """Whether the last steps aside lead to where the first of them began: as far to the left as to the right."""
+        aside = list(takewhile(lambda step: step.lower == "sidestep", reversed(self.steps)))
+        ways = [(step.direction, step.count, step.distance_m, step.seconds) for step in aside]
+        return bool(ways) and sorted(("left", *way[1:]) for way in ways if way[0] == "right") == sorted(
+            way for way in ways if way[0] == "left"
+        )
 
 
 def _count_of(last: Step, more: ParsedClause) -> int:

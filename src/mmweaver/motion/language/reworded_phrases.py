@@ -87,7 +87,8 @@ _TURNS = ["", "", "two", "three", "four", "five"]
 # Replaced in this order.
 _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(?:over and over(?: again)?|again and again|time and (?:time )?again)\b", "repeatedly"),
-    (r"\ba couple (?=times\b|(?:more |small |quick |slow )?steps\b)", "two "),
+    (r"\ba couple (?:of )?(?=(?:(?:more|small|big|quick|slow|short|long|little) )?(?:seconds|minutes|times|steps|strides|paces|punches|kicks|hops|jumps|squats)\b)", "two "),
+    (r"\b(?<!\bas )(?<!\bis )(?<!\bthis )([a-z]{2,}(?:s|ing|ed)(?: (?:up|down|out|off|over))?) a couple (?:of )?(?!people\b|(?:[a-z]+ )?(?:friends|persons|dancers|guys|girls|boys|kids|others)\b)(?=(?:[a-z-]+ )?[a-z-]+s\b)", r"\1 two "),
     (r"\bwhile (?:still )?standing (?:still|upright|in place)(?=$|[,.])", "while standing"),
     (r"\b(crawl(?:s|ing)?(?: [a-z]+){0,2}?) on (?:(?:his|her|their|the|both) )*(?:hands and (?:knees|feet)|knees and hands|all fours)\b", r"\1"),
     (r"\bstill,? like an? (?:statue|stone|rock|log|tree)\b", "still"),
@@ -121,6 +122,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\bin (?:the shape of an? s|an? s[- ]?(?:shaped? )?(?:pattern|motion|line|path|way|curve|shape))\b", "in a 90 degree curve to the left, then walks in a 90 degree curve to the right"),
     (r"\b(?:appears?|seems?) to be (?=[a-z]+ing\b)", "is "),
     (r"\bside ways\b", "sideways"),
+    (r"\bfrom (one )?(?:point|spot) to (point|spot|another|the next)\b(?: (?:point|spot))?", lambda found: "from one place to another" if found[1] else "from place to place"),
     (r"\b(reach(?:es|ing)?)((?: (?!up\b)[a-z]+){0,4}?) (?:into|towards?|for) the (?:air|sky|ceiling)\b", r"\1 up\2"),
     # one step, one way, the other way
     (r"\bsteps (one|two|three|four|five|six|\d) (back(?:wards?)?|forwards?|to the (?:left|right|side))\b(?! steps?)", r"takes \1 step \2"),
@@ -140,6 +142,7 @@ _REWORDINGS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # limbs
     (r"\b((?:turn|tilt|rotat|roll|mov|twist)(?:s|es|ing)) (?=(?:head|upper body|torso|neck)\b)", r"\1 the "),
     (r"\b(?:two|2) (kick|punch)e?s,? one with each (leg|foot|hand|arm|fist)\b", r"one \1 with the left \2, then one \1 with the right \2"),
+    (r"\b(left|right) (?:hand and (?=arm\b)|arm and (?=hand\b))(?=[a-z]+(?: to\b| *(?:$|[.,;])))", r"\1 "),
     (r"\b(arms|hands) straight out (?=to )", r"\1 out "),
     (rf"\bwith (?:{_OWN}|both )*(arms|hands) (?:(?:stretched|held|extended|reaching|outstretched|straight|out|up) )+(?:in front(?: of (?:him|her|them|it|the body|his body|her body)(?:self|selves)?)?|ahead)(?= *(?:$|[.,;]| and\b| then\b| like\b| as\b| while\b))", r"with \1 held forward"),
     (rf"\b(hold(?:s|ing)?|stretch(?:es|ing)?|extend(?:s|ing)?) ((?:{_OWN}|both )*(?:arms|hands)) out (?:straight )?(?:in front(?: of (?:him|her|them|it)(?:self|selves)?)?|ahead|forwards?)\b", r"\1 \2 forward"),

@@ -20,6 +20,7 @@ from mmweaver.motion.language.left_out import (
     LEAVING_OUT,
     MISSING,
     ROUGH,
+    follows_another,
     may_be_missed,
     parse_with_less,
     says_more_of,
@@ -31,11 +32,11 @@ from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.postures import carried_over, with_postures
+from mmweaver.motion.language.postures import ENTERING, carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.reworded_phrases import reworded
 from mmweaver.motion.language.rough_readings import read_roughly
-from mmweaver.motion.language.shared_steps import says_again
+from mmweaver.motion.language.shared_steps import says_again, says_how_far_it_pivots
 from mmweaver.motion.language.sideways import sideways_throughout
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
@@ -111,10 +112,15 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
         first = replace(first, count=repeated.times, clauses=(*first.clauses, number))
         steps = [first]
     else:
-        again = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-        steps = carried_over(with_postures([*plan.steps, *again]))
-    clauses = with_what_is_shown((*plan.clauses, ClauseRecord(repeated.words)), steps)
-    return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
+        more = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
+        steps = carried_over(with_postures([*plan.steps, *more]))
+    again = ClauseRecord(repeated.words)
+    if any(clause.status == NOT_DONE for clause in plan.clauses):
+        again = again.lowered_to(APPROXIMATED, "what is not shown once is not shown again")
+    clauses = with_what_is_shown((*plan.clauses, again), steps)
+    said = {before.sentence: now.sentence for before, now in zip(plan.clauses, clauses, strict=False)}
+    notes = [said.get(note, note) for note in plan.notes] + [again.sentence] * (again.status != DONE)
+    return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses, notes=tuple(notes))
 
 
 def _parsed(text: str, given_text: str, leaving: int = EXACT) -> MotionPlan:
@@ -139,6 +145,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     sequence = with_shared_speeds(
         at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
     )
+    if sequence[0].lower in ENTERING and follows_another(sequence[0], every_clause, records):  # sits down then
+        sequence[0] = replace(sequence[0], lower=ENTERING[sequence[0].lower])
     on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
@@ -262,6 +270,9 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             speed=last.speed or more.speed, direction=last.direction or more.direction,
             clauses=(*last.clauses, parsed.number),
         )  # fmt: skip
+    elif parsed.steps and says_how_far_it_pivots(found, parsed):
+        last, turn = found[-1].steps[-1], parsed.steps[0]
+        found[-1].steps[-1] = replace(turn, foot=last.foot, clauses=(*last.clauses, parsed.number))
     elif parsed.steps and not _is_its_end(found, parsed):
         found.append(parsed)
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):

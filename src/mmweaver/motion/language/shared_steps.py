@@ -16,6 +16,15 @@ def says_again(parsed: ParsedClause) -> bool:
     return any(word.text == "again" for word in parsed.words)
 
 
+def says_how_far_it_pivots(found: Sequence[ParsedClause], parsed: ParsedClause) -> bool:
+    """Whether a turn is the pivot of the clause before it: 'pivots on his left foot and does a half turn'."""
+    pivot, turn = found[-1].steps[-1] if found else None, parsed.steps[0]
+    if pivot is None or {pivot.lower, turn.lower} != {"turn"} or len(parsed.steps) > 1 or parsed.link == "then":
+        return False
+    on_a_foot = pivot.foot and not (pivot.turn_deg or pivot.direction in OPPOSITE or says_again(parsed))
+    return bool(on_a_foot) and any(word.lemma == "pivot" for word in found[-1].words)
+
+
 def shown_only_once(every_clause: Sequence[ParsedClause], steps: Sequence[Step]) -> Iterator[tuple[int, str]]:
     """(number of the clause, what is not shown) for clauses that differ from the one whose step they share.
 

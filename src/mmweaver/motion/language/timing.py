@@ -13,6 +13,7 @@ from mmweaver.motion.language.sentence import parse
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
 PACING_S = 5.5  # of "walks to and fro": there and back
+CRAWLING_TO_AND_FRO_S = 9.0
 TURN_M = 0.6  # a corner of a path takes as long as so many metres
 SHORTEST_OF_SECONDS_S = 0.3  # of what the sentence gives a time
 HELD_POSTURES = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")
@@ -201,7 +202,7 @@ def _at_usual_speed(step: Step) -> tuple[float, float]:
     if step.direction == "circle" and step.moves and not step.count:
         return _circle_limits(step)
     if step.direction == "pacing" and step.moves and not step.count:
-        return BY_KEY[step.lower].least_s, PACING_S
+        return BY_KEY[step.lower].least_s, CRAWLING_TO_AND_FRO_S if step.lower == "crawl" else PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)

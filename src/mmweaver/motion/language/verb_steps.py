@@ -70,8 +70,11 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
 
 
 def _is_of_several(step: Step, words: list[Word], at: int) -> bool:
-    """Whether an exercise is named in the plural without a number: "does squats"."""
+    """Whether an exercise is named in the plural without a number, "does squats", or "jumps up and down"."""
     word = words[at]
+    if word.lemma == "jump" and any(one.text == "up_and_down" for one in words[at + 1 : at + 2]):
+        is_said = any(one.text == "repeatedly" for one in words)
+        return not (step.upper or step.count or step.style or step.direction or is_said)
     can_be = step.lower in _EXERCISES and not (step.upper or step.count)
     can_be &= not (step.style or step.lower == "side_lunge") or (step.style != "high" and not step.foot)
     return can_be and word.text == f"{word.lemma}s" and any(one.lemma in ("do", "perform") for one in words[:at])

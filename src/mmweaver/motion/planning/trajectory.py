@@ -25,11 +25,12 @@ RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 PACING_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
+CRAWLING_TO_AND_FRO_S = (6.5, 11.0)  # the same on hands and knees
 SLOWER_TURNS = (1.5, 1.0, 0.8)  # times as long: slowly, as usual, quickly
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
 PACING_LEG_M = {"walk": 0.8, "jog": 2.0, "crawl": 0.5}  # shortest leg of going to and fro
-PACED_M = {"walk": 2.5, "jog": 4.0}  # the longest leg of "walks to and fro"
+PACED_M = {"walk": 2.5, "jog": 4.0, "crawl": 1.5}  # the longest leg of "walks to and fro"
 CRAWLING_TURN_RADPS, TURNS_ON_KNEES_M = 1.5, 0.9  # on hands and knees: how fast, and the free floor around it
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 FASTER = 1.3  # than usual, to complete a circle
@@ -233,6 +234,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
             free = trajectory.free_length_m(direction, pacing_m)
         else:
             direction, free = _open_direction(trajectory, speed * left, keep_heading=faces_already)
+            pacing_m = _there_and_back_m(trajectory, step, direction, free, pacing_m)
             free = min(free, pacing_m or free)
         if begun and trajectory.heading_is_given:
             begin = time + trajectory.turn_to(direction, time)
@@ -275,9 +277,23 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
 
 def _pacing_m(step: Step, speed_mps: float) -> float:
     """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
-    lasts_s = step.end_s - step.start_s
-    is_pacing = step.direction == "pacing" and step.lower != "crawl" and PACING_S[0] < lasts_s < PACING_S[1]
-    return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - 1.2) / 2) if is_pacing else 0.0
+    lasts_s, crawls = step.end_s - step.start_s, step.lower == "crawl"
+    least_s, most_s = CRAWLING_TO_AND_FRO_S if crawls else PACING_S
+    if step.direction != "pacing" or not least_s < lasts_s < most_s:
+        return 0.0
+    turning_s = np.pi / CRAWLING_TURN_RADPS if crawls else 0.0
+    return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - turning_s - 1.2) / 2)
+
+
+def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, free_m: float, paced_m: float) -> float:
+    """How far who goes to and fro goes at most; who crawls needs room to turn there, else goes one way: 0."""
+    if step.lower != "crawl" or not paced_m:
+        return paced_m
+    roomy_m = _to_where_knees_turn_m(trajectory, direction_rad, min(free_m, paced_m))
+    if not roomy_m:
+        trajectory.cost += 2.0
+        trajectory.notes.append(f"there is no room to turn on hands and knees for {step.clause!r}; one way is shown")
+    return roomy_m
 
 
 def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:

@@ -57,3 +57,14 @@ def test_words_that_are_no_ways(sentence: str) -> None:
 
 def test_what_goes_to_both_sides_shows_both() -> None:
     assert {record.status for record in parse("a person twists left and right").clauses} == {DONE}
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["lifts right foot to left knee then lifts left foot to right knee", "lifts their left leg up to their right knee"],
+)
+def test_the_leg_that_another_one_is_lifted_to_is_not_the_one_that_is_lifted(text: str) -> None:
+    plan = parse(f"a person {text}")
+    sides = [word for word in text.split() if word in ("left", "right")]
+    assert [step.foot for step in plan.steps] == sides[::2]
+    assert all("comes then" not in clause.how and "knee" not in clause.shown for clause in plan.clauses)

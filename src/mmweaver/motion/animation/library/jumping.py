@@ -178,7 +178,8 @@ def _jumps(context: StepContext) -> tuple[Controls, list[Hop]]:
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
-    count = context.step.count or max(1, int((context.duration_s - edge_s - flight_s) / between_s + 1.25))
+    fewest = 2 if context.step.style == "several" else 1
+    count = context.step.count or max(fewest, int((context.duration_s - edge_s - flight_s) / between_s + 1.25))
     spare = max(context.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
     slower = min(0.5 * spare, 0.4)  # spare time slows down crouching and recovery
     crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower

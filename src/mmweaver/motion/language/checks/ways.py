@@ -118,13 +118,21 @@ def _is_no_side(given: Given, token: Token, before: list[str], after: list[str])
     return bool(is_swept or is_pair or (OF_A_LIMB - {"shoulder"}) & {*after} or {"face", "faces"} & {*before})
 
 
+def _is_aim_of_a_limb(given: Given, token: Token) -> bool:
+    """Whether a limb is what another one goes to: "lifts the left foot up to his right knee"."""
+    before = given.texts(token.place - 6, token.place)
+    before = before[:-1] if before[-1:] and before[-1] in _OF_ITS_OWN else before
+    limb = [text for text in before[:-1] if text not in ("up", "over")][-1:]
+    return before[-1:] == ["to"] and "from" not in before and bool(limb) and limb[0] in ARMS | LEGS
+
+
 def _limbs_in_turn(given: Given) -> Iterator[tuple[int, str]]:
     """Hands or feet of both sides that are named in turn, more often than the steps change sides."""
     named: list[tuple[Token, str, bool]] = []
     for token in given.tokens:
         after = given.texts(token.place + 1, token.place + 3)
         limb = next((text for text in after if text in ARMS | LEGS), "")
-        if token.text not in ("left", "right") or not limb:
+        if token.text not in ("left", "right") or not limb or _is_aim_of_a_limb(given, token):
             continue
         one = (token, token.text, limb in ARMS)
         if not named or named[-1][1:] != one[1:]:
