@@ -19,3 +19,16 @@ from mmweaver.motion.language.sentence import parse
 )
 def test_a_gait_with_a_way_of_its_own_is_a_movement(text: str, ways: list[str]) -> None:
     assert [step.direction for step in parse(f"a person {text}", in_part=True).steps] == ways
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("picks up two boxes", [("pick_up", "")]),
+        ("carries some boxes to the table", [("walk", "carry")]),
+        ("boxes", [("stand", "punch")]),
+        ("picks up a box and boxes", [("pick_up", ""), ("stand", "punch")]),
+    ],
+)
+def test_boxes_after_a_number_are_things(text: str, steps: list[tuple[str, str]]) -> None:
+    assert [(step.lower, step.upper) for step in parse(f"a person {text}", in_part=True).steps] == steps

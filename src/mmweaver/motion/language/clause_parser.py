@@ -292,6 +292,9 @@ def _before_adjectives(words: list[Word], i: int) -> str:
     return words[at].text if at >= 0 else ""
 
 
+_BEFORE_BOXES = frozenset({"this", "that", "these", "those", "some", "few", "several", "many", "more", "of", *NUMBERS})
+
+
 def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
     """'karate type moves', 'a box', 'his phone', 'a starting point': nouns that look like a verb."""
     owned = before in ("a", "the", "his", "her", "their", "my")
@@ -302,7 +305,7 @@ def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
     return (
         (word.lemma == "seat" and word.form != "past")
         or (owned and word.lemma in ("phone", "text", "comb"))
-        or (word.form == "base" and word.lemma == "box" and (owned or before in ("this", "that")))
+        or (word.text in ("box", "boxes") and (owned or before in _BEFORE_BOXES or before.isdigit()))
     )
 
 
