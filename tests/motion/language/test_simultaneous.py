@@ -143,3 +143,13 @@ def test_what_follows_stays_a_step_of_its_own(text: str) -> None:
 def test_who_works_bent_stays_bent() -> None:
     plan = plan_motion("a person leans over and wipes the table")
     assert plan.steps[0].style == "held"
+
+
+@pytest.mark.parametrize("text", ["walks to the left, stops and waves", "walks to the left, pauses and waves"])
+def test_a_pause_is_over_before_what_comes_next(text: str) -> None:
+    steps = [(step.lower, step.upper) for step in parse(f"a person {text}").steps]
+    assert steps == [("walk", ""), ("stand", ""), ("stand", "wave")]
+
+
+def test_who_stands_and_waves_does_both_at_once() -> None:
+    assert [(step.lower, step.upper) for step in parse("a person stands and waves").steps] == [("stand", "wave")]

@@ -27,6 +27,7 @@ _REST_S = 0.5  # before a hand is raised to wave
 _WALKS_ON = re.compile(
     r"\b(?:walk|go|run|jog|mov)(?:s|es|e|ning|ging|ing)? (?:straight )?on$|\b(?:continu|carr(?:y|ies) on|resum|keep)"
 )
+_PAUSING = ("pause", "stop", "halt")  # not meanwhile: "pauses and waves"
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
 _TURNING_JUMPS = {(jump, "turn", "ing") for jump in ("jump", "leap", "hop")}
 # What goes on for as long as there is time, so that what "and" adds happens meanwhile.
@@ -184,7 +185,8 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
             return True  # one hand stays where it is
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
-            return one.lower == "sit" or before.form == parsed.form
+            pauses = any(word.lemma in _PAUSING for word in before.words)
+            return one.lower == "sit" or (before.form == parsed.form and not pauses)
         paces = any(step.count and step.moves for step in (one, other))
         return compatible and before.form == parsed.form == "ing" and not paces
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
