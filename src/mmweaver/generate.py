@@ -398,13 +398,14 @@ def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...
 
 def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
     """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several or of nobody."""
-    described: list[dict[str, Any]] = [
-        {"person": _person(pose, person), "plan": person.plan, "clauses": person.clauses}
+    described = [
+        (_person(pose, person), {"plan": person.plan, "clauses": person.clauses})
         for pose, person in zip(poses, people, strict=True)
     ]
     if len(described) == 1:
-        return described[0]
-    return {"people": [{**one.pop("person"), **one} for one in described]}
+        ((who, acts),) = described
+        return {"person": who, **acts}
+    return {"people": [{**who, **acts} for who, acts in described]}
 
 
 def _motion_input(motion: MotionClip | None) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Declared tables of boards: calibrated, typical, and whether signals are told from recorded ones."""
+"""Declared tables of boards: calibrated, typical, and whether signals can be distinguished from recorded ones."""
 
 from studies.report.table_layouts import MetricTable, RowTable
 

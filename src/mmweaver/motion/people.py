@@ -7,8 +7,8 @@ m/s, men of 40 to 49 years, to 0.94 m/s, women of 80 to 99). Children are those 
 growth charts of 2000. Heights of teenagers, toddlers and babies, and girths of all the young, are round figures of
 ours, babies as tall as bodies may be short here; all have the proportions of adults. Children walk as fast as adults,
 with more steps. Their pace on the spot (1.15: shorter limbs swing faster, as the square root of the height) and that
-of toddlers and babies are chosen, not measured. One person in
-ten is left-handed (Papadatou-Pastou et al., Psychol. Bull. 2020: 10.6 %).
+of toddlers and babies are chosen, not measured. One person in ten is left-handed (Papadatou-Pastou et al., Psychol.
+Bull. 2020: 10.6 %).
 """
 
 from dataclasses import dataclass, replace

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
@@ -181,12 +182,10 @@ def ways_on(floor: FloorMap, plan: MotionPlan) -> dict[str, Any]:
     such floor at any distance, or hardly more than in the window.
     """
     anywhere = FloorMap.of(floor.scene, _ANY_WINDOW_M, floor.height_m, with_assumed=True)
-    named = [step.place for step in plan.steps if step.place is not None and not _has_cells(step.place, floor)]
+    named = [step.place for step in plan.steps if step.place is not None and not len(_cells_if_any(step.place, floor))]
     if not named and np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
         return {}
-    if named and not _has_cells(named[0], anywhere):
-        return {}
-    places_m = cells_of(named[0], anywhere) if named else anywhere.walkable_m
+    places_m = _cells_if_any(named[0], anywhere) if named else anywhere.walkable_m
     if not len(places_m):
         return {}
     place = places_m[np.argmin(np.hypot(*places_m.T))]
@@ -202,11 +201,12 @@ def ways_on(floor: FloorMap, plan: MotionPlan) -> dict[str, Any]:
     }
 
 
-def _has_cells(place: Place, floor: FloorMap) -> bool:
+def _cells_if_any(place: Place, floor: FloorMap) -> Float[np.ndarray, "cell 2"]:
+    """The walkable cells of a place, none where the room has none."""
     try:
-        return bool(len(cells_of(place, floor)))
+        return cells_of(place, floor)
     except NoRoomError:
-        return False
+        return np.zeros((0, 2))
 
 
 def window_about(

@@ -16,10 +16,7 @@ SLOWEST_MPS = {
     "walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15, "hop": 0.25, "hop_one_leg": 0.25,
     "walking_lunge": 0.3,
 }  # fmt: skip
-SLOWED_TO, RUN_SLOWED_TO = (
-    0.6,
-    0.8,
-)  # share of the preferred speed to which a short way slows a gait; a run is none below
+SLOWED_TO, RUN_SLOWED_TO = 0.6, 0.8  # of the preferred speed, where the way is short; below that a run is none
 RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
