@@ -21,8 +21,8 @@ RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
-PACING_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
-CRAWLING_TO_AND_FRO_S = (6.5, 11.0)  # the same on hands and knees
+_TO_AND_FRO_WITHIN_S = (3.0, 6.5)  # "walks to and fro": there and back; for longer the free floor says how far
+_TO_AND_FRO_ON_KNEES_WITHIN_S = (6.5, 11.0)  # the same on hands and knees
 SLOWER_TURNS = (1.5, 1.0, 0.8)  # times as long: slowly, as usual, quickly
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
@@ -275,7 +275,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
 def _pacing_m(step: Step, speed_mps: float) -> float:
     """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
     lasts_s, crawls = step.end_s - step.start_s, step.lower == "crawl"
-    least_s, most_s = CRAWLING_TO_AND_FRO_S if crawls else PACING_S
+    least_s, most_s = _TO_AND_FRO_ON_KNEES_WITHIN_S if crawls else _TO_AND_FRO_WITHIN_S
     if step.direction != "pacing" or not least_s < lasts_s < most_s:
         return 0.0
     turning_s = np.pi / CRAWLING_TURN_RADPS if crawls else 0.0
