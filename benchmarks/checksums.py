@@ -1,6 +1,6 @@
 """What it costs a training that files of its data set are checked: CPU-seconds to read an epoch, with and without.
 
-The first epoch of a process hashes every file, later ones look at inode, size and time (decision 176). Writes
+The first epoch of a process hashes every file, later ones look at inode, size and time. Writes
 results/benchmark/checksums.json in the project's results schema and prints the same as a table.
 """
 

@@ -7,7 +7,7 @@
     OUT/SHA256SUMS                   of these files, once the stream has ended
 
 A part gets its name when all of it is on the disk, so that a kill leaves whole parts. Memory does not grow with the
-length. Reference: decision 207.
+length. Reference: docs/decisions/streams.md.
 """
 
 import json

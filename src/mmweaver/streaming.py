@@ -3,7 +3,7 @@
     sentences --ContinuousMotion--> motion of each --method, BLOCK_FRAMES at a time--> signal --> StreamChunk
 
 Every sentence's frames are made in blocks of the same size, wherever chunks end, so that the chunk size changes no bit.
-Reference: decisions 205 and 206.
+Reference: docs/decisions/streams.md.
 """
 
 import inspect

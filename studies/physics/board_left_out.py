@@ -22,7 +22,7 @@ where it was seen, so that in two rooms one walked 0.5 to 0.7 m behind the other
 (the recorded two are equally far); the person who breathes stood sideways; all radars sent 12 dBm, the third one's own
 are 5; simulations alone had a known amplitude scale, which a feature shows; rooms were counted by a single frame, by
 which the rows behind a walker vary by 10 dB and more with the step; one board a room, so that six stood for all. All
-three boards served for development (decisions 221, 226, 267), so `after` is blind to none of them.
+three boards served for development, so `after` is blind to none of them.
 """
 
 import argparse

@@ -46,7 +46,7 @@ def test_places_may_differ_from_frame_to_frame():
 
 
 def test_agrees_with_the_rays_by_which_the_ray_tracer_decides():
-    """Decision 161: capsules in the network, rays at the hull of the same capsules in the ray tracer."""
+    """Capsules in the network, rays at the hull of the same capsules in the ray tracer."""
     joints = _standing(0.1, 2.0, 1.0)[None]
     across, up = np.meshgrid(np.linspace(-1.0, 1.4, 61), np.linspace(-2.2, 1.8, 101), indexing="ij")
     places = np.stack([across, np.full(across.shape, 4.0), up], axis=-1).reshape(-1, 3)

@@ -1,7 +1,7 @@
 """Matched draws: each place, heading, person and seed is used once for every label, so that none of them tells it.
 
 A draw that one label cannot be carried out with is replaced for all labels. Who knows where and by whom a sequence is
-done then knows nothing of what is done (decision 210). Where a room has no place that serves all labels, those that it
+done then knows nothing of what is done. Where a room has no place that serves all labels, those that it
 does not serve start elsewhere, with the same person and seed, and the leak report says so. No two draws start at
 exactly the same point: a stance that moves the hips by centimetres (boxing: 6 cm) would else tell the label at a place
 that was seen before.

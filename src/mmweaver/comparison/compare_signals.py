@@ -3,7 +3,7 @@
     compare("recording/", "simulated/")                paths of any kind, or records
     compare_signals([signal], [other])                 cubes with points and meta that are in memory
 
-Reference: docs/compare.md, decision 220.
+Reference: docs/compare.md.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,8 @@
 """Files and folders that are written completely or not at all: under a temporary name, synced to disk, then renamed.
 
 A kill at any instant leaves the old state or the new one; the temporary names of a dead process are removed by the next
-that writes there (`core.staging`). Nothing is renamed before its bytes are on the disk. Reference: decision 175.
+that writes there (`core.staging`). Nothing is renamed before its bytes are on the disk.
+Reference: docs/decisions/writing-files.md.
 """
 
 import os

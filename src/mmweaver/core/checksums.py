@@ -4,7 +4,7 @@
     9f86d081...  radar.npz
 
 A file named there is checked before it is used (`check_file`), once a process unless it has changed since. Folders of
-other origin, and files that are not named, are read as they are. Reference: decision 176.
+other origin, and files that are not named, are read as they are. Reference: docs/decisions/writing-files.md.
 """
 
 import hashlib

@@ -1,4 +1,4 @@
-"""Files that a clone of the repository holds and the installed package does not, for their size: decision 162."""
+"""Files that a clone of the repository holds and the installed package does not, for their size."""
 
 from pathlib import Path
 

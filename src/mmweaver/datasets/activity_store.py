@@ -12,9 +12,9 @@
         frame_time, range, radial_velocity   coordinates in s, m, m/s; antenna_position_m (antenna, axis)
     OUT/set.json, activities.toml, leaks.json, SHA256SUMS
 
-A data set of rooms has the same arrays in a group for each room (`dataset_store`; decision 199). Signals are in shards
+A data set of rooms has the same arrays in a group for each room (`dataset_store`). Signals are in shards
 and not compressed, so that the size of a sequence says nothing of its label; every chunk ends in its CRC-32C, and all
-files are checked against SHA256SUMS before they are used. Reference: decision 210.
+files are checked against SHA256SUMS before they are used. Reference: docs/decisions/matched-draws.md.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""A folder of a data set whose files are checked against SHA256SUMS before they are used; decision 176."""
+"""A folder of a data set whose files are checked against SHA256SUMS before they are used."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

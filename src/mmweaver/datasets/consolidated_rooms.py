@@ -2,7 +2,7 @@
 
 Readers then need not list the folders, where plan.json and SHA256SUMS are no part of Zarr (it warns of each), and open
 thousands of arrays by one file. The text follows from the rooms alone, so that processes that finish together write the
-same. Reference: consolidated metadata of zarr-python 3; decision 199.
+same. Reference: consolidated metadata of zarr-python 3.
 """
 
 import hashlib

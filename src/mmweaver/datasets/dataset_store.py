@@ -13,7 +13,7 @@
 
 Every chunk ends in its CRC-32C, and every file is checked before it is used: photo, joints and all else of a room when
 it is opened, signals and geometry when they are first read. Written by `dataset_writer`. Reference: Zarr v3, xarray's
-`_ARRAY_DIMENSIONS`; decisions 92 and 176.
+`_ARRAY_DIMENSIONS`.
 """
 
 import json

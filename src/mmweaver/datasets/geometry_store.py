@@ -5,7 +5,7 @@
         visibility       (sequence, frame, byte)  bits of paths.visibility
         room/, photographed/   paths.static_paths_store: the room as it is, and as its photo shows it
 
-No ray caster is needed to read it. Reference: decision 93.
+No ray caster is needed to read it. Reference: docs/decisions/data-set-plan.md.
 """
 
 import hashlib

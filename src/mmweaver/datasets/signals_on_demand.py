@@ -8,7 +8,8 @@
         room_0/view_1/  a further photo of it, with its pose
 
 The signal is that of `methods.METHODS`, the very call that `Weaver` makes, so there is no second synthesis. Its moving
-power is checked against the stored one: another version of method or weights is noticed. Reference: decision 241.
+power is checked against the stored one: another version of method or weights is noticed.
+Reference: docs/decisions/data-set-plan.md.
 """
 
 from collections import OrderedDict

@@ -1,7 +1,7 @@
 """Emulation of the point cloud of TI's out-of-box demo: windows, fixed-point arithmetic, CFAR, grouping and angles.
 
 Based on the behaviour that TI documents (mmWave SDK User Guide; demo documentation of xWR14xx and xWR16xx); what is
-known and what is assumed: docs/decisions/0012-firmware-points.md.
+known and what is assumed: docs/decisions/firmware-points.md.
 """
 
 from dataclasses import dataclass

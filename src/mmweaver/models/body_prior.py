@@ -1,7 +1,8 @@
 """What physics says of a body's parts before the network does: how strongly each returns, and where its skin lies.
 
 The simulator's skin on a person of average height, without rays: whatever faces the radar counts, nothing occludes it.
-The network scales this, as it does with what physics says of the room's surfaces. Reference: decisions 42, 100.
+The network scales this, as it does with what physics says of the room's surfaces.
+Reference: docs/decisions/skin.md, docs/decisions/network-predicts-echoes.md.
 """
 
 from dataclasses import dataclass

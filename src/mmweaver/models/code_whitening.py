@@ -1,7 +1,7 @@
 """Codes of an encoder as a few numbers that differ between samples as much in one direction as in any other.
 
 An encoder's codes differ little from each other next to their mean, and nearly all of that in one or two directions:
-what reads them as they are writes the same for all. Reference: decision 167.
+what reads them as they are writes the same for all. Reference: docs/decisions/paper-network.md.
 """
 
 import torch

@@ -1,7 +1,8 @@
 """Paths of second order next to the network's: over people and rough surfaces of the room, and over two people.
 
 The network has learned paths of first order; these follow from joints and room by physics, as in `paths`, of fewer
-points of skin, which the room and other people may occlude, but not the body itself. Reference: decision 291.
+points of skin, which the room and other people may occlude, but not the body itself.
+Reference: docs/decisions/network-by-default.md.
 """
 
 from collections.abc import Sequence

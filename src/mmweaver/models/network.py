@@ -7,7 +7,7 @@
 
 The network says how strong each echo is on average and where it lies; phases are sampled when a signal is made, for
 nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
-Reference: paper, section "Generalization via Hypernetworks"; decisions 90 and 91.
+Reference: paper, section "Generalization via Hypernetworks".
 """
 
 from collections.abc import Iterable

@@ -4,7 +4,8 @@
 
 The wide layers are the same for all rooms and motions and are trained; 256 numbers a field (or a frame) move them, as
 many as the paper's gamma and beta, and 16 compose the second layer out of matrices of rank one. Predicting all weights
-instead, as the paper does, starts with outputs seven times too large. Reference: decision 237; Perez et al., 2018.
+instead, as the paper does, starts with outputs seven times too large.
+Reference: Perez et al., 2018; docs/decisions/paper-network.md.
 """
 
 import math
@@ -65,7 +66,7 @@ class FieldWriter(nn.Module):
     """The hypernetwork: whitened codes (..., size) -> the numbers of a field (..., NUM_WRITTEN).
 
     They are small before training. What all fields have in common comes from a constant of the same size as what
-    differs, so that it is learned as fast as without codes (decision 167).
+    differs, so that it is learned as fast as without codes.
     """
 
     def __init__(self, size: int, width: int = 512) -> None:

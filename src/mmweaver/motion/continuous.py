@@ -1,7 +1,8 @@
 """One sentence after the other without a break: each motion begins where, how and as fast as the last one is.
 
 Motions are composed one by one, each from the place, heading and posture in which the last one ends. What is left
-between the two (where a hand hangs, how the feet stand) fades, see `animation.carry_over`. Reference: decision 205.
+between the two (where a hand hangs, how the feet stand) fades, see `animation.carry_over`.
+Reference: docs/decisions/streams.md.
 """
 
 import math

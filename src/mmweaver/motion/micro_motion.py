@@ -7,7 +7,7 @@ Zatsiorsky, "Patterns of Center of Pressure Migration during Prolonged Unconstra
 over the hips as much as the legs over the ankles: angular accelerations in a ratio of 3.1 +- 1.2 (Aramaki et al.,
 "Reciprocal Angular Acceleration of the Ankle and Hip Joints during Quiet Standing in Humans", 2001; here 2.8). Tremor
 is physiological (8 to 12 Hz, some 0.1 mm at a hand held out); so is the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
-breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4; decision 288.
+breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
 """
 
 from dataclasses import dataclass

@@ -2,7 +2,7 @@
 
 Static clutter is then the recording's own. How much of it a body occludes is inferred: the static paths are given the
 amplitudes that, of all they might have, explain the recording best.
-Reference: linear Gaussian conditioning (Rasmussen and Williams, Gaussian Processes, 2006, appendix A.2); decision 104.
+Reference: linear Gaussian conditioning (Rasmussen and Williams, Gaussian Processes, 2006, appendix A.2).
 """
 
 from collections.abc import Sequence

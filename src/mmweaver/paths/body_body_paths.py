@@ -1,8 +1,7 @@
 """Second-order paths between two people: radar -> part of one -> part of the other -> radar, in either order.
 
 Power of one order gain^2 sigma_a sigma_b / (4 pi (d_a d_ab d_b)^2) with bistatic cross sections; both are coherent. It
-is the equation of `body_room_paths` with a second body for the patch. Reference: docs/radar_primer.md, section 5;
-decision 246.
+is the equation of `body_room_paths` with a second body for the patch. Reference: docs/radar_primer.md, section 5.
 """
 
 from dataclasses import dataclass

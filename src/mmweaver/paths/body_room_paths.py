@@ -3,7 +3,7 @@
 Radar -> part of the body -> patch of the room -> radar and back, power gain^2 sigma_b sigma_q / (4 pi (d_b d_bq d_q)^2)
 of one order; both are coherent. A part stands for its skin points, with their bistatic cross section. Of some
 thousand pairs so many are kept at random, the strong ones always, that the mean power stays.
-Reference: docs/radar_primer.md, section 5; decision 225.
+Reference: docs/radar_primer.md, section 5.
 """
 
 from dataclasses import dataclass

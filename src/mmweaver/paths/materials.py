@@ -41,7 +41,7 @@ class Material:
 # up to 60, plywood up to 40: their laws are carried on to 77. Fabric (upholstery) is not in the standard: foam and
 # cloth, after wood with a lower density. Roughness is that of plaster (0.05 and 0.15 mm on two samples, ingrain
 # wallpaper 0.13 mm), taken to be on concrete, brick, plasterboard and ceilings: Piesiewicz et al., "Scattering analysis
-# for the modeling of THz communication systems", IEEE Trans. Antennas Propag. 55(11), 2007, table I; decision 285.
+# for the modeling of THz communication systems", IEEE Trans. Antennas Propag. 55(11), 2007, table I.
 MATERIALS: Registry[Material] = Registry(
     "material",
     [

@@ -1,6 +1,6 @@
 """Mean power maps of echoes of unknown phase: what can be predicted of a radar signal.
 
-Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman), decision 91.
+Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman).
 """
 
 import math

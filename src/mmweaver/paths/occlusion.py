@@ -1,6 +1,6 @@
 """What a body stands in front of, from joints alone: the average body's capsules, without a ray caster.
 
-Reference: decision 97.
+Reference: docs/decisions/network-predicts-echoes.md.
 """
 
 import torch

@@ -2,7 +2,8 @@
 
 A moving echo stands for several spots of skin that ride on one part of the body; their sum scintillates as the part
 turns, as real skin does. Spots belong to the person, static phases to the room, so that the same seed, person and room
-give the same signal, and a person's frames belong together. Reference: decisions 4 and 91.
+give the same signal, and a person's frames belong together.
+Reference: docs/decisions/speckle-phases.md, docs/decisions/loss-on-mean-power.md.
 """
 
 import math

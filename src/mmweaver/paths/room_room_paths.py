@@ -1,7 +1,7 @@
 """Second-order static paths: a rough surface and a flat face of the room, or two rough surfaces, in either order.
 
 They fill the range cells between a room's strong echoes. Of all pairs so many are kept at random that the mean power
-stays (`room_patches.roulette`). Reference: docs/radar_primer.md, section 5; decision 225.
+stays (`room_patches.roulette`). Reference: docs/radar_primer.md, section 5.
 """
 
 from typing import TYPE_CHECKING

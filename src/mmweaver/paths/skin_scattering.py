@@ -16,7 +16,7 @@ REFLECTIVITY = 0.14
 SLOPE = 0.10  # rms tilt of the surface along one direction, as a tangent: 6 degrees
 ALBEDO = 0.01  # of the diffuse part
 ARMS_DB = 2.0  # bare hands, often bare forearms: skin without cloth returns 4 dB more
-LEGS_DB = -6.0  # read off recordings (decision 42); why legs return so little is not known
+LEGS_DB = -6.0  # read off recordings; why legs return so little is not known
 NEVER_SEEN_COS = 0.02  # of skin so nearly edge-on
 
 

@@ -2,7 +2,7 @@
 
 Many weak patches in all directions and at all ranges, several a range-angle cell; their cross sections are gamma
 distributed about a mean, so that amplitudes are K distributed. Level and density are those of recordings; see
-decisions 226, 267 and 287. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
+docs/decisions/diffuse-clutter.md. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
 """
 
 import zlib

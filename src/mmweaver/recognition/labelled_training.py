@@ -1,6 +1,6 @@
 """Labelled recordings train along: they join what was generated, and grow a share of the trees by themselves.
 
-Decisions 270, 281 and 283.
+Reference: docs/decisions/recogniser-adaptation.md.
 """
 
 from collections import Counter

@@ -51,7 +51,7 @@ def _measured(predicted_m: Joints, true_m: Joints) -> tuple[Joints, Joints]:
 
 
 def as_kinect(joints_m: Joints) -> Joints:
-    """Our joints where the Kinect has its own: its base of the spine is the middle of the hips (decision 240)."""
+    """Our joints where the Kinect has its own: its base of the spine is the middle of the hips."""
     moved = joints_m.copy()
     moved[:, joint("pelvis")] = joints_m[:, [joint("left_hip"), joint("right_hip")]].mean(axis=1)
     return moved

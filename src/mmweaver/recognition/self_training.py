@@ -1,6 +1,6 @@
 """Self-training with a guard: confident labels of unlabelled windows join the generated ones, if nothing collapses.
 
-Decisions 238, 269 and 280.
+Reference: docs/decisions/recogniser-adaptation.md.
 """
 
 from collections.abc import Sequence

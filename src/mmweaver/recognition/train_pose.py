@@ -23,7 +23,7 @@ from mmweaver.training.trainer import Listener, Trainer
 
 SEQUENCES, SEQUENCE_FOLDER = 40, "sequences"
 HELD_OUT = 8  # one person in so many
-# Amplitudes of the motion library; those of recognisers are smaller (decision 231), but joints are learned here.
+# Amplitudes of the motion library; those of recognisers are smaller, but joints are learned here.
 # Feet: people stand and squat with their heels 0.2 to 0.5 m apart; the library's are always close.
 POSE_PRIOR = PerformancePrior(
     usual_amplitude=1.0,

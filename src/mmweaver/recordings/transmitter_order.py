@@ -4,7 +4,7 @@ Receivers of one transmitter are sampled in the same chirp, so their correlation
 whatever the order. Antennas of two transmitters at the same distance must be correlated alike, cell by cell, up to a
 phase that all cells share (channel errors); in a wrong order they are not. Receivers in one row say nothing of heights,
 whose phase is then taken for one that cells share, too; receivers in two rows (AOP, ODS) also tell transmitters apart
-that lie above each other. Many scatterers in a cell do not matter, as they would to a plane wave. Decision 166.
+that lie above each other. Many scatterers in a cell do not matter, as they would to a plane wave.
 """
 
 from itertools import permutations

@@ -1,7 +1,7 @@
 """Expected power maps of stored geometry: training targets without speckle and without fluctuation of the noise.
 
 A simulated signal is one random realization in every cell; the simulator's echoes give its mean directly.
-Reference: decision 98.
+Reference: docs/decisions/loss-on-mean-power.md.
 """
 
 from dataclasses import fields

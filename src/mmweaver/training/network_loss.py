@@ -5,7 +5,7 @@ The likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1:
 strong cells. But where the network cannot know whether a cell is bright, it estimates the mean of the bright case, and
 the maps glow all over; the absolute difference of logarithms estimates the median instead. Both are used.
 
-Reference: Fevotte et al. 2009; decision 91.
+Reference: Fevotte et al. 2009.
 """
 
 import math

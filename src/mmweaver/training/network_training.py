@@ -40,7 +40,7 @@ class TrainingRecipe(LoopRecipe):
     batch_size: int = 3  # sequences, each of a different room
     frames: int = 8  # sampled from each sequence
     mirror: bool = True  # reflect every second batch left-right
-    without: tuple[str, ...] = ("correction",)  # parts of the network left to physics (decision 102)
+    without: tuple[str, ...] = ("correction",)  # parts of the network left to physics
     encoder: str = DEFAULT_ENCODER  # environment encoder, a name in ENCODERS
 
 

@@ -22,7 +22,7 @@ class Resumable:
 
     Without a file nothing is saved. `history` has a row of figures every 50 steps. `every_s` overrides the interval.
     Of several processes all load, and only the one that `writes` saves. A run resumes with its original number of
-    threads, for sums over other numbers of threads differ in their last bits (decision 140).
+    threads, for sums over other numbers of threads differ in their last bits.
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):

@@ -6,7 +6,8 @@
     best.safetensors     the weights with the lowest validation loss
     log.jsonl, tensorboard/, pictures/     logs
 
-A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 94.
+A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`.
+Reference: docs/decisions/training-loop.md.
 """
 
 import json

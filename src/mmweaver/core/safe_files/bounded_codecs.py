@@ -2,7 +2,7 @@
 
 Zarr's own take as much memory as the chunk itself asks for: 3 kB of Zstandard stand for 100 MB of zeros. Imported only
 where arrays are read, because zarr is slow to import. Reference: RFC 8878, section 3.1.1.1 (frame header); c-blosc,
-README_CHUNK_FORMAT.rst; decision 173.
+README_CHUNK_FORMAT.rst.
 """
 
 import math

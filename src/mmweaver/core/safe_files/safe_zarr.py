@@ -2,7 +2,7 @@
 taken for it, and a chunk that would grow beyond its array is refused (`bounded_codecs`).
 
 Read are arrays as mmWeaver writes them: numbers or texts, Zstandard or Blosc, CRC-32C, shards. Reference: Zarr v3 core
-specification; decision 173.
+specification.
 """
 
 import itertools

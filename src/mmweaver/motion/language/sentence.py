@@ -69,7 +69,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
 
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
     InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
-    nothing is left out silently. See docs/decisions/0010.
+    nothing is left out silently. See docs/decisions/reading-sentences.md.
     """
     given_text = text
     if not text.strip():

@@ -1,7 +1,8 @@
 """Spelling correction: a long unknown word one edit away from exactly one known word is read as that word.
 
 Of short words only slips are corrected that hardly ever make another English word: neighbours swapped, a letter typed
-twice, and a missing letter without which the word cannot be spoken ("wlks"). Reference: decision 369.
+twice, and a missing letter without which the word cannot be spoken ("wlks").
+Reference: docs/decisions/reading-sentences.md.
 """
 
 import re

@@ -1,7 +1,7 @@
 """BVH files: from a hierarchy of offsets and the joint angles of every frame to joint positions.
 
 Files differ in ways that parsers trip over: names with spaces, channels in any order, position channels on every joint,
-Windows line ends, no newline at the end (docs/decisions/0060).
+Windows line ends, no newline at the end (docs/decisions/motion-files.md).
 """
 
 from dataclasses import dataclass, field

@@ -1,7 +1,7 @@
 """Room layout: the walls that a photo shows in part, extended to the cuboid of the room.
 
 A radar's beam is wider than a camera's view. Its strongest echo of a wall is the specular one, from the foot of the
-perpendicular, which for the side walls lies outside the picture. Reference: decision 99.
+perpendicular, which for the side walls lies outside the picture. Reference: docs/decisions/walls.md.
 """
 
 from collections.abc import Sequence

@@ -1,7 +1,7 @@
 """Flat panels on a room's walls of another material than the wall: windows, mirrors, doors, screens.
 
 A pane of glass reflects more than the wall around it and is a specular reflector of its own, though a depth camera sees
-a hole there or only the wall. Reference: decision 101.
+a hole there or only the wall. Reference: docs/decisions/class-mask.md.
 """
 
 from collections.abc import Sequence

@@ -7,7 +7,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.empty_floor import act_out
 
 WRISTS = {side: joint(f"{side}_wrist") for side in ("left", "right")}
-FASTEST_MPS2 = 150.0  # of any joint, as in streams (decision 312); published fists reach 60 to 100
+FASTEST_MPS2 = 150.0  # of any joint, as in streams; published fists reach 60 to 100
 
 
 def _in_the_chest(text: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
