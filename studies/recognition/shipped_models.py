@@ -2,8 +2,8 @@
 
     python -m studies run shipped_models --radhar RADHAR --mars MARS
 
-RadHAR: all recordings, as `mmweaver evaluate zero-shot-activity` scores them. MARS: split `test` of the subjects that are
-there, as `mmweaver evaluate zero-shot-pose` does. The files are scored as they are; nothing is trained.
+RadHAR: all recordings, as `mmweaver evaluate zero-shot-activity` scores them. MARS: split `test` of the subjects that
+are there, as `mmweaver evaluate zero-shot-pose` does. The files are scored as they are; nothing is trained.
 """
 
 import argparse
