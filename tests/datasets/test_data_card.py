@@ -12,7 +12,7 @@ from mmweaver.datasets.data_card import CARD_FILE, write_rooms_card, write_set_c
 from mmweaver.datasets.dataset_writer import AXES
 from mmweaver.datasets.radar_dataset import RadarDataset
 from mmweaver.verification import verify
-from tests.activity_sets.conftest import activity_set  # noqa: F401  the fixture
+from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 zarr = pytest.importorskip("zarr")
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "n>1M")  # as the Hub calls them
@@ -67,7 +67,7 @@ def test_the_card_of_rooms_lists_what_lies_there(fixture: str, request: pytest.F
     assert verify(folder).is_sound
 
 
-def test_the_card_of_a_labelled_set_lists_what_lies_there(activity_set: Path):
+def test_the_card_of_a_labelled_set_lists_what_lies_there(activity_set: Path):  # noqa: F811
     data = _front(activity_set)
     assert data.license == "unknown", "the rooms are the maker's"
     assert data.size_categories[0] in SIZES
@@ -79,7 +79,7 @@ def test_the_card_of_a_labelled_set_lists_what_lies_there(activity_set: Path):
     assert verify(activity_set).is_sound
 
 
-def test_a_card_that_was_completed_is_kept(tiny_signals: Path, activity_set: Path, tmp_path: Path):
+def test_a_card_that_was_completed_is_kept(tmp_path: Path):
     (tmp_path / CARD_FILE).write_text("mine")
     write_rooms_card(tmp_path, ["office_000"], AXES)
     write_set_card(tmp_path)
