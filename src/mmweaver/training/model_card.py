@@ -118,7 +118,7 @@ def _index(card: WeightsCard, figures: Figures) -> str:
         {"type": column, "value": round(value, 4), "name": column.replace("_", " ")}
         for column, value in figures[OWN].items()
     ]
-    dataset = {"type": "mmweaver-validation", "name": "Held out from training"}
+    dataset = {"type": "mmweaver-validation", "name": "Validation, as under Scores"}
     return json.dumps(
         [{"name": card.recipe, "results": [{"task": {"type": "other"}, "dataset": dataset, "metrics": scores}]}]
     )
