@@ -27,7 +27,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     one.add_argument("name", help="a name that `list` prints; NAME --help shows the options of the study")
     one.add_argument("options", nargs=argparse.REMAINDER)
     commands.add_parser("list", help="name every study and its question")
-    tables = commands.add_parser("tables", help="fill the tables of README, docs and model cards from the results")
+    tables = commands.add_parser("tables", help="fill the tables and scores of README, docs and model cards")
     tables.add_argument("--results", type=Path, default=RESULTS)
     tables.add_argument("pages", type=Path, nargs="*", help="pages to fill (default: all that have tables)")
     check = commands.add_parser("check", help="check results against the schema, and tables against the results")
@@ -116,13 +116,12 @@ def fill_tables(pages: Sequence[Path], results: Path) -> None:
 
 def check_all(results: Path) -> int:
     """Prints what is wrong with results and tables; returns the exit status."""
-    from studies.report.pages import pages_of, with_tables
+    from studies.report.pages import filled_page, pages_of
 
     wrong = [line for path in sorted(results.rglob("*.json")) for line in check_result(path, results)]
     for page in pages_of(ROOT):
-        text = page.read_text(encoding="utf-8")
-        if with_tables(text, results) != text:
-            wrong.append(f"{page.relative_to(ROOT)}: a table is stale; run python -m studies tables")
+        if filled_page(page, results) != page.read_text(encoding="utf-8"):
+            wrong.append(f"{page.relative_to(ROOT)}: a table or score is stale; run python -m studies tables")
     for line in wrong:
         print(line, file=sys.stderr)
     return 1 if wrong else 0

@@ -11,6 +11,7 @@ import runpy
 import shutil
 import subprocess
 import sys
+import tomllib
 from contextlib import chdir, redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -40,7 +41,8 @@ def main() -> int:
         shutil.rmtree(out)
     shutil.copytree(ROOT / "docs", source)
     for name, page in TOP.items():
-        (source / page).write_text((ROOT / name).read_text(encoding="utf-8").replace("](docs/", "]("), encoding="utf-8")
+        text = with_local_links((ROOT / name).read_text(encoding="utf-8"))
+        (source / page).write_text(text.replace("](docs/", "]("), encoding="utf-8")
     decisions = decision_navigation(source / "decisions")
     packages = write_references(source / "reference")
     write_gallery(source / "gallery")
@@ -58,6 +60,14 @@ def main() -> int:
     faults = faults_of(out / "site")
     print("\n".join(faults) or f"{out / 'site' / 'index.html'}")
     return status or bool(faults)
+
+
+def with_local_links(text: str) -> str:
+    """A page whose links to files of the repository, absolute for readers elsewhere, begin at its root."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    source = project["urls"]["Source"]
+    pictures = source.replace("github.com", "raw.githubusercontent.com")
+    return text.replace(f"]({source}/blob/main/", "](").replace(f"]({pictures}/main/", "](")
 
 
 def rewritten(text: str, page: Path, source: Path) -> str:

@@ -49,7 +49,7 @@ SUMMARY = RowTable(
     labels={
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
-        "rf_genesis_as_released": "RF-Genesis as released ([peers](docs/peers.md))",
+        "rf_genesis_as_released": "RF-Genesis as released",
         "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room",
         "weaver": "the network, from the photo",
         "physics_in_photographed_room": "physics, from the photo",

@@ -17,8 +17,16 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + [
     *sorted((ROOT / "docs").rglob("*.md")),
     *sorted((ROOT / "model_cards").glob("*.md")),
+    ROOT / "SECURITY.md",
+    ROOT / "CODE_OF_CONDUCT.md",
+    ROOT / "src" / "mmweaver" / "weights" / "README.md",
 ]
 DECISIONS = sorted(path for path in (ROOT / "docs" / "decisions").glob("*.md") if path.name != "README.md")
+SOURCE = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Source"]
+# where a file of the repository is found by those who have no clone
+OURS = (f"{SOURCE}/blob/main/", f"{SOURCE}/".replace("github.com", "raw.githubusercontent.com") + "main/")
+READ_ELSEWHERE = ["README.md", "src/mmweaver/weights/README.md"]  # by PyPI and the Hub; and the model cards
+READ_ELSEWHERE += [f"model_cards/{page.name}" for page in sorted((ROOT / "model_cards").glob("*.md"))]
 WRITTEN_BY_MAKE_DOCS = ("reference/", "gallery/")
 PACKAGE = ROOT / "src" / "mmweaver"
 
@@ -36,13 +44,28 @@ def _anchors(page: Path) -> set[str]:
     return {re.sub(r"[ ]+", "-", heading.strip()) for heading in words}
 
 
+def _links(page: Path) -> list[str]:
+    """The targets of a page's links and pictures."""
+    return re.findall(r"\]\(([^)\s]+)\)", _prose(page))
+
+
+@pytest.mark.parametrize("name", READ_ELSEWHERE)
+def test_pages_that_are_read_elsewhere_have_absolute_links(name: str):
+    relative = [target for target in _links(ROOT / name) if not target.startswith(("https://", "#"))]
+    assert not relative, f"{name} is shown outside the repository"
+    if name == "README.md":
+        assert sum(target.startswith(OURS) for target in _links(ROOT / name)) > 15
+        assert any(target.startswith(OURS[1]) for target in _links(ROOT / name)), "its picture"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_resolve(page: Path):
-    for target in re.findall(r"\]\(([^)\s]+)\)", _prose(page)):
+    for target in _links(page):
         place, _, anchor = target.partition("#")
-        if re.match(r"(https?|mailto):", target) or place.startswith(WRITTEN_BY_MAKE_DOCS):
+        own = next((place.removeprefix(home) for home in OURS if place.startswith(home)), None)
+        if own is None and (re.match(r"(https?|mailto):", target) or place.startswith(WRITTEN_BY_MAKE_DOCS)):
             continue
-        file = (page.parent / place).resolve() if place else page
+        file = ROOT / own if own is not None else (page.parent / place).resolve() if place else page
         assert file.exists(), f"{page.relative_to(ROOT)} links to {target}"
         if anchor and file.suffix == ".md":
             assert anchor in _anchors(file), f"{page.relative_to(ROOT)} links to {target}"
@@ -113,7 +136,7 @@ def test_every_preset_is_in_the_page_of_radars():
 
 
 def test_the_readme_is_short():
-    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 110
 
 
 def test_the_site_lists_every_decision_whatever_its_title(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -124,3 +147,10 @@ def test_the_site_lists_every_decision_whatever_its_title(tmp_path: Path, monkey
     subjects = tomllib.loads(f"nav = [{navigation(tmp_path)}]")["nav"]
     listed = {page for subject in subjects for pages in subject.values() for one in pages for page in one.values()}
     assert listed == {f"decisions/{page.name}" for page in DECISIONS}
+
+
+def test_the_site_shows_the_readme_with_its_own_pages_and_pictures(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    page = importlib.import_module("build_docs").with_local_links((ROOT / "README.md").read_text(encoding="utf-8"))
+    assert not any(home in page for home in OURS)
+    assert "](docs/images/studio.png)" in page

@@ -1,6 +1,10 @@
 """Model cards."""
 
+import hashlib
 from pathlib import Path
+from typing import Any
+
+from huggingface_hub import ModelCard
 
 from mmweaver.models.weights import WeightsCard
 from mmweaver.training.model_card import model_card
@@ -24,6 +28,8 @@ def test_a_model_card_is_complete(tmp_path: Path):
         "| learning_rate | 0.001 |", "uncalibrated",
     ):  # fmt: skip
         assert text in page
-    import hashlib
-
     assert hashlib.sha256(b"weights").hexdigest() in page
+    data: Any = ModelCard(page).data
+    assert data.pipeline_tag
+    scores = {result.metric_type: result.metric_value for result in data.eval_results}
+    assert scores == {"range_doppler": 5.25, "range_azimuth": 6.0}

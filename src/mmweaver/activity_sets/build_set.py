@@ -45,6 +45,7 @@ from mmweaver.datasets.activity_store import (
     bytes_of_signals,
     write_set,
 )
+from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.signals_on_demand import SetGeometry, moving_power_db, storable
 from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.features import point_table
@@ -173,6 +174,7 @@ class SetBuilder:
                     listener(number + 1, len(self.plan))
             self._assemble()
         remove(self.out / PARTS)
+        write_set_card(self.out)
         return read_json(self.out / LEAKS_FILE)
 
     def check_folder(self) -> None:

@@ -26,6 +26,7 @@ from mmweaver.datasets.activity_store import (
     SPLIT_KEYS,
     write_set,
 )
+from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.features import point_table
 from mmweaver.stored_result import StoredResult, read_result
@@ -103,6 +104,7 @@ def set_of_results(
         report = leak_report(circumstances(joints, label, **more), label, numbers["draw"], names)
         (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
         _describe(stage, names, every, config, command)
+    write_set_card(out)
     return report
 
 

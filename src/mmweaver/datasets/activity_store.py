@@ -141,7 +141,8 @@ def is_activity_set(folder: Path) -> bool:
     return (folder / SET_FILE).is_file()
 
 
-def _made_by(command: Any) -> str:
+def made_by(command: Any) -> str:
+    """The command that a set says made it, each word quoted anew; the bare command for anything else."""
     try:
         words = shell_words(command)
     except ValueError:
@@ -154,10 +155,10 @@ def read_activity_set(folder: Path) -> ActivitySet:
     if not is_activity_set(folder):
         raise InputError(f"{folder} holds no labelled set (no {SET_FILE}); make one: mmweaver dataset OUT --activities")
     plan = read_json(folder / SET_FILE)
-    made_by = _made_by(plan.get("command")) if isinstance(plan, dict) else MADE_BY
+    again = made_by(plan.get("command")) if isinstance(plan, dict) else MADE_BY
     if not (folder / STORE).is_dir():
-        raise InputError(f"{folder} is not complete; make the rest with: {made_by}")
-    files = CheckedFolder.of(folder, made_by)
+        raise InputError(f"{folder} is not complete; make the rest with: {again}")
+    files = CheckedFolder.of(folder, again)
     files.require_sums()
     files.check(but=(f"{STORE}/iq/c/", f"{STORE}/{GEOMETRY}/motion_m/c/"))
     with files.reading():
@@ -165,7 +166,7 @@ def read_activity_set(folder: Path) -> ActivitySet:
         if group.attr("schema_version", int) != SCHEMA_VERSION:
             raise InputError(
                 f"{folder} has version {group.attrs['schema_version']} of its layout, this mmweaver reads"
-                f" {SCHEMA_VERSION}; make it anew with: {made_by}"
+                f" {SCHEMA_VERSION}; make it anew with: {again}"
             )
         return _activity_set(files, group)
 

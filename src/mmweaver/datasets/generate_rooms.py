@@ -12,6 +12,7 @@ from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.staging import sweep
 from mmweaver.datasets.consolidated_rooms import consolidate_rooms
+from mmweaver.datasets.data_card import write_rooms_card
 from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec, check_for_leaks
 from mmweaver.datasets.dataset_store import is_done
 from mmweaver.datasets.dataset_writer import AXES, open_dataset, remove_damaged, write_room
@@ -61,6 +62,7 @@ def generate_dataset(
         names = [room.name for room in rooms]
         if all(is_done(folder, name) for name in names):
             consolidate_rooms(resolved(folder), names, AXES)
+            write_rooms_card(resolved(folder), names, AXES)
     finally:
         sweep(resolved(folder), again=True)
     return reports

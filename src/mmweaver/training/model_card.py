@@ -1,5 +1,6 @@
 """Model cards: what a weights file is, its data, its scores, and its limits."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,16 +9,19 @@ from mmweaver.core.checksums import sha256_of_file
 from mmweaver.models.weights import WeightsCard
 
 Figures = Mapping[str, Mapping[str, float]]  # {method: {column: value}}
+OWN = "this network"  # the method whose figures are those of the weights
 
 FRONT = """---
 license: {licence}
 library_name: mmweaver
+pipeline_tag: other
 tags:
 - radar
 - mmwave
 - fmcw
 - mimo
 - simulation
+model-index: {index}
 ---
 
 # {title}
@@ -83,10 +87,11 @@ def model_card(
     card: WeightsCard, file: Path, *, data: str, evaluated_on: str, figures: Figures, page: Page = WEAVER
 ) -> str:
     """The model card as Markdown with front matter. `data`, `evaluated_on`: sentences; `figures`: rows of scores, in
-    `page.unit`."""
+    `page.unit`, one of them of OWN."""
     lines = [
         FRONT.format(
-            licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about
+            licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about,
+            index=_index(card, figures),
         ),
         "## Data", "", data, "", "## Scores", "", evaluated_on, "",
         *_table(figures, page.unit), "",
@@ -105,6 +110,18 @@ def model_card(
     captures = " and the captures it was tuned on" if card.tuned_from else ""
     limits = page.limits.format(radar=card.radar)
     return "\n".join(lines) + "\n" + LIMITS.format(and_captures=captures, limits=limits)
+
+
+def _index(card: WeightsCard, figures: Figures) -> str:
+    """The scores of this network as the Hub reads them, in one line of JSON, which is YAML, too."""
+    scores = [
+        {"type": column, "value": round(value, 4), "name": column.replace("_", " ")}
+        for column, value in figures[OWN].items()
+    ]
+    dataset = {"type": "mmweaver-validation", "name": "Validation, as under Scores"}
+    return json.dumps(
+        [{"name": card.recipe, "results": [{"task": {"type": "other"}, "dataset": dataset, "metrics": scores}]}]
+    )
 
 
 def _table(figures: Figures, unit: str) -> list[str]:
