@@ -1,8 +1,11 @@
 """A file or folder is whole or not there, whenever the process dies and whatever the disk answers."""
 
+import contextlib
+import functools
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -95,6 +98,40 @@ def test_moving_into_a_folder_that_was_interrupted_is_finished(tmp_path: Path, m
     assert damages(tmp_path) == []
 
 
+class _Killed(BaseException):
+    """The process ends here."""
+
+
+@pytest.mark.parametrize("at", range(1, 7))
+def test_old_and_new_files_mixed_never_match_the_checksums(tmp_path: Path, at: int, monkeypatch: pytest.MonkeyPatch):
+    """Killed at any rename: all is old, or all is new, or a reader is told that something is damaged."""
+    with staged_folder(tmp_path / "out") as stage:
+        for name in ("a.txt", "b.txt", "z.txt"):
+            (stage / name).write_text("old")
+    renames = {name: getattr(os, name) for name in ("rename", "replace")}
+    count = 0
+
+    def renamed(name: str, *places: object) -> None:
+        nonlocal count
+        count += 1
+        if count >= at:
+            raise _Killed
+        renames[name](*places)
+
+    with monkeypatch.context() as patch, contextlib.suppress(_Killed):
+        for name in renames:
+            patch.setattr(os, name, functools.partial(renamed, name))
+        with staged_folder(tmp_path / "out", overwrite=True) as stage:
+            for name in ("a.txt", "b.txt", "z.txt"):
+                (stage / name).write_text("new")
+    found = {(tmp_path / "out" / name).read_text() for name in ("a.txt", "b.txt", "z.txt")}
+    assert len(found) == 1 or damages(tmp_path / "out") != []
+    with staged_folder(tmp_path / "out", overwrite=True) as stage:
+        (stage / "c.txt").write_text("more")
+    assert damages(tmp_path / "out") == []
+    assert {(tmp_path / "out" / name).read_text() for name in ("a.txt", "b.txt", "z.txt")} <= {"old", "new"}
+
+
 def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
     first, second = tmp_path / "a.txt", tmp_path / "b.txt"
     with pytest.raises(InputError, match="cannot write"), atomic_files(first, second) as stages:
@@ -130,6 +167,30 @@ def test_what_dead_processes_left_is_removed_and_what_living_ones_write_is_not(t
     with atomic_file(target) as temporary:
         temporary.write_text("new")
     assert names(tmp_path) == sorted([".walk.png.mine", living.name, "walk.png"])
+
+
+@pytest.mark.parametrize(("age_s", "is_kept"), [(0.0, True), (3000.0, True), (4000.0, False)])
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
+    tmp_path: Path, kind: str, age_s: float, is_kept: bool
+):
+    """Its processes cannot be asked here; of a folder the newest file inside counts."""
+    own = staging_path(tmp_path / "walk.npz").name
+    place, process = own.rpartition(".mmweaver-")[2].split("-")[:2]
+    other = tmp_path / own.replace(place, "0" * 8 if place[0] != "0" else "f" * 8).replace(f"-{process}-", "-1-")
+    inside = [other]
+    if kind == "folder":
+        other.mkdir()
+        inside = [other / "radar.npz", other]
+    for path in inside[:1]:
+        path.write_text("half")
+    then = time.time() - age_s
+    os.utime(inside[0], (then, then))
+    if kind == "folder":
+        os.utime(other, (then - 9000, then - 9000))
+    with atomic_file(tmp_path / "a.txt") as temporary:
+        temporary.write_text("mine")
+    assert other.exists() == is_kept
 
 
 def test_a_link_is_followed(tmp_path: Path):
