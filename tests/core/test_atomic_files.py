@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -103,33 +104,40 @@ class _Killed(BaseException):
 
 
 @pytest.mark.parametrize("at", range(1, 7))
-def test_old_and_new_files_mixed_never_match_the_checksums(tmp_path: Path, at: int, monkeypatch: pytest.MonkeyPatch):
-    """Killed at any rename: all is old, or all is new, or a reader is told that something is damaged."""
-    with staged_folder(tmp_path / "out") as stage:
-        for name in ("a.txt", "b.txt", "z.txt"):
-            (stage / name).write_text("old")
-    renames = {name: getattr(os, name) for name in ("rename", "replace")}
+@pytest.mark.parametrize("before", [(), ("a.txt", "b.txt", "z.txt")], ids=["empty", "full"])
+def test_a_folder_that_is_filled_in_part_never_matches_its_checksums(
+    tmp_path: Path, before: tuple[str, ...], at: int, monkeypatch: pytest.MonkeyPatch
+):
+    """Killed at any rename: all is old, or all is new, or a reader is told that something is damaged or missing."""
+    out, texts = tmp_path / "out", ("a.txt", "b.txt", "z.txt")
+    out.mkdir()
+    if before:
+        write(out, before, "old")
     count = 0
 
-    def renamed(name: str, *places: object) -> None:
+    def renamed(rename: Callable[..., None], *places: object) -> None:
         nonlocal count
         count += 1
         if count >= at:
             raise _Killed
-        renames[name](*places)
+        rename(*places)
 
     with monkeypatch.context() as patch, contextlib.suppress(_Killed):
-        for name in renames:
-            patch.setattr(os, name, functools.partial(renamed, name))
-        with staged_folder(tmp_path / "out", overwrite=True) as stage:
-            for name in ("a.txt", "b.txt", "z.txt"):
-                (stage / name).write_text("new")
-    found = {(tmp_path / "out" / name).read_text() for name in ("a.txt", "b.txt", "z.txt")}
-    assert len(found) == 1 or damages(tmp_path / "out") != []
-    with staged_folder(tmp_path / "out", overwrite=True) as stage:
-        (stage / "c.txt").write_text("more")
-    assert damages(tmp_path / "out") == []
-    assert {(tmp_path / "out" / name).read_text() for name in ("a.txt", "b.txt", "z.txt")} <= {"old", "new"}
+        for name in ("rename", "replace"):
+            patch.setattr(os, name, functools.partial(renamed, getattr(os, name)))
+        write(out, texts, "new")
+    is_old = {name: (out / name).read_text() for name in texts if (out / name).exists()} == dict.fromkeys(before, "old")
+    is_new = all((out / name).exists() and (out / name).read_text() == "new" for name in texts)
+    assert is_old or is_new or damages(out) != []
+    write(out, texts, "newer")
+    assert damages(out) == []
+    assert {(out / name).read_text() for name in texts} == {"newer"}
+
+
+def write(out: Path, texts: tuple[str, ...], content: str) -> None:
+    with staged_folder(out, overwrite=True) as stage:
+        for name in texts:
+            (stage / name).write_text(content)
 
 
 def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
