@@ -25,6 +25,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
+from mmweaver.core.staging import sync
 from mmweaver.formats.dca1000 import words_of
 from mmweaver.formats.npz_files import read_radar_npz, write_points_npz, write_pose_npz, write_radar_npz
 from mmweaver.result_folder import plain
@@ -105,7 +106,6 @@ class StreamFolder:
     ) -> None:  # fmt: skip
         """Writes one more part. Raises InputError where it cannot be written."""
         if not self.parts:
-            self.out.mkdir(parents=True, exist_ok=True)
             self._write_text("radar.json", cube.config.to_json())
             self._write_meta()
         with staged_folder(self.out / PARTS / f"{self.frames:08d}") as stage:
@@ -135,6 +135,8 @@ class StreamFolder:
                 file.write(words.tobytes())
                 file.flush()
                 os.fsync(file.fileno())
+            if not self.parts:
+                sync(self.out)
         except OSError as error:
             raise cannot_write(self.out / BIN, error) from error
 

@@ -1,14 +1,17 @@
 """The command as a whole: help, version, exit statuses, one line for every error."""
 
 import os
+import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from mmweaver import __version__
 from mmweaver.cli import radar
 from mmweaver.cli.main import main
+from tests.platforms import posix_only
 
 
 def test_help_loads_nothing_heavy():
@@ -152,3 +155,37 @@ def test_rare_options_are_in_the_full_help_alone(capsys: pytest.CaptureFixture[s
         main(["radar", "--help"])
     assert "\n1 more option: mmweaver radar --help-all" in capsys.readouterr().out
     assert "--empty-room" not in texts[1]
+
+
+STOPPED = """
+import sys, time
+from pathlib import Path
+from mmweaver.cli import main
+from mmweaver.core.atomic_files import staged_folder
+
+def write(argv):
+    with staged_folder(Path(sys.argv[1])) as stage:
+        (stage / "half.txt").write_text("half")
+        print("ready", flush=True)
+        time.sleep(30)
+
+main._run = write  # a command that takes its time
+sys.exit(main.main())
+"""
+
+
+@posix_only
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
+def test_a_signal_that_ends_a_command_leaves_nothing_over(name: str, tmp_path: Path):
+    """docs/trust.md: on an error, Ctrl-C or SIGTERM the command removes its temporary files."""
+    reset = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # ignored in the background
+    words = [sys.executable, "-c", reset + STOPPED, str(tmp_path / "new" / "out")]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    assert list(tmp_path.rglob("half.txt"))
+    process.send_signal(getattr(signal, name))
+    _, said = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert said == "mmweaver: error: interrupted; nothing was written\n"
+    assert list(tmp_path.iterdir()) == []

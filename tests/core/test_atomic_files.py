@@ -1,8 +1,12 @@
 """A file or folder is whole or not there, whenever the process dies and whatever the disk answers."""
 
+import contextlib
+import functools
 import os
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -95,6 +99,47 @@ def test_moving_into_a_folder_that_was_interrupted_is_finished(tmp_path: Path, m
     assert damages(tmp_path) == []
 
 
+class _Killed(BaseException):
+    """The process ends here."""
+
+
+@pytest.mark.parametrize("at", range(1, 7))
+@pytest.mark.parametrize("before", [(), ("a.txt", "b.txt", "z.txt")], ids=["empty", "full"])
+def test_a_folder_that_is_filled_in_part_never_matches_its_checksums(
+    tmp_path: Path, before: tuple[str, ...], at: int, monkeypatch: pytest.MonkeyPatch
+):
+    """Killed at any rename: all is old, or all is new, or a reader is told that something is damaged or missing."""
+    out, texts = tmp_path / "out", ("a.txt", "b.txt", "z.txt")
+    out.mkdir()
+    if before:
+        write(out, before, "old")
+    count = 0
+
+    def renamed(rename: Callable[..., None], *places: object) -> None:
+        nonlocal count
+        count += 1
+        if count >= at:
+            raise _Killed
+        rename(*places)
+
+    with monkeypatch.context() as patch, contextlib.suppress(_Killed):
+        for name in ("rename", "replace"):
+            patch.setattr(os, name, functools.partial(renamed, getattr(os, name)))
+        write(out, texts, "new")
+    is_old = {name: (out / name).read_text() for name in texts if (out / name).exists()} == dict.fromkeys(before, "old")
+    is_new = all((out / name).exists() and (out / name).read_text() == "new" for name in texts)
+    assert is_old or is_new or damages(out) != []
+    write(out, texts, "newer")
+    assert damages(out) == []
+    assert {(out / name).read_text() for name in texts} == {"newer"}
+
+
+def write(out: Path, texts: tuple[str, ...], content: str) -> None:
+    with staged_folder(out, overwrite=True) as stage:
+        for name in texts:
+            (stage / name).write_text(content)
+
+
 def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
     first, second = tmp_path / "a.txt", tmp_path / "b.txt"
     with pytest.raises(InputError, match="cannot write"), atomic_files(first, second) as stages:
@@ -130,6 +175,30 @@ def test_what_dead_processes_left_is_removed_and_what_living_ones_write_is_not(t
     with atomic_file(target) as temporary:
         temporary.write_text("new")
     assert names(tmp_path) == sorted([".walk.png.mine", living.name, "walk.png"])
+
+
+@pytest.mark.parametrize(("age_s", "is_kept"), [(0.0, True), (3000.0, True), (4000.0, False)])
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_another_host_writes_stays_for_an_hour_after_its_last_change(
+    tmp_path: Path, kind: str, age_s: float, is_kept: bool
+):
+    """Its processes cannot be asked here; of a folder the newest file inside counts."""
+    own = staging_path(tmp_path / "walk.npz").name
+    place, process = own.rpartition(".mmweaver-")[2].split("-")[:2]
+    other = tmp_path / own.replace(place, "0" * 8 if place[0] != "0" else "f" * 8).replace(f"-{process}-", "-1-")
+    inside = [other]
+    if kind == "folder":
+        other.mkdir()
+        inside = [other / "radar.npz", other]
+    for path in inside[:1]:
+        path.write_text("half")
+    then = time.time() - age_s
+    os.utime(inside[0], (then, then))
+    if kind == "folder":
+        os.utime(other, (then - 9000, then - 9000))
+    with atomic_file(tmp_path / "a.txt") as temporary:
+        temporary.write_text("mine")
+    assert other.exists() == is_kept
 
 
 def test_a_link_is_followed(tmp_path: Path):

@@ -37,6 +37,18 @@ def test_whatever_is_occluded_is_near_the_body(place_m: tuple[float, float, floa
     assert np.isin(occluded, paths.near_body(0)).all()
 
 
+def test_furniture_hides_a_body_behind_it_and_none_in_front_of_it():
+    """A metal panel in the open: 0.4 m in front of the body, 0.4 m behind it, or not there."""
+    person = standing_person((0.0, 2.0, -1.2))
+    shares = []
+    for panels in ((back_wall(1.6, "metal"),), (back_wall(2.4, "metal"),), ()):
+        simulator = Simulator(scene_of((floor(-8.0), *panels)), AWR1843, IDEAL)
+        shares.append(float(paths_of(person, simulator).visible.mean()))
+    hidden, before, alone = shares
+    assert hidden == 0.0
+    assert before == alone > 0.2
+
+
 def test_a_motion_leaves_memory_without_the_garbage_collector(room: Simulator):
     gc.disable()
     try:

@@ -11,6 +11,8 @@ from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths import occlusion
 from mmweaver.paths.body_model import average_body
 from mmweaver.paths.occlusion import occluded
+from mmweaver.paths.paths import Interaction, StaticPaths
+from mmweaver.paths.seen_body import occluded_by
 from tests.rooms import STANDING_M
 
 
@@ -23,6 +25,30 @@ def test_behind_the_chest_is_occluded_and_the_rest_is_not():
     behind, before, beside, above = (0.0, 4.0, 0.1), (0.0, 1.0, 0.0), (0.9, 4.0, 0.1), (0.0, 4.0, 1.6)
     places = torch.tensor([behind, before, beside, above])
     assert occluded(places, _standing(0.0, 2.0, 1.2)[None]).tolist() == [[True, False, False, False]]
+
+
+def _by_capsules(places_m: np.ndarray, joints: torch.Tensor) -> np.ndarray:
+    return occluded(torch.from_numpy(places_m).float(), joints)[0].numpy()
+
+
+def _by_rays(places_m: np.ndarray, joints: torch.Tensor) -> np.ndarray:
+    """As the ray tracer asks of static paths that depart to these places and come back from there."""
+    vertices, faces = average_body().hull(joints.double().numpy())
+    length_m = 2 * np.linalg.norm(places_m, axis=1)[:, None, None]
+    paths = StaticPaths.of(np.ones(len(places_m), complex), length_m, places_m, places_m, Interaction.DIFFUSE)
+    found = occluded_by(RayCaster(vertices[0], faces), paths, np.arange(len(places_m)))
+    return np.isin(np.arange(len(places_m)), found)
+
+
+@pytest.mark.parametrize("decide", [_by_capsules, _by_rays], ids=["capsules", "rays"])
+@pytest.mark.parametrize("away_m", [1.5, 2.0, 4.0])
+def test_what_stands_in_front_of_a_body_is_not_occluded_and_what_stands_behind_is(decide, away_m: float):
+    """Along the line through the chest, whose flesh ends 0.25 m before and behind its joints at most."""
+    joints = _standing(0.0, away_m, 1.2)[None]
+    chest_m = np.array([0.0, away_m, 0.05])
+    before, behind = np.linspace(0.3, away_m - 0.25, 12), np.linspace(away_m + 0.35, 7.0, 12)
+    assert not decide(before[:, None] * chest_m / away_m, joints).any()
+    assert decide(behind[:, None] * chest_m / away_m, joints).all()
 
 
 def test_occlusion_moves_with_the_person():

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.skeleton import joint
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, features_from_joints, joints_from_features
@@ -39,6 +40,20 @@ def test_features_from_joints(sample: tuple[np.ndarray, np.ndarray]):
     assert np.abs(made - features[:-1]).max() < 0.015
     assert np.array_equal(made[:, CONTACTS], features[:-1, CONTACTS])
     assert np.abs(joints_from_features(made) - joints[:-1]).max() < 1e-5
+
+
+@pytest.mark.parametrize("clip", ["walking_1", "basketball_1", "soccer_1"])
+def test_bones_of_cmu_are_a_persons_in_metres(real_data: Path, clip: str):
+    joints_m = read_motion(real_data / CMU, clip=f"test/{clip.partition('_')[0]}/{clip}.txt").joints_m
+    for side in ("left", "right"):
+        assert 0.35 < _bone_m(joints_m, f"{side}_hip", f"{side}_knee") < 0.50  # femur
+        assert 0.33 < _bone_m(joints_m, f"{side}_knee", f"{side}_ankle") < 0.48  # tibia
+        assert 0.24 < _bone_m(joints_m, f"{side}_shoulder", f"{side}_elbow") < 0.38  # humerus
+    assert 0.30 < _bone_m(joints_m, "pelvis", "neck") < 0.65  # spine; its skeleton's neck begins low
+
+
+def _bone_m(joints_m: np.ndarray, start: str, end: str) -> float:
+    return float(np.median(np.linalg.norm(joints_m[:, joint(end)] - joints_m[:, joint(start)], axis=-1)))
 
 
 def test_every_clip_of_cmu_is_read_and_resampled_without_spikes(real_data: Path):

@@ -1,5 +1,7 @@
 """The studio's calls, without a browser: who may make them, and what they give."""
 
+import asyncio
+import contextlib
 import io
 import shlex
 import zipfile
@@ -14,7 +16,9 @@ import pytest
 pytest.importorskip("starlette", reason="the studio's extra is not installed")
 pytest.importorskip("httpx", reason="httpx, which starlette's test client needs, is not installed")
 
+from starlette.routing import Route
 from starlette.testclient import TestClient
+from starlette.websockets import WebSocketDisconnect
 
 from mmweaver import Weaver
 from mmweaver.cli.main import main
@@ -67,6 +71,125 @@ def test_another_host_needs_the_token():
     assert page.post("/api/session").status_code == 403
     assert page.post("/api/session", headers={"x-token": "wrong"}).status_code == 403
     assert page.post("/api/session", headers={"x-token": "secret"}).status_code == 200
+
+
+def _is_policy(closed: WebSocketDisconnect) -> bool:
+    return closed.code == 1008
+
+
+OWN, FOREIGN = {"host": "lab:8765", "origin": "http://lab:8765"}, "http://evil.example"
+
+
+@pytest.mark.parametrize("path", ["/api/presence", "/api/live"])
+@pytest.mark.parametrize(
+    ("headers", "token", "is_let_in"),
+    [
+        (OWN, "secret", True),
+        ({"host": "lab:8765"}, "secret", True),
+        ({**OWN, "host": "evil.example"}, "secret", False),
+        ({"host": "evil.example", "origin": FOREIGN}, "secret", False),  # whose name leads to this machine
+        ({**OWN, "origin": FOREIGN}, "secret", False),
+        ({**OWN, "origin": "http://lab:80"}, "secret", False),
+        (OWN, "wrong", False),
+        (OWN, "", False),
+        (OWN, "secre", False),
+    ],
+)
+def test_a_socket_is_opened_only_where_a_call_would_be_answered(
+    path: str, headers: dict[str, str], token: str, is_let_in: bool
+):
+    """A WebSocket is no subject of the browser's own rules: any page may open one to any host."""
+    studio = StudioServer(Workshop(), workers=1)
+    page = TestClient(studio.app(hosts={"lab"}, token="secret"), base_url="http://lab:8765")
+    name = studio.workshop.sessions.open().id
+    refusal = contextlib.nullcontext() if is_let_in else pytest.raises(WebSocketDisconnect, check=_is_policy)
+    with refusal, page.websocket_connect(f"ws://lab:8765{path}?session={name}&token={token}", headers=headers):
+        pass
+    called = page.post("/api/session", headers={**headers, "x-token": token})
+    assert (called.status_code == 200) == is_let_in
+
+
+def test_every_call_asks_for_host_origin_and_token():
+    app = StudioServer(Workshop(), workers=1).app(hosts={"lab"}, token="secret")
+    page = TestClient(app, base_url="http://lab:8765")
+    calls = [(route.path, method) for route in app.routes if isinstance(route, Route) for method in route.methods or ()]
+    assert len(calls) > 10
+    for path, method in calls:
+        refused = [{"x-token": "secret", "host": "evil.example"}, {"x-token": "secret", "origin": FOREIGN}]
+        for headers in [*refused, *([{}] if path.startswith("/api/") else [])]:
+            assert page.request(method, path, headers=headers).status_code == 403, (path, method, headers)
+
+
+def test_content_is_never_framed_sniffed_kept_or_told_to_others(page: TestClient):
+    own = session(page)
+    room = page.get("/api/room/demo", headers=own)
+    for answer in (page.get("/"), page.get("/page/mmweaver.js"), room):
+        assert answer.status_code == 200
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        assert answer.headers["referrer-policy"] == "no-referrer"
+        assert answer.headers["cache-control"] == "no-store"
+        policy = dict(part.split(maxsplit=1) for part in answer.headers["content-security-policy"].split(";"))
+        assert policy["default-src"] == "'self'"
+        assert {policy[name] for name in ("frame-ancestors", "base-uri", "form-action")} == {"'none'"}
+        assert not {"*", "http:", "https:", "'unsafe-eval'"} & set(" ".join(policy.values()).split())
+        assert "script-src" not in policy  # as default-src: no script from elsewhere, and none in the page
+
+
+@pytest.mark.parametrize("length", ["300000001", "1" + "0" * 30, "-1", "many"])
+def test_an_upload_of_more_than_300_mb_is_refused_before_it_is_read(page: TestClient, length: str):
+    own = session(page)
+    sent: list[Any] = []
+    scope = {
+        "type": "http", "method": "POST", "path": "/api/upload", "query_string": b"", "http_version": "1.1",
+        "headers": [(b"host", b"localhost"), (b"x-session", own["x-session"].encode()),
+                    (b"content-type", b"multipart/form-data; boundary=b"), (b"content-length", length.encode())],
+    }  # fmt: skip
+
+    async def receive() -> dict[str, Any]:
+        raise AssertionError("the body was read")
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    asyncio.run(page.app(scope, receive, send))
+    assert sent[0]["status"] == 422
+    assert b"at most 300 MB" in sent[1]["body"]
+
+
+def test_an_upload_says_how_long_it_is_and_has_few_files(page: TestClient):
+    own = session(page)
+    chunked = page.post("/api/upload", headers=own, content=iter([b"--b"]))  # without a content-length
+    assert chunked.status_code == 422
+    for count, status in ((201, 400), (200, 422)):  # refused unread, and read: nothing known is among them
+        assert upload(page, own, {f"{number}.txt": b"x" for number in range(count)}).status_code == status
+
+
+def test_a_request_that_is_too_long_is_given_up_while_it_comes(page: TestClient):
+    taken = []
+
+    def endless() -> Iterator[bytes]:
+        while True:
+            taken.append(1)
+            assert len(taken) < 50
+            yield b" " * 10_000
+
+    own = session(page)
+    sent: list[Any] = []
+    source = endless()
+    scope = {
+        "type": "http", "method": "POST", "path": "/api/generate", "query_string": b"", "http_version": "1.1",
+        "headers": [(b"host", b"localhost"), (b"x-session", own["x-session"].encode())],
+    }  # fmt: skip
+
+    async def receive() -> dict[str, Any]:
+        return {"type": "http.request", "body": next(source), "more_body": True}
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    asyncio.run(page.app(scope, receive, send))
+    assert sent[0]["status"] == 422
+    assert len(taken) <= 11  # 100 kB
 
 
 def test_nothing_is_loaded_from_elsewhere(page: TestClient):

@@ -20,6 +20,7 @@ from mmweaver.compression.segment import COARSER, SegmentEncoder
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
+from mmweaver.core.staging import sync
 
 HEADER_MARGIN = 24  # a period of many digits takes more bytes than that of one frame
 
@@ -52,6 +53,8 @@ class MmwWriter:
             self._stream = self.path.open("r+b" if self._header else "xb", buffering=0)
             self._stream.truncate(self._end)
             self._stream.seek(self._end)
+            if self._header is None:
+                sync(self.path.parent)
         except OSError as error:
             raise cannot_write(self.path, error) from None
 

@@ -42,6 +42,7 @@ def atomic_files(*paths: Path) -> Iterator[list[Path]]:
         yield staged
         for temporary in staged:
             sync(temporary)
+        _sync_names(made)
         _rename_all(staged, targets)
     except OSError as error:
         raise cannot_write(Path(paths[0]), error) from error
@@ -116,6 +117,7 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
         if not is_new:
             _keep_sums(target, stage)
         sync_tree(stage)
+        _sync_names(made)
         if is_new:
             _rename_new(stage, target, keep_existing=keep_existing)
         else:
@@ -181,6 +183,7 @@ def create_once(path: Path, text: str) -> str:
             try:
                 temporary.write_text(text, encoding="utf-8")
                 sync(temporary)
+                _sync_names(made)
                 _link(temporary, path)
                 sync(with_others)
             except OSError:
@@ -230,6 +233,12 @@ def _make_folders(folder: Path) -> list[Path]:
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     return missing
+
+
+def _sync_names(folders: list[Path]) -> None:
+    """Brings the names of new folders to the disk, without which what is in them would be lost with them."""
+    for folder in folders:
+        sync(folder.parent)
 
 
 def _remove_empty(folders: list[Path]) -> None:

@@ -251,10 +251,12 @@ class StudioServer:
 
 
 async def _json(request: Request) -> Any:
-    body = await request.body()
-    if len(body) > MAX_JSON_BYTES:
-        raise InputError("this request is too long")
-    return parse_json(body, "the request")
+    body = bytearray()
+    async for part in request.stream():  # no more of it is taken into memory than may be
+        body += part
+        if len(body) > MAX_JSON_BYTES:
+            raise InputError("this request is too long")
+    return parse_json(bytes(body), "the request")
 
 
 def _packed(content: bytes) -> Response:

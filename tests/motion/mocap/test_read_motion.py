@@ -12,6 +12,13 @@ from mmweaver.core.skeleton import JOINT_NAMES, joint
 from mmweaver.motion.mocap.read_motion import read_motion
 from tests.motion.mocap.test_joint_names import CONVENTIONS
 
+# where the 38 joints of the collection have a joint of ours
+CMU_JOINTS = {
+    "pelvis": 0, "left_hip": 2, "left_knee": 3, "left_ankle": 4, "left_foot": 5, "right_hip": 8, "right_knee": 9,
+    "right_ankle": 10, "right_foot": 11, "spine1": 14, "spine2": 15, "neck": 17, "head": 18, "left_shoulder": 21,
+    "left_elbow": 22, "left_wrist": 23, "right_shoulder": 30, "right_elbow": 31, "right_wrist": 32,
+}  # fmt: skip
+
 
 def shape_of(joints: np.ndarray) -> np.ndarray:
     """What stays the same wherever a motion stands: distances from the first pelvis, and heights."""
@@ -50,6 +57,25 @@ def test_a_bvh_of_the_cmu_collection_is_known_by_its_unit(tmp_path: Path, second
     assert clip.height_m == pytest.approx(1.75, abs=0.05)
     assert any("the CMU collection's unit" in note for note in clip.notes)
     np.testing.assert_allclose(shape_of(clip.joints_m), shape_of(joints), atol=0.01)
+
+
+@pytest.mark.parametrize("kind", ["npz", "bvh"])
+def test_bones_of_a_clip_of_the_cmu_collection_have_their_metres(tmp_path: Path, kind: str):
+    """The collection's own unit in .bvh, metres in the arrays of its 38 joints."""
+    path, joints = tmp_path / f"clip.{kind}", walk(fps=120.0)[:120]
+    if kind == "npz":
+        positions = np.zeros((len(joints), 38, 3), np.float16)
+        for name, number in CMU_JOINTS.items():
+            positions[:, number] = y_up(joints)[:, joint(name)]
+        np.savez(path, names=np.array(["walk"]), lengths=np.array([120]), pos=positions, parents=np.zeros(38, int))
+    else:
+        names = tuple(CONVENTIONS["cmu"].get(name, name) for name in JOINT_NAMES)
+        write_bvh(path, y_up(joints) / 0.0564444, names=names, fps=120.0, order="ZYX")
+    got = read_motion(path).joints_m
+    for start, end in (("left_hip", "left_knee"), ("right_knee", "right_ankle"), ("left_elbow", "left_wrist")):
+        length_m, own_m = (np.linalg.norm(of[:, joint(end)] - of[:, joint(start)], axis=-1) for of in (got, joints))
+        np.testing.assert_allclose(np.median(length_m), np.median(own_m), atol=0.01)
+        assert 0.2 < np.median(length_m) < 0.5
 
 
 def test_what_is_said_wins(tmp_path: Path):

@@ -88,6 +88,18 @@ def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
     assert hidden.notes == ()  # nothing is known to be there
 
 
+def test_nothing_but_what_the_camera_sees_of_the_trunk_decides_between_two_free_seats():
+    """Alike but for that, and in either order; the legs of neither are seen, the trunk of the farther one is not."""
+    scene = room()
+    legs_low = scene.photo.depth_m.copy()
+    legs_low[24:] = 1.0  # a table before both hides what is lower than the camera
+    scene = dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=legs_low))
+    seats = [dataclasses.replace(_placement(y - 2.0), seats_m=((0.0, y),)) for y in (3.8, 2.4)]
+    for order in (seats, seats[::-1]):
+        best = least_collision(lambda _again, order=order: order, _moved, _Open(scene))
+        assert best.placement.seats_m == ((0.0, 2.4),)
+
+
 def test_a_trunk_behind_the_back_of_a_seat_that_was_found_costs_little():
     seats = [dataclasses.replace(_placement(1.8), seats_m=((0.0, 3.8),))]
     assumed, found = (

@@ -203,7 +203,8 @@ class CandidateSampler:
         sits_down = following is not None and following.lower == "sit_down"
         if not sits_down and step.direction != "seat":
             return None
-        ways = self._ways_of(following.seat if following and sits_down else step.seat)
+        named = step.seat if step.direction == "seat" else ""
+        ways = self._ways_of((following.seat if following and sits_down else "") or named)
         return approach_from(trajectory, step, ways, _direction_rad(trajectory, step))
 
     def _start(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting | None]:
