@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # in the order of the help; their modules are imported where an interruption is handled already
 COMMANDS = (
-    "generate", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose", "radar",
+    "generate", "sample", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose", "radar",
     "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset", "train",
     "verify", "completion",
 )  # fmt: skip
