@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 # in the order of the help; their modules are imported where an interruption is handled already
 COMMANDS = (
-    "generate", "sample", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose", "radar",
-    "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset", "train",
-    "verify", "completion",
+    "generate", "sample", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose",
+    "radar", "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset",
+    "train", "verify", "completion",
 )  # fmt: skip
 DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
 EXAMPLES = """examples:
