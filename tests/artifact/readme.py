@@ -21,7 +21,9 @@ class Recipe:
 
     @property
     def commands(self) -> list[list[str]]:
-        """The words of each command of a line of shell."""
+        """The words of each command of a line of shell; of Python none."""
+        if self.is_python:
+            return []
         lexer = shlex.shlex(self.text, posix=True, punctuation_chars="&")
         lexer.whitespace_split = True
         commands: list[list[str]] = [[]]
@@ -46,3 +48,9 @@ def recipes() -> list[Recipe]:
             others = [line.text for line in lines if line.commands[0][0] not in ("mmweaver", *INSTALLING)]
             assert not others, f"no recipe of mmweaver: {others}"
     return found
+
+
+def extras_of_the_readme() -> list[str]:
+    """The extras that the page tells a reader to install."""
+    named = re.findall(r"pip install 'mmweaver\[([\w,]+)\]'", PAGE.read_text(encoding="utf-8"))
+    return sorted({extra for group in named for extra in group.split(",")})
