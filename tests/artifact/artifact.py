@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
 
@@ -125,11 +126,17 @@ def needed_distributions(own: Distribution, extras: Iterable[str]) -> set[str]:
     return needed
 
 
+@cache
+def modules_of_environment() -> dict[str, list[str]]:
+    """The distributions of each module that can be imported here."""
+    return dict(packages_distributions())
+
+
 def absent_modules(own: Distribution, extras: Iterable[str]) -> set[str]:
     """Modules of the environment that an installation with some extras alone would lack."""
     needed = needed_distributions(own, extras)
     return {
         module
-        for module, names in packages_distributions().items()
+        for module, names in modules_of_environment().items()
         if not needed & {canonicalize_name(name) for name in names}
     }

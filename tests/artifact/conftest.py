@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
+from mmweaver.cli.main import COMMANDS
 from tests.artifact.artifact import Installed, build, copy_sources, install
-from tests.artifact.readme import extras_of_the_readme, recipes
+from tests.artifact.readme import Recipe, extras_of_the_readme, recipes
 from tests.artifact.smaller import smaller
 
 RECIPE_RUNNER = Path(__file__).parent / "run_recipes.py"
@@ -41,10 +42,13 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
 
 @pytest.fixture(scope="session")
 def carried_out(installed: Installed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, str]]:
-    """The folder in which all recipes ran, with no packages but those that the page names, and what each printed."""
+    """The folder in which all recipes ran, and the help of all commands, and what each printed.
+
+    There were no packages but the dependencies and those of the extras that the page names.
+    """
 
     def run_all(place: Path) -> None:
-        given = [smaller(one) for one in recipes()]
+        given = [*map(smaller, recipes()), *(Recipe(f"mmweaver {name} --help") for name in COMMANDS)]
         words = json.dumps([[one.text, one.is_python, one.commands] for one in given])
         (place / "reader").mkdir()
         done = installed.run(

@@ -10,7 +10,7 @@ SMALLER = {
     "--out walk/ --seed 0": "--out walk/ --seed 0 --no-pictures --frames 5",
     "--out board/": "--out board/ --no-pictures",
     "--out left/": "--out left/ --no-pictures --frames 5",
-    "--out empty/": "--out empty/ --no-pictures --no-analysis --range-bins 8,71",
+    "--out empty/": "--out empty/ --no-pictures --no-analysis --range-bins 16,55",
     "overwrite=True)": "overwrite=True, pictures=False)",
 }
 

@@ -1,4 +1,4 @@
-"""Packages that single features need, by the extra that installs them: pip install 'mmweaver[EXTRA]'."""
+"""Packages that single features need, by the extra that installs them."""
 
 from importlib.util import find_spec
 

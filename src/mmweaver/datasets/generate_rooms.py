@@ -43,7 +43,7 @@ def generate_dataset(
     the rooms that are there are checked, and damaged ones made anew. Raises InputError for a folder of another plan,
     and where a worker was killed.
     """
-    need(*(("dataset", "a data set", "zarr") if ray_address is None else ("cluster", "--ray-address")))
+    check_packages(ray_address)
     rooms = plan.rooms()
     check_for_leaks(rooms)
     if repair:
@@ -66,6 +66,14 @@ def generate_dataset(
     finally:
         sweep(resolved(folder), again=True)
     return reports
+
+
+def check_packages(ray_address: str | None) -> None:
+    """Raises InputError where a package is missing that `generate_dataset` needs."""
+    if ray_address is None:
+        need("dataset", "a data set", "zarr")
+    else:
+        need("cluster", "--ray-address")
 
 
 Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]

@@ -14,8 +14,8 @@ NO_VIDEO = "damaged or no video ({reason}); is it whole? or give the picture wit
 def read_video_frame(path: Path, index: int, extra: str = "capture") -> RgbPixels:
     """Frame `index` of a video as uint8 RGB (height, width, 3).
 
-    `extra`: what to install for PyAV, for the message where it is missing. The frames before it are decoded too, since most codecs store differences. Raises InputError where the file is not a
-    video, is damaged, or has no such frame.
+    The frames before it are decoded too, since most codecs store differences. `extra`: the one to install where PyAV is
+    missing. Raises InputError there, and where the file is not a video, is damaged, or has no such frame.
     """
     need(extra, f"{path} is a video, which", "av")
     import av
