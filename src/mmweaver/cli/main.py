@@ -23,6 +23,7 @@ COMMANDS = (
 DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
 EXAMPLES = """examples:
   mmweaver generate --demo
+  mmweaver sample room/ && cd room/
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
       --text "a person walks towards the radar, then waves with the left hand" --out walk/
   mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/
