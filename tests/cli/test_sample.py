@@ -32,7 +32,7 @@ def test_the_picture_is_that_of_the_bundled_room(sample: Path):
 
 
 def test_the_recording_is_of_a_room_in_which_nothing_moves(sample: Path):
-    """Three seconds; the room's echoes stand still, and what changes from chirp to chirp is noise, as strong everywhere."""
+    """Three seconds; the room's echoes stand still, what changes from chirp to chirp is noise, equally strong."""
     radar = load_radar(str(sample / "profile.cfg"))
     recorded = read_bin(sample / "empty.bin", radar)
     assert len(recorded.samples) * radar.frame_period_s == pytest.approx(3.0)
