@@ -54,13 +54,12 @@ def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> N
     from PIL import Image
 
     from mmweaver.core.atomic_files import staged_folder
-    from mmweaver.scene.sample_photo import SAMPLE_PICTURE
+    from mmweaver.scene.sample_photo import sample_photo
 
     with staged_folder(out, overwrite=overwrite) as stage:
         for name in bundled:
             shutil.copyfile(source / name, stage / name)
-        with Image.open(SAMPLE_PICTURE) as picture:
-            picture.save(stage / PICTURE)
+        Image.fromarray(sample_photo()[0].rgb).save(stage / PICTURE)
         _record_empty_room(stage)
 
 

@@ -6,9 +6,8 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.scene.read_photo import read_photo
 
 SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
-SAMPLE_PICTURE = SAMPLE_FOLDER / "rgb.webp"
 
 
 def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
     """The sample room's photo, and the assumptions of `read_photo`."""
-    return read_photo(SAMPLE_PICTURE, SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")
+    return read_photo(SAMPLE_FOLDER / "rgb.webp", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")
