@@ -14,10 +14,14 @@ bench: export PYTHONPATH := .
 bench: export OMP_NUM_THREADS := 1
 bench: export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo studio test test-slow check lint unit bench fuzz faults docs clean
+.PHONY: demo wheel studio test test-slow check lint unit bench fuzz faults docs clean
 
 demo: $(STAMP)  ## the bundled sample, into demo/
 	$(BIN)/mmweaver generate --demo --out demo --overwrite
+
+wheel: $(STAMP)  ## what users install, into dist/
+	rm -rf build/lib  # files of an earlier build that are gone since would be packed, too
+	$(BIN)/pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation --wheel-dir dist .
 
 test: $(STAMP)  ## exactly what CI runs: linters and tests side by side
 	$(MAKE) --jobs=2 lint unit

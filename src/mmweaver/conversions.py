@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.result_folder import plain
@@ -23,10 +23,9 @@ def to_dataset(
     cube: RadarCube, points: PointCloud, poses: tuple[PoseSequence, ...], adc: AdcCube | None, meta: dict[str, Any]
 ) -> "Dataset":
     """See `Generation.to_xarray`. Raises InputError where xarray is not installed."""
-    try:
-        import xarray
-    except ImportError:
-        raise InputError("to_xarray needs xarray: pip install 'mmweaver[xarray]'") from None
+    need("xarray", "to_xarray", "xarray")
+    import xarray
+
     grid = cube.grid
     variables: dict[str, Any] = {
         "cube": (CUBE_DIMENSIONS, cube.values, {"scale_sqrt_mw": cube.scale}),

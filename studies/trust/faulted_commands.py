@@ -92,6 +92,7 @@ def faulted_commands(inputs: Path) -> list[FaultedCommand]:
         FaultedCommand("process", f"process {samples} --no-pictures --out OUT/p"),
         FaultedCommand("points", f"points {walk}/points.npz -o OUT/points.npz --quiet"),
         FaultedCommand("export", f"export {walk} --to mars --out OUT/e"),
+        FaultedCommand("sample", "sample OUT/s --quiet", computes=GENERATED),
         FaultedCommand("rooms", "rooms OUT/r --kinds office --layouts 1 --quiet", computes=ROOMS),
         FaultedCommand("generate", f"{wave} --out OUT/g", computes=GENERATED),
         FaultedCommand("generate --overwrite", f"{wave} --seed 1 --out OUT/g --overwrite", computes=GENERATED,

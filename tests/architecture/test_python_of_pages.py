@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = {page.name: page for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md")))}
 # Pages whose code is run by a test of their own.
 ELSEWHERE = {
-    "README.md": "tests/test_generate.py",
+    "README.md": "tests/artifact/test_recipes.py",
     "extend.md": "tests/test_register.py, in a process of its own, for it registers things",
     "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
 }

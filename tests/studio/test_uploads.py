@@ -77,7 +77,7 @@ def test_paths_that_do_not_fit_are_left_out(listed: str | None):
 
 def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
-    monkeypatch.setattr(uploads, "find_spec", lambda _: object())
+    monkeypatch.setattr(uploads, "is_installed", lambda _: True)
     with pytest.raises(NoWayError, match="a photo alone") as refused:
         take(session, tmp_path, AWR)
     (way,) = refused.value.ways_on
@@ -93,8 +93,8 @@ def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, mo
 
 def test_without_the_package_it_says_what_to_install(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
-    monkeypatch.setattr(uploads, "find_spec", lambda _: None)
-    with pytest.raises(NoWayError, match=r"mmweaver\[depth\]") as refused:
+    monkeypatch.setattr(uploads, "is_installed", lambda _: False)
+    with pytest.raises(NoWayError, match=r"mmweaver\[pretrained\]") as refused:
         take(session, tmp_path, AWR)
     assert refused.value.ways_on == []
 

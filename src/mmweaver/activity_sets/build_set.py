@@ -29,6 +29,7 @@ from mmweaver.activity_sets.sentence_draws import GivenPlacing
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import check_output_folder, is_empty
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.seeding import stream
@@ -179,6 +180,7 @@ class SetBuilder:
 
     def check_folder(self) -> None:
         """Raises InputError for a folder that holds something else; takes no time, unlike the plan."""
+        need("dataset", "a labelled set", "zarr")
         check_output_folder(self.out, overwrite=True, files=[SET_FILE, LEAKS_FILE])
         if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
             raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from mmweaver.cli.batch import given_placing
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 if TYPE_CHECKING:
     from mmweaver.generate import Weaver
@@ -25,6 +26,7 @@ def check_store(arguments: argparse.Namespace) -> None:
         if arguments.iq is not None:
             raise InputError("--iq is for --store; result folders hold complex64")
         return
+    need("dataset", "--store", "zarr")
     if arguments.texts is None:
         raise InputError("--store is for --texts; a single sequence becomes a store with: mmweaver export --to zarr")
     for name in NOT_STORED:

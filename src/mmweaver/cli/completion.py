@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 EXAMPLES = """examples:
   mmweaver completion bash > ~/.local/share/bash-completion/completions/mmweaver
@@ -25,9 +25,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the script on stdout. Raises InputError where shtab is not installed."""
-    try:
-        import shtab
-    except ImportError:
-        raise InputError("completion needs shtab: pip install 'mmweaver[completion]'") from None
+    need("completion", "completion", "shtab")
+    import shtab
+
     print(shtab.complete(arguments.whole_parser, shell=arguments.shell))
     return 0

@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
     from mmweaver.datasets.dataset_plan import MOST, DatasetPlan, check_for_leaks
     from mmweaver.datasets.dataset_store import PLAN_FILE
-    from mmweaver.datasets.generate_rooms import generate_dataset
+    from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
     from mmweaver.formats.radar_file import load_radar
 
     workers = arguments.workers
@@ -105,6 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.dry_run:
         print(json.dumps(asdict(cost)) if arguments.json else cost.summary(workers))
         return 0
+    check_packages(arguments.ray_address)
     if not (arguments.quiet or arguments.json):
         print(cost.summary(workers), file=sys.stderr)
     check_output_folder(arguments.out, overwrite=True, files=[PLAN_FILE])

@@ -8,6 +8,7 @@ from typing import Any
 
 from mmweaver.cli.recognise_text import accuracy_lines, confusion_lines, score_lines
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
@@ -99,6 +100,7 @@ def _of_frozen(arguments: argparse.Namespace) -> dict[str, Any]:
     from mmweaver.recognition.point_recording_files import read_point_recordings
     from mmweaver.recognition.scoring import evaluate_recogniser, report
 
+    need("evaluate", "--frozen", "sklearn")
     frozen = load_frozen(arguments.frozen)
     recordings = read_point_recordings(arguments.recordings, frozen.labels)
     scores = report(evaluate_recogniser(frozen.train(), recordings, frozen.window_s))

@@ -16,13 +16,14 @@ if TYPE_CHECKING:
 
 # in the order of the help; their modules are imported where an interruption is handled already
 COMMANDS = (
-    "generate", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose", "radar",
-    "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset", "train",
-    "verify", "completion",
+    "generate", "sample", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose",
+    "radar", "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset",
+    "train", "verify", "completion",
 )  # fmt: skip
 DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
 EXAMPLES = """examples:
   mmweaver generate --demo
+  mmweaver sample room/ && cd room/
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
       --text "a person walks towards the radar, then waves with the left hand" --out walk/
   mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/

@@ -35,7 +35,7 @@ def add_motion_options(parser: Options) -> None:
     parser.add_argument(
         "--motion-model", type=source, metavar="PATH|NAME",
         help=Rare("a motion model for a --text that the built-in library does not know: MotionGPT (a checkpoint's file,"
-        " folder or name on the Hub, or 'small'; needs the extra 'motiongpt'), a plug-in's name, or module:attribute"),
+        " folder or name on the Hub, or 'small'; needs the extra 'pretrained'), a plug-in's name, or module:attribute"),
     )  # fmt: skip
     parser.add_argument(
         "--motion-model-for", choices=("unknown", "all"), default="unknown",

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 EXAMPLES = """examples:
   mmweaver studio                                   # the bundled room, at http://127.0.0.1:8765
@@ -15,7 +16,6 @@ EXAMPLES = """examples:
 """
 DEFAULT_PORT = 8765
 LOOPBACK = "127.0.0.1"
-PACKAGES = ("starlette", "uvicorn", "websockets", "multipart", "python_multipart")  # of the extra
 
 
 def add_command(commands: Any) -> argparse.ArgumentParser:
@@ -56,12 +56,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"the port must be 0 to 65535, not {arguments.port}")
     if arguments.workers is not None and not 1 <= arguments.workers <= 64:
         raise InputError(f"--workers must be 1 to 64, not {arguments.workers}")
-    try:
-        from mmweaver.studio.serve import serve
-    except ModuleNotFoundError as error:
-        if error.name not in PACKAGES:
-            raise
-        raise InputError(f"the studio needs the package {error.name}; pip install 'mmweaver[studio]'") from None
+    need("studio", "the studio")
+    from mmweaver.studio.serve import serve
 
     serve(
         arguments.room, arguments.recording, arguments.recogniser, host=arguments.host, port=arguments.port,

@@ -10,6 +10,7 @@ from mmweaver.cli import train_recipes
 from mmweaver.cli.arguments import Rare, number, source, whole
 from mmweaver.cli.config_file import REQUEST_FILE, write_request
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -159,6 +160,8 @@ def _kept(out: Path) -> str:
 
 def _check(arguments: argparse.Namespace) -> None:
     train_recipes.check(arguments)
+    if arguments.tensorboard:
+        need("training", "--tensorboard", "tensorboard")
     for name in ("steps", "batch", "sequences", "validate_every"):
         count = getattr(arguments, name)
         if count is not None and count < 1:

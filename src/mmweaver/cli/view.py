@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
@@ -60,14 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _open_rerun(arguments: argparse.Namespace) -> int:
     """Rerun's own viewer, of the installed package; nothing is fetched."""
-    from importlib.util import find_spec
-
     if arguments.out is not None or arguments.no_browser:
         raise InputError(f"{arguments.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
     if not arguments.folder.is_file():
         raise InputError(f"{arguments.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
-    if find_spec("rerun") is None:
-        raise InputError("Rerun's viewer needs the package rerun-sdk; pip install 'mmweaver[rerun]'")
+    need("rerun", "Rerun's viewer", "rerun")
     return subprocess.run([sys.executable, "-m", "rerun", str(arguments.folder)], check=False).returncode
 
 

@@ -12,14 +12,20 @@ import math
 from typing import Any
 
 import numpy as np
-from numcodecs.abc import Codec
-from numcodecs.compat import ensure_contiguous_ndarray_like, ndarray_copy
-from numcodecs.registry import register_codec
 
 from mmweaver.compression.mmw_codec import compress_cube, values_of_bytes
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
+
+try:
+    from numcodecs.abc import Codec
+    from numcodecs.compat import ensure_contiguous_ndarray_like, ndarray_copy
+    from numcodecs.registry import register_codec
+except ImportError:
+    need("dataset", "this codec of Zarr", "numcodecs")
+    raise
 
 
 class MmwCodec(Codec):

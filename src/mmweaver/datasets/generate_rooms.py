@@ -8,6 +8,7 @@ from pathlib import Path
 
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.staging import sweep
@@ -43,6 +44,7 @@ def generate_dataset(
     the rooms that are there are checked, and damaged ones made anew. Raises InputError for a folder of another plan,
     and where a worker was killed.
     """
+    check_packages(ray_address)
     rooms = plan.rooms()
     check_for_leaks(rooms)
     if repair:
@@ -66,6 +68,14 @@ def generate_dataset(
     finally:
         sweep(resolved(folder), again=True)
     return reports
+
+
+def check_packages(ray_address: str | None) -> None:
+    """Raises InputError where a package is missing that `generate_dataset` needs."""
+    if ray_address is None:
+        need("dataset", "a data set", "zarr")
+    else:
+        need("cluster", "--ray-address")
 
 
 Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]
@@ -147,10 +157,8 @@ def _end_with_parent() -> None:
 @contextmanager
 def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
     """One task per room; a lost task is retried elsewhere, for rooms are written atomically."""
-    try:
-        import ray
-    except ImportError as error:
-        raise InputError("--ray-address needs Ray; install it with: pip install 'mmweaver[cluster]'") from error
+    import ray
+
     if address == "local":
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
     else:

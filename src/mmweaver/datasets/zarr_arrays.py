@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import RadarCube
 
 UNITS = {
@@ -21,10 +21,9 @@ _PEAK = 16384.0  # of the largest float16 of a sequence
 
 def zarr_module() -> Any:
     """The zarr module, imported lazily. Raises InputError where it is not installed."""
-    try:
-        import zarr
-    except ImportError as error:
-        raise InputError("data sets need Zarr; install it with: pip install 'mmweaver[dataset]'") from error
+    need("dataset", "a data set", "zarr")
+    import zarr
+
     return zarr
 
 

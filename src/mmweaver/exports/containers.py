@@ -7,6 +7,7 @@ import numpy as np
 
 from mmweaver.conversions import to_dataset
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.zarr_arrays import consolidate
 from mmweaver.formats.npz_files import POINT_COLUMNS
@@ -43,10 +44,9 @@ def write_netcdf(result: StoredResult, out: Path) -> str:
     Dimensions and coordinates have one name each, so that xarray's `.sel(range=2.0)` works. Raises InputError where
     xarray is not installed, or the cube is too large for the format.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise InputError("netCDF needs xarray: pip install 'mmweaver[export]'") from None
+    need("export", "netCDF", "xarray")
+    import xarray
+
     cube, grid = result.cube, result.cube.grid
     if cube.values.nbytes // 2 > MAX_NETCDF_BYTES:
         raise InputError("this cube is too large for netCDF 3 (2 GB a variable); export fewer frames, or to mat")
@@ -77,10 +77,7 @@ def write_zarr(result: StoredResult, out: Path) -> str:
     The names of joints and axes are attributes, since Zarr 3 has no settled type for texts of fixed length.
     Raises InputError where xarray or zarr is not installed.
     """
-    try:
-        import zarr  # noqa: F401
-    except ImportError:
-        raise InputError("a Zarr store needs the package zarr: pip install 'mmweaver[dataset]'") from None
+    need("export", "a Zarr store", "xarray", "zarr")
     dataset = to_dataset(result.cube, result.points, result.poses, None, result.meta)
     names = {f"{name}_names": [str(one) for one in dataset[name].values] for name in ("joint", "axis")}
     dataset = dataset.drop_vars(["joint", "axis"]).assign_attrs(names)

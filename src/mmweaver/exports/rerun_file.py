@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.stored_result import StoredResult
@@ -17,10 +17,8 @@ def write_rerun(result: StoredResult, out: Path) -> str:
 
     Raises InputError where rerun-sdk is not installed.
     """
-    try:
-        rr: Any = import_module("rerun")
-    except ImportError:
-        raise InputError("Rerun's format needs the package rerun-sdk; pip install 'mmweaver[rerun]'") from None
+    need("rerun", "Rerun's format", "rerun")
+    rr: Any = import_module("rerun")
     recording = rr.RecordingStream("mmweaver", recording_id=f"mmweaver-{result.meta.get('seed', 0)}")
     recording.save(out / "result.rrd")
     recording.log("radar", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import PointCloud
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import BONES
@@ -18,7 +18,6 @@ from mmweaver.stored_result import StoredResult
 
 FRAME = "radar"
 POINT_FIELDS = ("x", "y", "z", "velocity", "snr_db")
-_MISSING = "this format needs the package {name}; pip install 'mmweaver[export]'"
 
 
 def ros_axes(points_m: Float[Array, "*shape 3"]) -> Float[Array, "*shape 3"]:
@@ -31,11 +30,10 @@ def write_ros2(result: StoredResult, out: Path) -> str:
 
     The map is a Float32MultiArray (range, doppler) of power in dB. Raises InputError where rosbags is not installed.
     """
-    try:
-        from rosbags.rosbag2 import Writer
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError as error:
-        raise InputError(_MISSING.format(name=error.name)) from None
+    need("export", "a ROS 2 bag", "rosbags")
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
     store = get_typestore(Stores.ROS2_HUMBLE)
     make = {name.split("/")[-1]: kind for name, kind in store.types.items()}
     power_db = _power_db(result)
@@ -63,11 +61,10 @@ def write_mcap(result: StoredResult, out: Path) -> str:
 
     Raises InputError where foxglove-sdk is not installed.
     """
-    try:
-        import foxglove
-        from foxglove import messages as said
-    except ImportError as error:
-        raise InputError(_MISSING.format(name=error.name)) from None
+    need("export", "MCAP", "foxglove")
+    import foxglove
+    from foxglove import messages as said
+
     numeric = said.PackedElementFieldNumericType.Float32
     fields = [
         said.PackedElementField(name=name, offset=4 * place, type=numeric) for place, name in enumerate(POINT_FIELDS)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_pictures import read_animation
 from mmweaver.figures.animation import render_pictures
 from mmweaver.figures.figure_data import FigureData
@@ -27,10 +27,9 @@ def write_webm(result: StoredResult, out: Path) -> str:
 
 def write_video(result: StoredResult, file: Path) -> str:
     """Encodes the pictures of preview.gif in real time. Raises InputError where PyAV is not installed."""
-    try:
-        import av
-    except ImportError:
-        raise InputError("a video needs the package av; pip install 'mmweaver[export]'") from None
+    need("export", "a video", "av")
+    import av
+
     pictures = _pictures(result)
     period_s = result.cube.config.frame_period_s
     rate = Fraction(len(pictures), 1) / Fraction(len(result.cube.grid.frame_time_s) * period_s).limit_denominator(1000)

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.models.weights import WEIGHTS_FILE
 
 HUB_NAME = re.compile(r"[A-Za-z0-9][\w.-]*/[A-Za-z0-9][\w.-]*")
@@ -28,12 +29,9 @@ def find_weights(source: str | Path, *, revision: str | None = None) -> Path:
 
 
 def _of_hub(name: str, revision: str | None) -> Path:
-    try:
-        from huggingface_hub import hf_hub_download
-    except ImportError:
-        raise InputError(
-            f"{name} is no file here, and the Hub needs: pip install 'mmweaver[weaver]'; give a weight file"
-        ) from None
+    need("weaver", f"{name} is no file here; a name on the Hub", "huggingface_hub")
+    from huggingface_hub import hf_hub_download
+
     try:
         return Path(hf_hub_download(name, WEIGHTS_FILE, revision=revision))
     except Exception as error:  # no network, no such repository, no such file: as many kinds of errors

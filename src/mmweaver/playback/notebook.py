@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.playback.html_page import page_file
 from mmweaver.playback.sequence import Playback
 from mmweaver.playback.wire import pack
@@ -10,11 +10,9 @@ from mmweaver.playback.wire import pack
 
 def player_widget(sequence: Playback, room: Playback | None) -> Any:
     """An anywidget.AnyWidget that plays a sequence. Raises InputError where the extra 'notebook' is not installed."""
-    try:
-        import anywidget
-        import traitlets
-    except ModuleNotFoundError as error:
-        raise InputError(f"show() needs the package {error.name}; pip install 'mmweaver[notebook]'") from None
+    need("notebook", "show()", "anywidget")
+    import anywidget
+    import traitlets
 
     class PlayerWidget(anywidget.AnyWidget):
         _esm = page_file("mmweaver.js").decode()

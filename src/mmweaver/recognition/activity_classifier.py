@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 Features = Float[np.ndarray, "window feature"]
 
@@ -43,10 +44,9 @@ class ActivityClassifier:
 
         Raises InputError where scikit-learn is missing.
         """
-        try:
-            from sklearn.ensemble import ExtraTreesClassifier, HistGradientBoostingClassifier
-        except ImportError:
-            raise InputError("recognising activities needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
+        need("evaluate", "this recogniser", "sklearn")
+        from sklearn.ensemble import ExtraTreesClassifier, HistGradientBoostingClassifier
+
         chosen = self.settings
         shared: dict[str, Any] = {"max_features": chosen.feature_share, "class_weight": "balanced"}
         grown: dict[str, Any] = {"min_samples_leaf": chosen.leaf_size, "n_jobs": 1}

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
@@ -68,6 +69,7 @@ def train_recogniser(
     is called with a stage, what is done of it and how much there is. Raises InputError.
     """
     options, out = options or TrainingOptions(), Path(out)
+    need("evaluate", "training a recogniser", "sklearn")
     task = read_task(task_file)
     check_output_folder(out, overwrite=True, files=MODEL_FILES)
     recipe = SequenceRecipe.of(task, options.prior, options.seed)

@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.recognition.activity_classifier import Features
 
@@ -52,10 +53,9 @@ def grow_trees(
 
     Raises InputError where scikit-learn is missing.
     """
-    try:
-        from sklearn.ensemble import ExtraTreesClassifier
-    except ImportError:
-        raise InputError("training a recogniser needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
+    need("evaluate", "training a recogniser", "sklearn")
+    from sklearn.ensemble import ExtraTreesClassifier
+
     grown = ExtraTreesClassifier(
         trees, min_samples_leaf=leaf_size, max_features=feature_share, n_jobs=1, random_state=seed
     ).fit(features, labels, sample_weight=weights)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import check_regular, foreign_errors
 from mmweaver.core.shapes import RgbPixels
@@ -77,11 +78,10 @@ def read_bag_photo(path: Path, index: int = 0) -> CapturedPhoto:
 
 def _reader(path: Path) -> tuple[Any, Callable[..., Any]]:
     """What opens a bag, and what reads its messages. Raises InputError where rosbags is not installed."""
-    try:
-        from rosbags import rosbag1, rosbag2
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise InputError(f"{path} needs the package rosbags; pip install 'mmweaver[capture]'") from None
+    need("capture", str(path), "rosbags")
+    from rosbags import rosbag1, rosbag2
+    from rosbags.typesys import Stores, get_typestore
+
     if path.suffix.lower() in ROS1:
         return rosbag1.Reader, get_typestore(Stores.ROS1_NOETIC).deserialize_ros1
     return rosbag2.Reader, get_typestore(Stores.LATEST).deserialize_cdr

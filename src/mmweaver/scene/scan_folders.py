@@ -152,7 +152,7 @@ def _stray(folder: Path, index: int) -> _Frame:
         raise InputError(f"{folder / 'camera_matrix.csv'} holds {matrix.shape} numbers; it must be 3 x 3")
     video = folder / "rgb.mp4"
     number = int(depth.stem) if depth.stem.isdigit() else index
-    rgb = read_video_frame(video, number)
+    rgb = read_video_frame(video, number, "phone")
     lens = [float(matrix[at]) for at in ((0, 0), (1, 1), (0, 2), (1, 2))]
     said = number_table(folder / "odometry.csv") if (folder / "odometry.csv").is_file() else np.zeros((0, 0))
     own = said[said[:, 1] == number] if said.shape[1] >= 13 else said[:0]

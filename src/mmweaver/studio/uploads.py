@@ -1,12 +1,12 @@
 """Files that a visitor brings: a room as photo, scan or mesh, a recording, a radar, a motion or a result folder."""
 
 import secrets
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from mmweaver.core.board import read_board
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.formats.radar_file import load_radar
@@ -121,8 +121,8 @@ def _without_depth(session: Session, photo: Path) -> NoWayError:
     name = secrets.token_urlsafe(6)
     session.photos[name] = photo
     said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
-    if find_spec("transformers") is None:
-        return NoWayError(f"{said}; or pip install 'mmweaver[depth]', and a model will estimate it", [])
+    if not is_installed("transformers"):
+        return NoWayError(f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [])
     return NoWayError(said, [{"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}])
 
 

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 PRECISIONS = ("auto", "float32", "bf16")
 CPU = torch.device("cpu")
@@ -99,10 +100,7 @@ def _device(name: str) -> torch.device:
 
 
 def _accelerator(device: torch.device) -> Any:
-    try:
-        from accelerate import Accelerator
-    except ImportError:
-        raise InputError(
-            "several processes need accelerate; install it with: pip install 'mmweaver[training]'"
-        ) from None
+    need("training", "training in several processes", "accelerate")
+    from accelerate import Accelerator
+
     return Accelerator(cpu=device.type == "cpu")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.atomic_files import append_line, atomic_file
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
 
 ROW_EVERY = 50  # steps
@@ -74,8 +74,7 @@ def _step_of(line: str) -> float:
 
 
 def _writer(folder: Path, done: int) -> Any:
-    try:
-        from torch.utils.tensorboard import SummaryWriter
-    except ImportError:
-        raise InputError("--tensorboard needs TensorBoard; install it with: pip install 'mmweaver[training]'") from None
+    need("training", "--tensorboard", "tensorboard")
+    from torch.utils.tensorboard import SummaryWriter
+
     return SummaryWriter(str(folder), purge_step=done + 1 if done else None)

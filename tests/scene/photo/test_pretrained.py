@@ -53,4 +53,4 @@ def test_damaged_folders_are_refused(tmp_path: Path):
 
 def test_without_transformers(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "transformers", None)
-    assert "mmweaver[segmentation]" in error("any/model")
+    assert "mmweaver[pretrained]" in error("any/model")

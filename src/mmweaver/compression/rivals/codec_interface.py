@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 
@@ -18,10 +18,8 @@ PEAK = struct.Struct("<f")
 
 def library(name: str) -> Any:
     """A module of the extra `codecs`. Raises InputError where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise InputError(f"this codec needs {name}; install it with: pip install 'mmweaver[codecs]'") from None
+    need("codecs", "this codec", name.partition(".")[0])
+    return importlib.import_module(name)
 
 
 class Codec(ABC):

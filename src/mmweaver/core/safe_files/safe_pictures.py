@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular
 
 if TYPE_CHECKING:
@@ -97,12 +98,9 @@ def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
     file.seek(0)
     if start[4:8] != b"ftyp" or start[8:12] not in _HEIF_BRANDS:
         return ()
-    try:
-        import pillow_heif
-    except ImportError:
-        raise InputError(
-            f"{path} is a HEIC; install its reader: pip install 'mmweaver[phone]', or save a JPEG"
-        ) from None
+    need("phone", f"{path} is a HEIC, which", "pillow_heif")
+    import pillow_heif
+
     pillow_heif.register_heif_opener()
     return ("HEIF",)
 

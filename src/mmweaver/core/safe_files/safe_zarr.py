@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, foreign_errors
 from mmweaver.core.safe_files.safe_text import read_json
@@ -153,10 +154,7 @@ class ZarrFolder:
 
 def open_zarr(folder: Path | str) -> ZarrFolder:
     """A Zarr group. Raises InputError where the folder is none, is damaged, or Zarr is not installed."""
-    try:
-        import zarr  # noqa: F401
-    except ImportError as error:
-        raise InputError("data sets need Zarr; install it with: pip install 'mmweaver[dataset]'") from error
+    need("dataset", "a data set", "zarr")
     return ZarrFolder(Path(folder))
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.hub_log import hub_log_off
-from mmweaver.motion.motiongpt.language_model import EXTRA
 
 PUBLISHED = "OpenMotionLab/MotionGPT-base"
 CHECKPOINT, SMALL = "motiongpt_s3_h3d.tar", "motiongpt_small.safetensors"
@@ -26,11 +25,9 @@ def published_checkpoint(name: str) -> Path:
 
     Raises InputError where it cannot be had.
     """
-    try:
-        from huggingface_hub import hf_hub_download
-        from huggingface_hub.errors import EntryNotFoundError
-    except ImportError:
-        raise InputError(EXTRA) from None
+    from huggingface_hub import hf_hub_download
+    from huggingface_hub.errors import EntryNotFoundError
+
     try:
         with hub_log_off():
             try:

@@ -11,11 +11,11 @@ from jaxtyping import Float, Int
 from torch import Tensor
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 
 if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
 
-EXTRA = "the motion model needs the extra 'motiongpt'; install it with: pip install 'mmweaver[motiongpt]'"
 # flan-t5-base with 32,100 words and 515 motion tokens: what the published checkpoint holds.
 PUBLISHED_T5: dict[str, Any] = {
     "vocab_size": 32_100 + 515, "d_model": 768, "d_kv": 64, "d_ff": 2048, "num_layers": 12, "num_decoder_layers": 12,
@@ -30,10 +30,9 @@ def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
     `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
     share one with the input words whatever the configuration says.
     """
-    try:
-        from transformers import T5Config, T5ForConditionalGeneration
-    except ImportError:
-        raise InputError(EXTRA) from None
+    need("pretrained", "the motion model", "transformers")
+    from transformers import T5Config, T5ForConditionalGeneration
+
     special: dict[str, Any] = {"decoder_start_token_id": 0, "pad_token_id": 0, "eos_token_id": 1}
     config = T5Config(**sizes, **special)
     model = T5ForConditionalGeneration(config)

@@ -12,6 +12,7 @@ import torch
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.repository_files import repository_file
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
@@ -72,6 +73,7 @@ class MotionGPT:
         the text tokenizer of flan-t5-base; all are looked for next to it. A file of this project
         (.safetensors) holds everything. Raises InputError for whatever is no such model.
         """
+        need("pretrained", "the motion model", "transformers")
         place = _place_of(path)
         state, notes = read_checkpoint(place)
         vae, spoken = parts_of(state, place)

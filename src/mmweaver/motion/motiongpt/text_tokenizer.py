@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.motiongpt.language_model import EXTRA
 
 if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase
@@ -16,10 +15,8 @@ WORD_FILES = ("tokenizer.json", "spiece.model")
 def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
     """The text tokenizer of flan-t5-base: from a folder with tokenizer.json or spiece.model, else from the Hub or its
     cache. Raises InputError where it is in neither."""
-    try:
-        from transformers import AutoTokenizer
-    except ImportError:
-        raise InputError(EXTRA) from None
+    from transformers import AutoTokenizer
+
     try:
         words: Any = AutoTokenizer.from_pretrained(str(folder) if folder is not None else HUB_WORDS)
         return words

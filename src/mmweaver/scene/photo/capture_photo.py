@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.safe_files.safe_text import read_json, read_toml
@@ -141,10 +142,9 @@ def coloured(
 
 def _depth_frame(path: Path, index: int, intrinsics: CameraIntrinsics) -> np.ndarray:
     """Depth counts (height, width), uint16, of one frame of the zstd stream."""
-    try:
-        import zstandard
-    except ImportError:
-        raise InputError(f"{path} is zstd-compressed; install the reader: pip install 'mmweaver[capture]'") from None
+    need("capture", f"{path} is compressed, which", "zstandard")
+    import zstandard
+
     size = 2 * intrinsics.width * intrinsics.height
     if index < 0 or (index + 1) * size > MAX_BYTES:
         raise InputError(f"{path} cannot hold a photo {index}; choose one from 0")

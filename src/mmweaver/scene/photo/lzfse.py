@@ -1,7 +1,7 @@
 """Files compressed with Apple's LZFSE, of a known length: the depth of Record3D.
 
-Blocks that are stored as they are need no library; others need pyliblzfse (extra 'phone'). How much a file unpacks to
-is added up from the headers of its blocks before it is unpacked.
+Blocks that are stored as they are need no library; others need pyliblzfse, which is in no extra. How much a file
+unpacks to is added up from the headers of its blocks before it is unpacked.
 Reference: github.com/lzfse/lzfse, src/lzfse_internal.h (block headers).
 """
 

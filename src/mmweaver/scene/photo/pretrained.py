@@ -7,6 +7,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.hub_log import hub_log_off
+from mmweaver.core.optional_packages import need
 
 
 def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any]) -> tuple[Any, Any, Any]:
@@ -15,12 +16,9 @@ def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any])
     `choose(transformers, config)` returns the class to load with. Raises InputError where `transformers` is missing or
     the model cannot be loaded.
     """
-    try:
-        import transformers
-    except ImportError:
-        raise InputError(
-            f"{option} needs transformers; install it with: pip install 'mmweaver[segmentation]'"
-        ) from None
+    need("pretrained", option, "transformers")
+    import transformers
+
     folder = Path(source)
     if folder.is_dir() and not (folder / "config.json").is_file():
         raise InputError(f"{option} {source} is a folder without config.json; give one written by save_pretrained")

@@ -1,8 +1,9 @@
-"""Reads one frame of a video, by PyAV (extra `capture`)."""
+"""Reads one frame of a video, by PyAV (of the extras `capture` and `phone`)."""
 
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular
 from mmweaver.core.safe_files.safe_pictures import MAX_PIXELS
 from mmweaver.core.shapes import RgbPixels
@@ -10,18 +11,15 @@ from mmweaver.core.shapes import RgbPixels
 NO_VIDEO = "damaged or no video ({reason}); is it whole? or give the picture with --rgb"
 
 
-def read_video_frame(path: Path, index: int) -> RgbPixels:
+def read_video_frame(path: Path, index: int, extra: str = "capture") -> RgbPixels:
     """Frame `index` of a video as uint8 RGB (height, width, 3).
 
-    The frames before it are decoded too, since most codecs store differences. Raises InputError where the file is not a
-    video, is damaged, or has no such frame.
+    The frames before it are decoded too, since most codecs store differences. `extra`: the one to install where PyAV is
+    missing. Raises InputError there, and where the file is not a video, is damaged, or has no such frame.
     """
-    try:
-        import av
-    except ImportError:
-        raise InputError(
-            f"{path} is a video; install the reader: pip install 'mmweaver[capture]', or give the picture with --rgb"
-        ) from None
+    need(extra, f"{path} is a video, which", "av")
+    import av
+
     kind = "mov" if path.suffix.lower() in (".mp4", ".mov", ".m4v") else "avi"
     if index < 0:
         raise InputError(f"{path} has no frame {index}; choose one from 0")

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int, UInt8
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.regular_files import MEGABYTE, check_exists, foreign_errors, read_bytes
 from mmweaver.core.shapes import Array, Faces
 
@@ -36,10 +37,9 @@ def read_mesh(path: Path) -> ColouredMesh:
 
     Raises InputError where trimesh is missing or the file holds no triangles.
     """
-    try:
-        import trimesh
-    except ModuleNotFoundError:
-        raise InputError(f"{path.name} is a mesh, which needs trimesh; pip install 'mmweaver[mesh]'") from None
+    need("mesh", f"{path.name} is a mesh, which", "trimesh")
+    import trimesh
+
     suffix = path.suffix.lower()
     check_exists(path, f"a mesh: {', '.join(SUFFIXES)}")
     if suffix not in SUFFIXES:

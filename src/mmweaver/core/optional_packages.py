@@ -1,0 +1,48 @@
+"""Packages that single features need, by the extra that installs them."""
+
+from importlib.util import find_spec
+
+from mmweaver.core.errors import InputError
+
+# module -> its package, of each extra that a message names; a test holds this to pyproject.toml and to all imports.
+EXTRAS: dict[str, dict[str, str]] = {
+    "capture": {"av": "av", "rosbags": "rosbags", "zstandard": "zstandard"},
+    "codecs": {"blosc2": "blosc2", "imagecodecs": "imagecodecs", "pywt": "pywavelets", "tensorly": "tensorly"},
+    "cluster": {"ray": "ray", "zarr": "zarr"},
+    "completion": {"shtab": "shtab"},
+    "dataset": {"numcodecs": "numcodecs", "zarr": "zarr"},
+    "evaluate": {"sklearn": "scikit-learn"},
+    "export": {"av": "av", "foxglove": "foxglove-sdk", "rosbags": "rosbags", "xarray": "xarray", "zarr": "zarr"},
+    "mesh": {"trimesh": "trimesh"},
+    "notebook": {"anywidget": "anywidget"},
+    "phone": {"av": "av", "pillow_heif": "pillow-heif"},
+    "pretrained": {"transformers": "transformers"},
+    "rerun": {"rerun": "rerun-sdk"},
+    "studio": {
+        "python_multipart": "python-multipart", "starlette": "starlette", "uvicorn": "uvicorn",
+        "websockets": "websockets",
+    },
+    "training": {"accelerate": "accelerate", "tensorboard": "tensorboard", "zarr": "zarr"},
+    "weaver": {"huggingface_hub": "huggingface-hub", "zarr": "zarr"},
+    "xarray": {"xarray": "xarray"},
+}  # fmt: skip
+
+
+def need(extra: str, what: str, *modules: str) -> None:
+    """Checks that modules of an extra are installed, by default all; `what` needs them.
+
+    Raises InputError with the package that is missing and how to install it.
+    """
+    for module in modules or EXTRAS[extra]:
+        if not is_installed(module):
+            raise InputError(
+                f"{what} needs the package {EXTRAS[extra][module]}; install it with: pip install 'mmweaver[{extra}]'"
+            )
+
+
+def is_installed(module: str) -> bool:
+    """Whether a module can be found; it is not imported."""
+    try:
+        return find_spec(module) is not None
+    except ValueError:  # it was put in place by hand
+        return True

@@ -1,0 +1,70 @@
+"""mmweaver sample: a room, a recording of it with nobody in it, and what the other commands read."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver.activity_sets.activity_list import read_activities
+from mmweaver.cli.main import main
+from mmweaver.core.checksums import SUMS_FILE
+from mmweaver.formats.dca1000 import read_bin
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.recognition.task_file import read_task
+from mmweaver.scene.photo_files import RoomFiles
+from mmweaver.scene.sample_photo import sample_photo
+
+
+@pytest.fixture(scope="module")
+def sample(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("sample") / "room"
+    assert main(["sample", str(folder), "--quiet"]) == 0
+    return folder
+
+
+def test_the_picture_is_that_of_the_bundled_room(sample: Path):
+    files = RoomFiles.in_folder(sample)
+    assert files.camera is not None
+    with Image.open(files.rgb) as picture:
+        np.testing.assert_array_equal(np.asarray(picture), sample_photo()[0].rgb)
+
+
+def test_the_recording_is_of_a_room_in_which_nothing_moves(sample: Path):
+    """Three seconds; the room's echoes stand still, what changes from chirp to chirp is noise, equally strong."""
+    radar = load_radar(str(sample / "profile.cfg"))
+    recorded = read_bin(sample / "empty.bin", radar)
+    assert len(recorded.samples) * radar.frame_period_s == pytest.approx(3.0)
+    spectrum = np.fft.fft(recorded.samples[:, 2:] * np.hanning(radar.num_samples), axis=-1)  # first chirps differ
+    static, changing = np.abs(spectrum.mean(axis=(0, 1))) ** 2, spectrum.var(axis=(0, 1))
+    bins = slice(round(1.0 / radar.range_resolution_m), round(4.0 / radar.range_resolution_m))  # floor, couch, walls
+    assert (static[..., bins].max(axis=-1) > 100 * changing[..., bins].max(axis=-1)).all()
+    assert changing[..., bins].max() < 2 * np.median(changing[..., bins])
+
+
+def test_the_lists_of_activities_are_read(sample: Path):
+    task = read_task(sample / "TASK.toml")
+    assert task.radar.num_samples == load_radar(str(sample / "profile.cfg")).num_samples
+    assert len(task.activities) >= 3
+    assert len(read_activities(sample / "activities.toml").labels) >= 3
+
+
+def test_the_page_names_every_file(sample: Path):
+    page = (sample / "README.txt").read_text(encoding="utf-8")
+    for file in sample.iterdir():
+        assert file.name in page or file.name in ("README.txt", SUMS_FILE)
+
+
+def test_the_same_files_every_time(sample: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["sample", str(tmp_path), "--json"]) == 0
+    written = json.loads(capsys.readouterr().out)
+    assert set(written["files"]) == {file.name for file in tmp_path.iterdir()} - {SUMS_FILE}
+    assert (tmp_path / SUMS_FILE).read_text() == (sample / SUMS_FILE).read_text()
+
+
+def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "mine.txt").write_text("mine")
+    assert main(["sample", str(tmp_path)]) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
