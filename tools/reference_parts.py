@@ -45,7 +45,7 @@ def sha(*arrays: Any) -> str:
     total = hashlib.sha256()
     for one in arrays:
         if isinstance(one, np.ndarray):
-            values = one.astype("U") if one.dtype.hasobject else one
+            values = one if one.dtype.kind in "fciub" else np.array([str(text) for text in one.ravel()])
             total.update(f"{values.dtype}{values.shape}".encode() + np.ascontiguousarray(values).tobytes())
         else:
             total.update(one.encode() if isinstance(one, str) else one)

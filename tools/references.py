@@ -3,10 +3,12 @@
     python tools/references.py freeze OUT.json [PART ...] [--data DIR]    # resumable: what is there is kept
     python tools/references.py compare OUT.json [PART ...]                # made anew into NEW.json, then compared
 
-Parts: cubes, steps, mmw, placements, radhar, files. Next to OUT.json a folder of its name holds what the digests were
-made of: sentences with their steps (one JSON line each), cubes that are encoded, generated windows. `compare` takes
-sentences and cubes from there, so that sources that change do not change the question. Everything runs in one process
-on one core; set OMP_NUM_THREADS=1. reference_parts.py makes the parts; reference_adapter.py alone names modules.
+Parts: cubes, steps, mmw, placements, radhar, files; cubes/bundled are the entries of one that begin so. Next to
+OUT.json a folder of its name holds what the digests were made of: sentences with their steps (one JSON line each), cubes that
+are encoded, generated windows. `compare` takes sentences and cubes from there, so that sources that change do not
+change the question, and prints what differs; sentences that are read otherwise stand side by side in
+build/references/steps_*_differing.txt. Everything runs in one process on one core; set OMP_NUM_THREADS=1.
+reference_parts.py makes the parts; reference_adapter.py alone names modules.
 """
 
 import argparse
@@ -27,10 +29,11 @@ def freeze(path: Path, parts: list[str], folders: Folders) -> dict[str, Any]:
     """Adds what is missing of the parts to the file, one entry after the other, and returns all of it."""
     folders.own.mkdir(parents=True, exist_ok=True)
     state = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    for part in parts:
+    for part, _, prefix in (one.partition("/") for one in parts):
         entries, began = state.setdefault(part, {}), time.monotonic()
         for name, make in PARTS[part](folders):
-            if name in entries:
+            is_there = not str(entries.get(name, "failed")).startswith("failed")
+            if is_there or not name.startswith(prefix):
                 continue
             try:
                 entries[name] = make()
@@ -48,16 +51,18 @@ def freeze(path: Path, parts: list[str], folders: Folders) -> dict[str, Any]:
 def compare(before: dict[str, Any], now: dict[str, Any], parts: list[str], folders: Folders) -> int:
     """Prints what differs, part by part; returns how many parts do."""
     differing = 0
-    for part in parts:
-        old, new = before.get(part, {}), now.get(part, {})
+    for part, _, prefix in (one.partition("/") for one in parts):
+        old = {name: value for name, value in before.get(part, {}).items() if name.startswith(prefix)}
+        new = now.get(part, {})
         same = [name for name in old if as_compared(part, old[name]) == as_compared(part, new.get(name))]
         others = [name for name in old if name not in same]
         print(f"{part}: {len(same)} of {len(old)} equal")
         for name in others if part not in ("placements", "steps") else ():
             print(f"  {name}:" + "".join(f"\n    {line}" for line in differences(old[name], new.get(name))[:6]))
         if part == "steps":
-            for name in old:
-                compare_steps(name, folders)
+            counts = {name: compare_steps(name, folders) for name in old}
+            equal, number = np.sum([[0, 0], *(one for name, one in counts.items() if name != "kitml")], axis=0)
+            print(f"  all but kitml ({number}): steps equal {100 * equal / max(number, 1):.2f} %")
         elif part == "mmw":
             print_ratios(old, new)
         elif part == "placements":
@@ -85,13 +90,13 @@ def differences(old: Any, new: Any, where: str = "") -> list[str]:
     return [] if old == new or where.endswith("/seconds") else [f"{where}: {old} -> {new}"]
 
 
-def compare_steps(name: str, folders: Folders) -> None:
-    """Prints shares of equal steps, and writes those that differ side by side into a file."""
+def compare_steps(name: str, folders: Folders) -> tuple[int, int]:
+    """Prints shares of equal steps, writes those that differ side by side; returns how many are equal, and of how many."""
     file = f"steps_{name.replace('/', '_')}"
     if not (folders.own / f"{file}.jsonl.gz").exists():
-        return
+        return 0, 0
     old, new = (
-        [json.loads(line) for line in gzip.decompress((folder / f"{file}.jsonl.gz").read_bytes()).decode().splitlines()]
+        [json.loads(line) for line in gzip.decompress((folder / f"{file}.jsonl.gz").read_bytes()).decode().split("\n")]
         for folder in (folders.base, folders.own)
     )
     pairs = list(zip(old, new, strict=True))
@@ -118,8 +123,9 @@ def compare_steps(name: str, folders: Folders) -> None:
         f" statuses {share(lambda a, b: statuses(a) == statuses(b))},"
         f" records to the letter {share(lambda a, b: a.get('clauses') == b.get('clauses'))},"
         f" person {share(lambda a, b: a.get('person') == b.get('person'))},"
-        f" seconds {share(lambda a, b: a.get('seconds') == b.get('seconds'))}; differing: {file}_differing.txt"
+        f" seconds {share(lambda a, b: a.get('seconds') == b.get('seconds'))}"
     )
+    return sum(one["steps"] == other["steps"] for one, other in pairs), len(pairs)
 
 
 def print_ratios(old: dict[str, Any], new: dict[str, Any]) -> None:
@@ -156,7 +162,7 @@ def main() -> int:
     parser.add_argument("--resume", action="store_true", help="compare: keep what an interrupted comparison has made")
     options = parser.parse_args()
     parts = options.parts or list(PARTS)
-    if unknown := set(parts) - set(PARTS):
+    if unknown := {one.partition("/")[0] for one in parts} - set(PARTS):
         parser.error(f"no such part: {', '.join(sorted(unknown))}")
     base, data = options.file.with_suffix(""), options.data.resolve()
     if options.what == "freeze":
