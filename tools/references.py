@@ -4,9 +4,9 @@
     python tools/references.py compare OUT.json [PART ...]                # made anew into NEW.json, then compared
 
 Parts: cubes, steps, mmw, placements, radhar, files; cubes/bundled are the entries of one that begin so. Next to
-OUT.json a folder of its name holds what the digests were made of: sentences with their steps (one JSON line each), cubes that
-are encoded, generated windows. `compare` takes sentences and cubes from there, so that sources that change do not
-change the question, and prints what differs; sentences that are read otherwise stand side by side in
+OUT.json a folder of its name holds what the digests were made of: sentences with their steps (one JSON line each),
+cubes that are encoded, generated windows. `compare` takes sentences and cubes from there, so that sources that change
+do not change the question, and prints what differs; sentences that are read otherwise stand side by side in
 build/references/steps_*_differing.txt. Everything runs in one process on one core; set OMP_NUM_THREADS=1.
 reference_parts.py makes the parts; reference_adapter.py alone names modules.
 """
@@ -91,7 +91,7 @@ def differences(old: Any, new: Any, where: str = "") -> list[str]:
 
 
 def compare_steps(name: str, folders: Folders) -> tuple[int, int]:
-    """Prints shares of equal steps, writes those that differ side by side; returns how many are equal, and of how many."""
+    """Prints shares of equal steps, writes those that differ side by side; returns how many are equal, of how many."""
     file = f"steps_{name.replace('/', '_')}"
     if not (folders.own / f"{file}.jsonl.gz").exists():
         return 0, 0

@@ -159,7 +159,7 @@ def measure(root: Path) -> dict[str, Any]:
         "docstring lines per line of code": round(whole["docs"] / whole["code"], 2),
         "fmt: skip in src": sum(one.read_text(encoding="utf-8").count("# fmt: skip") for one in package.rglob("*.py")),
         "decisions": len(decisions),
-        "decisions: words": num_words(*decisions),
+        "decisions: words, with their list": num_words(*(root / "docs" / "decisions").rglob("*.md")),
         "CHANGELOG: words": num_words(root / "CHANGELOG.md"),
         "docs: words without decisions": num_words(*pages),
         "README: lines": len((root / "README.md").read_text(encoding="utf-8").splitlines()),
