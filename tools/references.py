@@ -168,6 +168,9 @@ def main() -> int:
     if options.what == "freeze":
         freeze(options.file, parts, Folders(data=data, base=base, own=base))
         return 0
+    if not base.is_dir():
+        parts = [one for one in parts if one.partition("/")[0] not in ("steps", "mmw")]
+        print(f"{base} is absent, which steps and mmw need: they are left out")
     before = json.loads(options.file.read_text(encoding="utf-8"))
     path = options.new or ROOT / "build" / "references.json"
     if not options.resume:
