@@ -129,7 +129,7 @@ def another_place() -> RadarPose:
 
 
 def motion_clip(data: Path) -> Any:
-    return Weaver.read_motion(data / "motion" / "humanml3d_sample" / "HumanML3D_new_joints_012314.npy")
+    return Weaver.read_motion(data / "motion" / "humanml3d_sample" / "HumanML3D_new_joints_012314.npy", fps=20)
 
 
 # compression --------------------------------------------------------------------------------------------------------

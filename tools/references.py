@@ -39,6 +39,7 @@ def freeze(path: Path, parts: list[str], folders: Folders) -> dict[str, Any]:
                 entries[name] = make()
             except InputError:
                 entries[name] = "refused"
+                print(f"{part}/{name}: refused", flush=True)
             except Exception as error:  # a part that fails is a finding, not the end of the run
                 entries[name] = f"failed: {type(error).__name__}: {error}"[:300]
                 print(f"{part}/{name}: {entries[name]}", flush=True)
