@@ -251,7 +251,7 @@ def mmw(folders: Folders) -> Iterator[tuple[str, Thunk]]:
             for how in (*asked, {"quality_db": 25.0}, {"quality_db": 40.0, "keep_noise": True}):
                 name = " ".join(f"{key} {value}" for key, value in how.items())
                 yield (
-                    f"{path.stem}/{effort}/{name}",
+                    f"{path.parent.name}/{effort}/{name}",
                     lambda cube=cube, how={**how, "effort": effort}: encoding(cube, how),
                 )
     for error in (0, 2):
