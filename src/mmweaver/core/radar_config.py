@@ -190,6 +190,11 @@ class RadarConfig:
         """End of the unambiguous range axis; beyond it range aliases."""
         return self.range_resolution_m * self.num_unambiguous_range_bins
 
+    @property
+    def farthest_bin_m(self) -> float:
+        """Range of the last unambiguous bin: what a window can reach."""
+        return self.max_range_m - self.range_resolution_m
+
     @cached_property
     def range_m(self) -> PerRange:
         """Range of each kept bin in metres, (range,)."""
