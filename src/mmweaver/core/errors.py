@@ -35,9 +35,13 @@ def _in_words(ways_on: Mapping[str, Any]) -> str:
     if not ways_on:
         return ""
     x, y = ways_on["nearest_place_m"]
-    options = [] if ways_on["range_m"] is None else ["--range {:g},{:g}".format(*ways_on["range_m"])]
-    options += [f"--radar {' or '.join(ways_on['radars'])}"] if ways_on["radars"] else []
-    return f"; the nearest free place is {x:g},{y:g}: try {', or '.join(options)}"
+    radars = f"--radar {' or '.join(ways_on['radars'])}" if ways_on["radars"] else ""
+    if ways_on["range_m"] is None:
+        return f"; the nearest free place is {x:g},{y:g}: try {radars}"
+    near_m, far_m = ways_on["range_m"]
+    return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}" + f" (or without it {radars})" * bool(
+        radars
+    )
 
 
 def one_line(text: str, limit: int = MAX_CHARACTERS) -> str:
