@@ -39,9 +39,8 @@ def _in_words(ways_on: Mapping[str, Any]) -> str:
     if ways_on["range_m"] is None:
         return f"; the nearest free place is {x:g},{y:g}: try {radars}"
     near_m, far_m = ways_on["range_m"]
-    return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}" + f" (or without it {radars})" * bool(
-        radars
-    )
+    radars = f" (or without it {radars})" if radars else ""
+    return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}{radars}"
 
 
 def one_line(text: str, limit: int = MAX_CHARACTERS) -> str:

@@ -309,7 +309,9 @@ class RadarConfig:
     def from_values(cls, values: Any) -> "RadarConfig":
         """The radar of `to_values`. Raises InputError for anything else."""
         if not isinstance(values, dict):
-            raise InputError("the radar file holds no object; make one with: mmweaver radar awr1843 --json > radar.json")
+            raise InputError(
+                "the radar file holds no object; make one with: mmweaver radar awr1843 --json > radar.json"
+            )
         values = dict(values)
         version = values.pop("schema_version", None)
         if version != SCHEMA_VERSION:
