@@ -60,7 +60,7 @@ def test_a_file_cut_short_holds_the_blocks_before(recording: Path, tmp_path: Pat
     file = LosslessFile(tmp_path / "a.mmwl")
     assert (file.num_frames, file.cut_short) == (4, 20)
     file.decompress(tmp_path / "b.bin")
-    assert (tmp_path / "b.bin").read_bytes() == recording.read_bytes()[: 4 * bytes_of_frame(RADAR)]
+    assert (tmp_path / "b.bin").read_bytes() == recording.read_bytes()[: 4 * 8 * 3 * 4 * 64 * 4]
     (tmp_path / "a.mmwl").write_bytes(data[: starts[0] + 20])
     with pytest.raises(InputError, match="before its first whole block"):
         LosslessFile(tmp_path / "a.mmwl").decompress(tmp_path / "c.bin")
