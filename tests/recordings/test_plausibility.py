@@ -227,7 +227,7 @@ def test_other_numbers(convert: Callable[[np.ndarray], np.ndarray], says: str, r
 def test_strict_names_every_reason(recording: Path, tmp_path: Path):
     words = np.fromfile(recording / "adc_data.bin", "<i2")
     np.clip(words, -1100, 1100).tofile(tmp_path / "adc_data.bin")
-    with pytest.raises(InputError, match=r"clipped at 1100 counts.*; .*--iq-order iq"):
+    with pytest.raises(InputError, match=r"1100.*--iq-order iq"):
         read(tmp_path / "adc_data.bin", iq_order="qi", strict=True)
 
 
