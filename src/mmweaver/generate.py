@@ -244,7 +244,8 @@ class Weaver(RoomReader):
         )  # fmt: skip
         motion = ContinuousMotion(
             room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m, seed=seed,
-            start_m=request.people[0].start_m, heading_rad=heading_rad, height_m=height_m, subject=subject,
+            farthest_m=request.config.farthest_bin_m, start_m=request.people[0].start_m, heading_rad=heading_rad,
+            height_m=height_m, subject=subject,
         )  # fmt: skip
         own, given = self.board_of(request, room)
         meta = {
@@ -378,7 +379,7 @@ def compose_request(request: Request, scene: Scene) -> tuple[Motion, ...]:
         starts_m=[person.start_m for person in request.people],
         heights_m=[person.height_m for person in request.people],
         subjects=[person.subject for person in request.people], first=recorded,
-        heading_rad=request.heading_rad,
+        heading_rad=request.heading_rad, farthest_m=request.config.farthest_bin_m,
     )  # fmt: skip
 
 

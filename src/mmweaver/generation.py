@@ -208,9 +208,9 @@ class Generation(ShownByFacts):
     ) -> dict[str, Any]:  # fmt: skip
         """Writes all files and pictures into a folder, or none of them; returns the content of meta.json.
 
-        Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does, with I or
-        Q first (`iq_order`: "iq" or "qi"; default: as the radar does). `extra`: text files to add, by name. Raises
-        InputError where the folder cannot be written, or holds other files and `overwrite` is not set.
+        Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does
+        (`iq_order`: "iq", "qi" or "interleaved"; default: as the radar does). `extra`: text files to add, by name.
+        Raises InputError where the folder cannot be written, or holds other files and `overwrite` is not set.
 
         Several radars have a folder each in it, radar_1, radar_2 and so on, with all files but `extra`.
         """

@@ -139,7 +139,7 @@ def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys
         ("a person stands\n", ["--repeat", "0"], "--repeat must be"),
         ("a person stands\n", ["--text", "a person waves"], "leave out --text"),
         ("a person stands\n", ["--at", "0,2", "--at", "1,2"], "give --at once"),
-        ("a person stands\n", ["--at", "0,20"], "--draws free"),
+        ("a person stands\n", ["--at", "0,20"], "0,20"),
     ],
 )
 def test_bad_lists_are_one_line_and_leave_nothing(

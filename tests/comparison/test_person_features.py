@@ -39,7 +39,7 @@ def test_energy_behind_a_walking_body(behind_m: float, near_m: float, far_m: flo
 def test_an_empty_room_and_a_cut_range_show_nothing_behind_a_body():
     with pytest.raises(CannotSeeError, match="nobody moves"):
         behind_body(evidence(samples([still(2.0)])), 0.6, 1.0)
-    with pytest.raises(CannotSeeError, match="range window ends"):
+    with pytest.raises(CannotSeeError, match=r"4\.5 m"):
         behind_body(evidence(samples([walking(3.2, 1.0)]), with_samples=False), 1.0, 2.0)
     with pytest.raises(CannotSeeError, match="loops"):
         behind_body(evidence(samples([walking(2.0, 1.0)], config=replace(RADAR, num_loops=2))), 0.6, 1.0)
@@ -65,7 +65,7 @@ def test_slow_time_of_a_seated_person():
     seen = evidence(adc)
     assert seated_slow_time(seen, 3.0, 5.0).values == pytest.approx(-23, abs=1.0)
     assert np.all(seated_slow_time(seen, 7.0, 10.0).values < -33)
-    with pytest.raises(CannotSeeError, match="show nothing above"):
+    with pytest.raises(CannotSeeError, match=r"12\.5 Hz"):
         seated_slow_time(seen, 11.0, 14.0)
     with pytest.raises(CannotSeeError, match="nobody sits"):
         seated_slow_time(evidence(samples([still(0.9)], frames=frames, config=SLOW)), 3.0, 5.0)

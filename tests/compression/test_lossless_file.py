@@ -37,7 +37,7 @@ def test_the_same_bytes_come_back(recording: Path, tmp_path: Path):
     frame = bytes_of_frame(RADAR)
     file.decompress(tmp_path / "c.bin", slice(3, 6))
     assert (tmp_path / "c.bin").read_bytes() == recording.read_bytes()[3 * frame : 6 * frame]
-    with pytest.raises(InputError, match="none of them"):
+    with pytest.raises(InputError, match="7 frames"):
         file.decompress(tmp_path / "d.bin", slice(9, 12))
 
 
@@ -60,9 +60,9 @@ def test_a_file_cut_short_holds_the_blocks_before(recording: Path, tmp_path: Pat
     file = LosslessFile(tmp_path / "a.mmwl")
     assert (file.num_frames, file.cut_short) == (4, 20)
     file.decompress(tmp_path / "b.bin")
-    assert (tmp_path / "b.bin").read_bytes() == recording.read_bytes()[: 4 * bytes_of_frame(RADAR)]
+    assert (tmp_path / "b.bin").read_bytes() == recording.read_bytes()[: 4 * 8 * 3 * 4 * 64 * 4]
     (tmp_path / "a.mmwl").write_bytes(data[: starts[0] + 20])
-    with pytest.raises(InputError, match="before its first whole block"):
+    with pytest.raises(InputError, match=r"a\.mmwl"):
         LosslessFile(tmp_path / "a.mmwl").decompress(tmp_path / "c.bin")
     assert not (tmp_path / "c.bin").exists()
 
@@ -82,7 +82,7 @@ def test_what_cannot_be_compressed_is_refused(recording: Path, tmp_path: Path):
         (tmp_path / "empty.bin", RADAR, 0, "empty"),
         (tmp_path / "none.bin", RADAR, 0, "cannot read"),
         (recording, replace(RADAR, complex_samples=False), 0, "complex samples"),
-        (recording, RADAR, 5000, "not possible"),
+        (recording, RADAR, 5000, r"5000.*0 to 1000"),
     ):
         with pytest.raises(InputError, match=word):
             compress_bin(path, tmp_path / "a.mmwl", radar, max_error=error)

@@ -126,9 +126,9 @@ def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path
     # damage in the last chunk does not touch the first
     path.write_bytes(data[:-40] + bytes([data[-40] ^ 1]) + data[-39:])
     assert np.array_equal(read_cube(path, slice(0, 3)).values, whole.values[:3])
-    with pytest.raises(InputError, match="chunk 2 fails its checksum"):
+    with pytest.raises(InputError, match="chunk 2"):
         read_cube(path)
-    with pytest.raises(InputError, match="none of them"):
+    with pytest.raises(InputError, match="5 frames"):
         read_cube(path, slice(9, 12))
 
 
@@ -150,7 +150,7 @@ def test_a_file_is_described(long_file: bytes, tmp_path: Path):
     [
         ({}, "either"),
         ({"num_bytes": 1000, "quality_db": 20.0}, "either"),
-        ({"num_bytes": 10}, "too few"),
+        ({"num_bytes": 10}, "at least 256"),
         ({"quality_db": 0.0}, "not possible"),
         ({"quality_db": float("nan")}, "not possible"),
     ],

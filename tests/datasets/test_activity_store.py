@@ -36,7 +36,7 @@ def test_a_damaged_signal_is_refused_when_read(activity_set: Path, tmp_path: Pat
 
 
 def test_another_folder_is_no_set(tmp_path: Path):
-    with pytest.raises(InputError, match="holds no labelled set"):
+    with pytest.raises(InputError, match=r"set\.json"):
         read_activity_set(tmp_path)
 
 

@@ -116,13 +116,13 @@ def test_an_unfinished_frame_is_omitted_unless_the_radar_was_configured_to_send_
 
 def test_inconsistent_packets_are_refused(tmp_path: Path, sent):
     adc, packets = sent
-    with pytest.raises(InputError, match="no packets of a DCA1000"):
+    with pytest.raises(InputError, match="4098"):
         caught(tmp_path, adc, [])
-    with pytest.raises(InputError, match="one frame of this radar has"):
+    with pytest.raises(InputError, match=r"4368.*16384"):
         caught(tmp_path, adc, packets[:3])
     with pytest.raises(InputError, match="more than one recording"):
         caught(tmp_path, adc, packets + packets_of(tmp_path, counts(adc.config, seed=1)))
-    with pytest.raises(InputError, match="packet of 6 bytes"):
+    with pytest.raises(InputError, match=r"6 bytes.*4098"):
         caught(tmp_path, adc, [*packets, (START_S, bytes(6))])
-    with pytest.raises(InputError, match="bytes were sent, but holds 100: nearly all"):
+    with pytest.raises(InputError, match="holds 100"):
         caught(tmp_path, adc, [(START_S, b"\x01\0\0\0" + b"\xff" * 6 + bytes(100))])

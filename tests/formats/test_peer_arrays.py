@@ -121,12 +121,12 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
     (tmp_path / "empty").mkdir()
     for call, word in (
         (lambda: read_hupr(saved("a.npy", noise), HUPR), "angle spectra"),
-        (lambda: read_hupr(saved("b.npy", noise.real), HUPR), "HuPR's are complex"),
+        (lambda: read_hupr(saved("b.npy", noise.real), HUPR), r"float64.*\(16, 64, 64, 8\)"),
         (lambda: read_hupr(hupr_frame, MMMESH), "cannot have made"),
         (lambda: read_hupr(tmp_path / "empty", HUPR), "no .npy files"),
         (lambda: read_hupr(tmp_path / "none.npy", HUPR), "cannot read"),
         (lambda: detect_layout(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
-        (lambda: detect_layout(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
+        (lambda: detect_layout(saved("d.npy", np.zeros((40, 6)))), r"\(40, 6\)"),
         (lambda: detect_layout(saved("e.npy", np.zeros((4, 5)))), "--axes"),
         (lambda: read_mmmesh(saved("f.npy", np.zeros((3, 4, 7, 256), complex)), MMMESH), "shape"),
         (lambda: read_recording(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),

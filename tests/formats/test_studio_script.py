@@ -63,12 +63,12 @@ def test_lanes_order_and_beams(tmp_path: Path):
     [
         ("ar1.FrameConfig(0, 2", "ar1.Other(0, 2", "lacks ar1.FrameConfig"),
         ("START_GHZ, IDLE", "UNKNOWN, IDLE", "no number"),
-        ("ar1.FrameConfig(0, 2, 8, 64, 40, 0, 0, 1)", "ar1.FrameConfig(0, 2)", "it needs 5"),
+        ("ar1.FrameConfig(0, 2, 8, 64, 40, 0, 0, 1)", "ar1.FrameConfig(0, 2)", r"2 numbers.*5"),
         ("ar1.FrameConfig(0, 2", "ar1.AdvanceFrameConfig(0, 2", "an advanced frame"),
         ("8, 64, 40", "8, nan, 40", "not finite"),
         ("IDLE_US = 100.0", "IDLE_US = 1..0", "no number"),
         ("]]", "", "lacks"),
-        ("8, 64, 40", "8, 64, 4", "longer than the frame period"),
+        ("8, 64, 40", "8, 64, 4", r"4\.00 ms"),
         ("ar1.ChirpConfig(2, 2, 0, 0", "ar1.ChirpConfig(2, 2, 0, 5", "start frequency"),
     ],
 )

@@ -135,7 +135,7 @@ def test_doppler_division_turns_each_transmitter_at_its_own_rate(tmp_path: Path)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [("Order 0 2 3 1", "Order 0 2 3 3", "name each"), ("Order 0 2 3 1", "Order 0 2 3", "name each"),
-     ("frameCfg 0 5", "frameCfg 0 2", "needs as many chirps")],
+     ("frameCfg 0 5", "frameCfg 0 2", r"4 transmitters.*3")],
 )  # fmt: skip
 def test_impossible_doppler_division_is_refused(tmp_path: Path, old: str, new: str, said: str):
     with pytest.raises(InputError, match=said):
@@ -198,7 +198,7 @@ def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
     for sub_frame, words in ((None, "--subframe 0 to 1"), (2, "0 to 1, not 2")):
         with pytest.raises(InputError, match=words):
             read_ti_cfg(path, sub_frame=sub_frame)
-    with pytest.raises(InputError, match="leave out --subframe"):
+    with pytest.raises(InputError, match="--subframe"):
         read_ti_cfg(written(tmp_path, BEST_RANGE), sub_frame=0)
 
 

@@ -1,11 +1,12 @@
 """Mean echoes seen by a radar: the same radar equation and pattern as the simulator's."""
 
 import numpy as np
+import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.point_response import PointResponse
-from mmweaver.paths.antenna import pattern, scatterer_gain
+from mmweaver.paths.antenna import pattern
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.radar_equation import carrier, pattern_towards_db, points_of
 
@@ -26,7 +27,8 @@ def test_amplitudes_follow_the_radar_equation():
     )  # fmt: skip
     response = PointResponse(AWR1843)
     points = points_of(echoes, response)
-    assert np.allclose(points.amplitude.numpy(), scatterer_gain(AWR1843) * np.array([1.0, 0.5]), rtol=1e-3)
+    # 12 dBm + 2 x 10.5 dBi + 20 log10(3.792 mm) - 30 log10(4 pi): 1 m2 at 1 m; four times that at twice the range
+    assert 20 * np.log10(points.amplitude.numpy()) == pytest.approx([-48.40, -48.40 - 6.02], abs=0.01)
     assert np.isclose(float(points.doppler_bin[1]) * response.velocity_a_bin_mps, 1.0)
 
 

@@ -151,7 +151,8 @@ def test_one_wall_is_the_closed_form_image():
     echoes = room.paths.of_kind(Interaction.SPECULAR)
     turned = np.exp(2j * np.pi * (echoes.length_m - echoes.length_m[0]).numpy()[:, 0, 0] / AWR1843.wavelength_m)
     total = (echoes.amplitude.numpy() * turned).sum()
-    assert total == pytest.approx(specular_gain(AWR1843) * gamma.conj() / 5.0, rel=1e-3)
+    friis = 10 ** ((12 + 2 * 10.5) / 20) * AWR1843.wavelength_m / (4 * np.pi * 5.0)  # sqrt(mW) over the image's 5 m
+    assert total == pytest.approx(friis * gamma.conj(), rel=1e-3)
     tx, rx = np.asarray(AWR1843.tx_position_m), np.asarray(AWR1843.rx_position_m)
     image = tx * [1, -1, 1] + [0, 5.0, 0]
     assert np.allclose(echoes.length_m[0], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
@@ -287,3 +288,5 @@ def test_gains_are_the_radar_equation_in_decibels():
     by_hand = 12 + 2 * 10.5 + 20 * np.log10(SPEED_OF_LIGHT_MPS / c.centre_frequency_hz)
     by_hand -= 30 * np.log10(4 * np.pi) + 40 * np.log10(2)
     assert one_m2_at_2_m == pytest.approx(by_hand, abs=1e-6)
+    friis = 12 + 2 * 10.5 + 20 * np.log10(SPEED_OF_LIGHT_MPS / c.centre_frequency_hz / (4 * np.pi * 5.0))
+    assert 20 * np.log10(specular_gain(c) / 5.0) == pytest.approx(friis, abs=1e-6)

@@ -93,7 +93,7 @@ def test_inconsistent_captures_are_refused(made: Path, tmp_path: Path):
 
     pose = read_pose_npz(late / "pose.npz")
     write_pose_npz(late / "pose.npz", replace(pose, time_s=pose.time_s + 5.0))
-    with pytest.raises(InputError, match="cut both to the same time"):
+    with pytest.raises(InputError, match=r"5\.00 to 5\.70 s"):
         read_capture(late)
 
 
@@ -123,5 +123,5 @@ def test_a_changed_photo_is_refused(made: Path, tmp_path: Path):
     inputs = {name: {"path": str(tmp_path / file), "sha256": "0"} for name, file in (("rgb", "rgb.jpg"),
               ("depth", "depth.npy"))}  # fmt: skip
     (folder / "meta.json").write_text(json.dumps({"inputs": inputs}))
-    with pytest.raises(InputError, match="has changed since"):
+    with pytest.raises(InputError, match=r"rgb\.jpg"):
         read_capture(folder)

@@ -195,7 +195,7 @@ def test_a_room_is_opened_whatever_it_is(tmp_path: Path):
     (tmp_path / "views" / "views.json").write_text(json.dumps(views))
     for place in (plain, tmp_path / "views", tmp_path / "views" / "views.json"):
         assert weaver.open_room(place).scene.floor_z_m == pytest.approx(scan.scene.floor_z_m, abs=0.005)
-    with pytest.raises(InputError, match="colour picture is missing"):
+    with pytest.raises(InputError, match=r"rgb\.png"):
         weaver.open_room(tmp_path)
 
 
@@ -204,18 +204,18 @@ def test_others_are_refused_in_one_line(tmp_path: Path):
     with pytest.raises(InputError, match="is no scan of"):
         read_scan_photo(tmp_path)
     polycam(tmp_path / "p")
-    with pytest.raises(InputError, match="there is no photo 3"):
+    with pytest.raises(InputError, match=r"1 pictures.*3"):
         read_scan_photo(tmp_path / "p", 3)
     (tmp_path / "p" / "keyframes" / "cameras" / "100.json").write_text('{"fx": 1}')
     with pytest.raises(InputError, match="lacks fx"):
         read_scan_photo(tmp_path / "p")
     scannet(tmp_path / "s")
     (tmp_path / "s" / "pose" / "0.txt").write_text("a b")
-    with pytest.raises(InputError, match="no table of numbers"):
+    with pytest.raises(InputError, match=r"0\.txt"):
         read_scan_photo(tmp_path / "s")
     tum(tmp_path / "t")
     (tmp_path / "t" / "depth" / "1305031102.160407.png").rename(tmp_path / "t" / "depth" / "1305031109.png")
-    with pytest.raises(InputError, match="no depth within 30 ms"):
+    with pytest.raises(InputError, match=r"30 ms.*1305031102"):
         read_scan_photo(tmp_path / "t")
 
 

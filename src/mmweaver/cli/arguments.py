@@ -225,8 +225,11 @@ def add_layout_options(parser: Options, *, rare: bool = False) -> None:
     """The options that say how a DCA1000 .bin is laid out."""
     shown = help_of(rare)
     parser.add_argument(
-        "--iq-order", choices=("iq", "qi"),
-        help=shown("I or Q first in the .bin (default: as the .cfg or mmWave Studio file says, else iq)"),
+        "--iq-order", choices=("iq", "qi", "interleaved"),
+        help=shown(
+            "order of I and Q in the .bin: I I Q Q, Q Q I I or I Q I Q (default: as the .cfg or mmWave Studio file"
+            " says, else iq)"
+        ),
     )  # fmt: skip
     parser.add_argument(
         "--tx-order", type=transmitters, metavar="N,N,N",

@@ -274,6 +274,8 @@ def matched_sequences(
     try:
         draws, why = sentence_draws(requests, room.scene, arguments.repeat, arguments.seed, given)
     except InputError as error:
+        if given.start_m is not None:  # where it does not serve alone, either
+            raise
         raise InputError(f"{error}; or give --draws free, which places each sentence by itself") from None
     made: list[BatchSequence] = []
     refused: list[dict[str, Any]] = []

@@ -28,7 +28,9 @@ def check_store(arguments: argparse.Namespace) -> None:
         return
     need("dataset", "--store", "zarr")
     if arguments.texts is None:
-        raise InputError("--store is for --texts; a single sequence becomes a store with: mmweaver export --to zarr")
+        raise InputError(
+            "--store is for --texts; a single sequence becomes a store with: mmweaver export DIR --to zarr --out OUT"
+        )
     for name in NOT_STORED:
         if getattr(arguments, name) is not None:
             raise InputError(f"--store keeps cubes at the radar's frame rate; leave out --{name}, or --store")

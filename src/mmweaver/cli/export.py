@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.list:
         return _list(arguments)
     if arguments.folder is None or arguments.to is None or arguments.out is None:
-        raise InputError("give a result folder, --to FORMAT and --out DIR; mmweaver export --list names the formats")
+        raise InputError("give a result folder, --to FORMAT and --out DIR (the formats: mmweaver export --list)")
     if arguments.to not in FORMATS:
         raise InputError(f"unknown format {arguments.to!r}; known: {', '.join(FORMATS)}")
     if is_set(arguments.folder):

@@ -306,7 +306,7 @@ def _check_room(arguments: argparse.Namespace, pictures: tuple[Any, ...]) -> Non
     elif is_of_mesh:
         raise InputError("options of a mesh need --mesh FILE")
     if arguments.further_photos is not None and arguments.capture is None:
-        raise InputError("--further-photos are those of a scan; give --capture, or --views for photos of your own")
+        raise InputError("--further-photos are those of a scan; give --capture, or leave out --further-photos")
     if arguments.views is not None and any(given is not None for given in (*pictures[:6], arguments.sam)):
         raise InputError("--views names its own photos; leave out --rgb, --depth, --camera and all else that does")
     brought = (arguments.depth, arguments.camera, arguments.depth_model)

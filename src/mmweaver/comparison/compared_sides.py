@@ -97,7 +97,7 @@ def _is_signal(path: Path) -> bool:
 
 def _of_one(path: Path, reading: RawReading) -> ComparedSignal:
     if path.suffix.lower() == ".mmwl":
-        raise InputError(f"{path} holds packed raw samples; unpack it with mmweaver decompress first")
+        raise InputError(f"{path} holds packed raw samples; unpack it first: mmweaver decompress FILE -o ADC_DATA.bin")
     if path.suffix.lower() == ".mmw":
         return ComparedSignal(name=path.name, cube=read_cube(path))
     if path.is_dir() and (path / CUBE).is_file() and (path / POINTS).is_file():

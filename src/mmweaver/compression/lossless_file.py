@@ -196,7 +196,10 @@ class LosslessFile:
     def _read_header(self, stream: BinaryIO) -> LosslessHeader:
         front = stream.read(PREFIX.size)
         if len(front) < PREFIX.size or front[:4] != MAGIC:
-            raise InputError(f"{self.path} is no .mmwl file; make one with: mmweaver compress adc_data.bin --lossless")
+            raise InputError(
+                f"{self.path} is no .mmwl file; make one with: mmweaver compress ADC_DATA.bin --radar RADAR --lossless"
+                " -o OUT.mmwl"
+            )
         _, version, size = PREFIX.unpack(front)
         if version != VERSION:
             raise InputError(f"{self.path} is a .mmwl file of version {version}; this program reads {VERSION}")

@@ -268,7 +268,7 @@ class MmwFile:
     def _header_size(self, front: bytes) -> int:
         if len(front) < PREFIX.size or front[:4] != MAGIC:
             raise InputError(
-                f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw"
+                f"{self.path} is no .mmw file; make one with: mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw"
             )
         _, self.version, size = PREFIX.unpack(front)
         if self.version not in READABLE:

@@ -22,8 +22,8 @@ class InputError(ValueError):
 class NoRoomError(InputError):
     """A motion finds no room in a photo; `ways_on` says what would help.
 
-    Keys, where known: `nearest_place_m` (x, y), `range_m` (near, far) of the window that it needs, `radars` (names of
-    presets that have such a window).
+    Keys, where known: `nearest_place_m` (x, y), `range_m` (near, far) of the window that it needs, None where the radar
+    cannot have it, `radars` (names of presets that have such a window).
     """
 
     def __init__(self, message: str, *, ways_on: Mapping[str, Any] | None = None) -> None:
@@ -34,8 +34,12 @@ class NoRoomError(InputError):
 def _in_words(ways_on: Mapping[str, Any]) -> str:
     if not ways_on:
         return ""
-    (x, y), (near_m, far_m) = ways_on["nearest_place_m"], ways_on["range_m"]
-    radars = f" (or --radar {' or '.join(ways_on['radars'])})" if ways_on["radars"] else ""
+    x, y = ways_on["nearest_place_m"]
+    radars = f"--radar {' or '.join(ways_on['radars'])}" if ways_on["radars"] else ""
+    if ways_on["range_m"] is None:
+        return f"; the nearest free place is {x:g},{y:g}: try {radars}"
+    near_m, far_m = ways_on["range_m"]
+    radars = f" (or without it {radars})" if radars else ""
     return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}{radars}"
 
 

@@ -190,6 +190,11 @@ class RadarConfig:
         """End of the unambiguous range axis; beyond it range aliases."""
         return self.range_resolution_m * self.num_unambiguous_range_bins
 
+    @property
+    def farthest_bin_m(self) -> float:
+        """Range of the last unambiguous bin: what a window can reach."""
+        return self.max_range_m - self.range_resolution_m
+
     @cached_property
     def range_m(self) -> PerRange:
         """Range of each kept bin in metres, (range,)."""
@@ -304,7 +309,9 @@ class RadarConfig:
     def from_values(cls, values: Any) -> "RadarConfig":
         """The radar of `to_values`. Raises InputError for anything else."""
         if not isinstance(values, dict):
-            raise InputError("the radar file holds no object; make one with: mmweaver radar awr1843 --json")
+            raise InputError(
+                "the radar file holds no object; make one with: mmweaver radar awr1843 --json > radar.json"
+            )
         values = dict(values)
         version = values.pop("schema_version", None)
         if version != SCHEMA_VERSION:

@@ -233,11 +233,17 @@ class Seat:
     size_m: tuple[float, float]  # across and along the facing
 
 
+LANDMARK_KINDS = (
+    "door", "window", "table", "counter", "bed", "wall", "desk", "shelf", "fridge", "tv", "wardrobe", "sink", "plant",
+    "lamp", "stove", "cabinet", "couch", "chair",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, kw_only=True)
 class Landmark:
     """An object that a sentence may name as a place to go to."""
 
-    kind: str  # door | window | table | counter | bed
+    kind: str  # one of LANDMARK_KINDS; in a photo door | window | table | counter | bed are found
     position_m: Vec3  # its middle
     approach_m: tuple[float, float]  # (x, y) where one stands to use it
     facing_rad: float  # of a person there, from +x (right) towards +y (away from the radar)

@@ -2,11 +2,11 @@
 
 Two lanes (xWR16xx, 18xx, 68xx): frame, loop, transmitter (in firing order), receiver, sample; each four words hold two
 consecutive samples of one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo,
-SampleSwap 1). Four lanes (xWR12xx, 14xx): frame, loop, transmitter, sample; each eight words hold one sample of the
-receivers 0 to 3, I of all and then Q ("qi": Q first); a receiver that is off has its lane, too. Real samples (AWR2944)
-have one word each in the same order; the converter's offset is removed. The wrong I/Q order reverses the range
-axis; without one it is the radar's own (`lvds_iq_order`). Of an advanced frame, the words of other sub-frames are
-skipped, and written as zeros.
+SampleSwap 1), or, as other recorders store them, I0 Q0 I1 Q1 ("interleaved"). Four lanes (xWR12xx, 14xx): frame, loop,
+transmitter, sample; each eight words hold one sample of the receivers 0 to 3, I of all and then Q ("qi": Q first); a
+receiver that is off has its lane, too. Real samples (AWR2944) have one word each in the same order; the converter's
+offset is removed. The wrong I/Q order reverses the range axis; without one it is the radar's own (`lvds_iq_order`). Of
+an advanced frame, the words of other sub-frames are skipped, and written as zeros.
 
 Reference: TI SWRA581B, mmWave Radar Device ADC Raw Data Capture.
 """
@@ -23,7 +23,7 @@ from mmweaver.core.records import AdcCube
 from mmweaver.core.safe_files.regular_files import check_regular
 from mmweaver.core.safe_files.safe_arrays import read_words
 
-IQ_ORDERS = ("iq", "qi")
+IQ_ORDERS = ("iq", "qi", "interleaved")
 INT16_MAX = 32767
 GROWING = "parts.jsonl"  # next to a file that grows (mmweaver generate --stream): a kill may cut its last frame
 LANES = 4  # of the devices with more than two
@@ -89,7 +89,7 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None
         lanes = words.reshape(*head, config.num_samples, 2, LANES)[..., _channels(config)]
         parts = lanes[..., real, :].swapaxes(-1, -2), lanes[..., imaginary, :].swapaxes(-1, -2)
     else:
-        pairs = words.reshape(-1, 2, 2)  # (two samples, component, sample of the two)
+        pairs = _pairs(words, config, iq_order)
         shape = (*head, config.num_rx, config.num_samples)
         parts = pairs[:, real].reshape(shape), pairs[:, imaginary].reshape(shape)
     samples = np.empty((*head, config.num_rx, config.num_samples), np.complex64)
@@ -180,15 +180,22 @@ def _words(samples: np.ndarray, config: RadarConfig, iq_order: str | None, count
             lanes[..., component, _channels(config)] = np.rint(part.swapaxes(-1, -2) * np.float64(counts_per_unit))
         return lanes.reshape(len(samples), -1)
     grouped = samples.reshape(-1, 2)
-    pairs = np.empty((len(grouped), 2, 2), "<i2")
+    words = np.empty(4 * len(grouped), "<i2")
+    pairs = _pairs(words, config, iq_order)
     pairs[:, real] = np.rint(np.real(grouped) * np.float64(counts_per_unit))
     pairs[:, imaginary] = np.rint(np.imag(grouped) * np.float64(counts_per_unit))
-    return pairs.reshape(len(samples), -1)
+    return words.reshape(len(samples), -1)
+
+
+def _pairs(words: np.ndarray, config: RadarConfig, iq_order: str | None) -> np.ndarray:
+    """A view of two lanes' words as (two samples, component, sample of the two)."""
+    pairs = words.reshape(-1, 2, 2)
+    return pairs.swapaxes(1, 2) if (iq_order or config.lvds_iq_order) == "interleaved" else pairs
 
 
 def _parts(config: RadarConfig, iq_order: str | None) -> tuple[int, int]:
     """Places of I and of Q in a sample."""
-    return (0, 1) if (iq_order or config.lvds_iq_order) == "iq" else (1, 0)
+    return (1, 0) if (iq_order or config.lvds_iq_order) == "qi" else (0, 1)
 
 
 def _channels(config: RadarConfig) -> list[int]:
@@ -213,6 +220,8 @@ def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
 def _checked(config: RadarConfig, iq_order: str | None, tx_order: tuple[int, ...] | None) -> RadarConfig:
     if iq_order is not None and iq_order not in IQ_ORDERS:
         raise InputError(f"unknown I/Q order {iq_order!r}; known: {', '.join(IQ_ORDERS)}")
+    if iq_order == "interleaved" and (config.lvds_lanes == LANES or not config.complex_samples):
+        raise InputError(f"I/Q order 'interleaved' is for complex samples of two lanes, not for radar {config.name!r}")
     if config.lvds_lanes == 0:
         raise InputError(f"radar {config.name!r} is no board for a DCA1000, so there is no .bin of it; use .npy")
     if config.num_samples % 2 and config.lvds_lanes != LANES and config.complex_samples:

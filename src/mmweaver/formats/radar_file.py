@@ -35,7 +35,7 @@ def load_radar(name_or_path: str) -> RadarConfig:
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"
-        " .lua, or a .json from: mmweaver radar awr1843 --json"
+        " .lua, or a .json from: mmweaver radar awr1843 --json > radar.json"
     )
 
 

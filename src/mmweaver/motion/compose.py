@@ -1,5 +1,6 @@
 """From a scheduled plan and a Scene to the motion of a body in it. Read this file first."""
 
+import math
 from dataclasses import dataclass, replace
 
 from mmweaver.core.records import PoseSequence, Scene
@@ -70,6 +71,7 @@ def compose(
     has_photo: bool = True,
     after: BodyState | None = None,
     may_touch: bool = True,
+    farthest_m: float = math.inf,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
@@ -84,6 +86,7 @@ def compose(
         heading_rad: where the body faces first, from +x towards +y; chosen if None.
         is_varied: False keeps people who stand facing the radar, where it sees them best, and gives them no habits.
         person: instead of the two, a person made otherwise.
+        farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
         others: people who are already in the scene; the trajectory keeps clear of them (see `multi_person`).
         has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
             walk leads where there is room, and an assumption says so.
@@ -126,7 +129,9 @@ def compose(
 
         return least_collision(candidates, animate, CollisionMap.of(scene))
 
-    plan, best, room_notes = with_more_room(plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m)
+    plan, best, room_notes = with_more_room(
+        plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m, farthest_m=farthest_m
+    )
     described = (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
     placed = best.placement

@@ -58,6 +58,7 @@ class ContinuousMotion:
         *,
         frame_period_s: float,
         range_window_m: tuple[float, float],
+        farthest_m: float = math.inf,
         seed: int,
         start_m: tuple[float, float] | None = None,
         heading_rad: float | None = None,
@@ -65,6 +66,7 @@ class ContinuousMotion:
         subject: int | None = None,
     ) -> None:
         self.scene, self.frame_period_s, self.range_window_m, self.seed = scene, frame_period_s, range_window_m, seed
+        self._farthest_m = farthest_m
         self._start_m, self._heading_rad = start_m, heading_rad
         self._height_m, self._subject = height_m, subject_of(seed) if subject is None else subject
         self._person: Person | None = None
@@ -128,7 +130,7 @@ class ContinuousMotion:
         motion = compose(
             scheduled, self.scene, seed=seed, range_window_m=self.range_window_m, person=person, after=self._state(),
             start_m=self._start_m if is_first else None, heading_rad=self._heading_rad if is_first else None,
-            may_touch=may_touch,
+            may_touch=may_touch, farthest_m=self._farthest_m,
         )  # fmt: skip
         begins = 0 if self._last is None else self._last.end_frame
         begin_s = begins * self.frame_period_s

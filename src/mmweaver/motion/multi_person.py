@@ -6,6 +6,7 @@ are composed again with other random numbers, and that person goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
+import math
 from collections.abc import Callable, Sequence
 
 from mmweaver.core.errors import InputError
@@ -32,6 +33,7 @@ def compose_people(
     subjects: Sequence[int | None] | None = None,
     first: Motion | None = None,
     heading_rad: float | None = None,
+    farthest_m: float = math.inf,
 ) -> tuple[Motion, ...]:
     """One motion for each scheduled plan, in their order; each is another subject.
 
@@ -54,7 +56,7 @@ def compose_people(
         return compose(
             plan, scene, seed=own_seed, range_window_m=range_window_m, start_m=starts[index],
             height_m=heights[index], subject=numbers[index], others=others,
-            heading_rad=None if index or first is not None else heading_rad, may_touch=may_touch,
+            heading_rad=None if index or first is not None else heading_rad, may_touch=may_touch, farthest_m=farthest_m,
         )  # fmt: skip
 
     if len(plans) == 1:

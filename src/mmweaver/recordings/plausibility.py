@@ -19,11 +19,11 @@ from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.shapes import PerFrame
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.dsp.windows import hann
-from mmweaver.formats.dca1000 import LANES, adc_of_words, upright, words_of
+from mmweaver.formats.dca1000 import upright
 from mmweaver.formats.radar_options import RadarOptions, with_options
 from mmweaver.recordings.frame_boundaries import loops_of_other_frames
 from mmweaver.recordings.transmitter_order import agreements
+from mmweaver.recordings.word_order import wrong_iq_order, wrong_lanes
 
 FRAMES_LOOKED_AT = 8
 PROBE_BYTES = 1 << 16
@@ -31,11 +31,9 @@ FULL_SCALE = 32767
 CLIPPED_SHARE = 1e-3
 LEAST_CLIPPED = 1000  # counts; of a few counts many samples have the largest
 OTHER_SIZE = 0.5  # times the mean size of the words, below which another type is likelier
-MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
 LEAST_LIKENESS = 0.4  # of chirps one loop apart
 BETTER_LIKENESS = 0.25  # that another layout must have more
 NO_LIKENESS = 0.05  # of chirps in noise, or of samples packed in a way that is not known
-SCATTERED = 0.75  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
 LEAST_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
 FITTING = 0.6  # how well static echoes fit the right antennas at least
 BETTER_BOARD = 0.15  # that another board's antennas must fit better
@@ -63,8 +61,8 @@ def implausible(
     found = [*_values(adc)]
     if any("constant" in text for text in found):
         return found  # too little to check more
-    layout = [*_lanes(few, iq_order)]
-    layout = layout or [*_beat_sign(few, iq_order), *_layout(few), *_period(adc.config, frame_time_s)]
+    layout = [*wrong_lanes(few, iq_order)] or [*_layout(few), *_period(adc.config, frame_time_s)]
+    layout = layout or [*wrong_iq_order(few, iq_order)]  # of another radar's chirps it says nothing
     layout = layout or [*loops_of_other_frames(adc)]
     return [*found, *(layout or [*_transmitters(cube), *_velocity_sign(cube)])]
 
@@ -118,49 +116,6 @@ def _values(adc: AdcCube) -> Iterator[str]:
     if clipped > CLIPPED_SHARE:
         at = "full scale" if most >= FULL_SCALE else f"{most:.0f} counts"
         yield f"{100 * clipped:.1f} % of the samples are clipped at {at}; record with less receiver gain"
-
-
-def _lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
-    """Words of two lanes read as four, or the other way round: the spectrum of each chirp is scattered."""
-    config = adc.config
-    if iq_order is None or config.num_rx != LANES or not config.complex_samples:
-        return
-    alone = replace(config, frame_words_before=0, frame_words_after=0)  # without other sub-frames
-    two = replace(adc, samples=adc.samples[:2], config=alone)
-    words, _ = words_of(two, iq_order=iq_order)
-    other = 2 if config.lvds_lanes == LANES else LANES
-    again = adc_of_words(words.reshape(-1), replace(alone, lvds_lanes=other), iq_order=iq_order)
-    if _occupied(again) < SCATTERED * _occupied(two):
-        yield (
-            f"read as {other} lanes the echoes of a chirp gather at fewer ranges than as {config.lvds_lanes}; try"
-            f" --lanes {other}, or another --radar"
-        )
-
-
-def _occupied(adc: AdcCube) -> float:
-    """The share of the range bins that the energy of a chirp fills, mean over chirps."""
-    power = np.abs(np.fft.fft(adc.samples * hann(adc.config.num_samples), axis=-1)) ** 2
-    power = power.reshape(-1, power.shape[-1])
-    return float((power.sum(axis=1) ** 2 / np.maximum((power**2).sum(axis=1), 1e-300)).mean() / power.shape[1])
-
-
-def _beat_sign(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
-    """Energy at negative beat frequencies: I and Q the wrong way round."""
-    if not adc.config.complex_samples:
-        return
-    num = adc.config.num_samples
-    spectrum = np.abs(np.fft.fft(adc.samples * hann(num), axis=-1)) ** 2
-    level = spectrum.mean(axis=(0, 1, 2, 3))
-    near = max(num // 4, 3)
-    positive, negative = level[2:near].sum(), level[num - near + 1 : num - 1].sum()
-    if negative > positive * 10 ** (MIRRORED_DB / 10):
-        remedy = "store the complex conjugate"
-        if iq_order is not None:
-            remedy = f"try --iq-order {'iq' if iq_order == 'qi' else 'qi'}"
-        yield (
-            f"{10 * np.log10(negative / max(positive, 1e-300)):.0f} dB more energy lies at negative beat frequencies"
-            f" than at positive ones, so I and Q are probably the other way round; {remedy}"
-        )
 
 
 def _layout(adc: AdcCube) -> Iterator[str]:

@@ -96,11 +96,12 @@ def read_recording(
 
     `mapped` leaves the cube of a radar.npz on the disk, read-only, until its values are used.
 
-    `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz
-    its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq"
-    or "qi" (default: what the radar's file says, else "iq"), `tx_order` the order in which transmitters fire (default:
-    the radar's). A .npy needs its `axes`, such as "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised
-    by its shape), "mmmesh", "rf_genesis" or "cubelearn". Raises InputError where the file cannot be read so.
+    `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz its
+    radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq", "qi" or
+    "interleaved" (default: what the radar's file says, else "iq"), `tx_order` the order in which transmitters fire
+    (default: the radar's). A .npy needs its `axes`, such as "frame,loop,tx,rx,sample", or a `layout`: "hupr"
+    (recognised by its shape), "mmmesh", "rf_genesis" or "cubelearn". Raises InputError where the file cannot be read
+    so.
     """
     if frames.step not in (None, 1) or (frames.start or 0) < 0:
         raise ValueError("frames are a stretch that begins with a frame of the recording")

@@ -42,5 +42,5 @@ def test_an_axis_has_one_length_in_a_file():
     checks = ArrayChecks("a.npz")
     checks.numbers("time_s", np.zeros(3), ("frame",))
     checks.shape("words", (3,), ("frame",))
-    with pytest.raises(InputError, match="joints_m has 4 along 'frame', but time_s has 3"):
+    with pytest.raises(InputError, match=r"joints_m.*4.*time_s.*3"):
         checks.numbers("joints_m", np.zeros((4, 22, 3)), ("frame", 22, 3))

@@ -42,7 +42,7 @@ def test_blosc_is_bounded_too(tmp_path: Path):
     chunk = write(tmp_path, np.arange(4.0), BloscCodec(cname="zstd"))
     assert np.array_equal(open_bounded(tmp_path / "a")[...], np.arange(4.0))
     chunk.write_bytes(summed(blosc.compress(bytes(10_000_000), b"zstd", 5, 1)))
-    with pytest.raises(ValueError, match="unpacks to 10000000 bytes, not 32"):
+    with pytest.raises(ValueError, match=r"10000000.*32"):
         open_bounded(tmp_path / "a")[...]
 
 

@@ -20,7 +20,7 @@ def test_a_file_is_read_whole_or_refused(tmp_path: Path):
 
 def test_a_path_that_names_nothing_is_said(tmp_path: Path):
     check_exists(tmp_path, "a folder")
-    with pytest.raises(InputError, match="absent does not exist; give a folder"):
+    with pytest.raises(InputError, match=r"absent.*folder"):
         check_exists(tmp_path / "absent", "a folder")
 
 
@@ -50,11 +50,11 @@ def test_what_is_no_regular_file_is_named(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("error", "message"),
     [
-        (ValueError("two\nlines"), "a.npy is damaged \\(two lines\\); give another"),
+        (ValueError("two\nlines"), r"a\.npy.*two lines"),
         (KeyError("x"), "is damaged"),
         (MemoryError(), "needs more memory than there is"),
-        (FileNotFoundError(2, "No such file"), "cannot read a.npy: No such file"),
-        (OSError("no code"), "is damaged \\(no code\\)"),
+        (FileNotFoundError(2, "No such file"), r"a\.npy.*No such file"),
+        (OSError("no code"), "no code"),
         (RuntimeError("set allow_pickle=True"), "pickled objects"),
         (RuntimeError(), "RuntimeError"),
         (InputError("our own words"), "our own words"),

@@ -75,11 +75,11 @@ def test_headers_that_lie_are_refused(tmp_path: Path, data: bytes, message: str)
 def test_archives_that_grow_out_of_proportion_are_refused(tmp_path: Path):
     file = tmp_path / "a.npz"
     file.write_bytes(npz_bytes({"a": npy_bytes(np.zeros(9_000_000))}, zipfile.ZIP_DEFLATED))
-    with pytest.raises(InputError, match="would grow to more than 100 times"):
+    with pytest.raises(InputError, match="100 times"):
         read_npz(file)
     assert len(read_npz(file, only=("none",))) == 0
     file.write_bytes(npz_bytes({"a": lying_npy(header("(9,)"), bytes(16))}))
-    with pytest.raises(InputError, match="it ends after 16 of 72 bytes"):
+    with pytest.raises(InputError, match="16 of 72"):
         read_npz(file)
     file.write_bytes(npz_bytes({"a": npy_bytes(np.zeros(2)) + b"more"}))
     with pytest.raises(InputError, match="longer than its header says"):
@@ -98,7 +98,7 @@ def test_arrays_of_objects_are_left_out_where_that_is_asked_for(tmp_path: Path):
 def test_raw_numbers_and_sound_archives(tmp_path: Path):
     np.arange(5, dtype="<i2").tofile(tmp_path / "a.bin")
     assert read_words(tmp_path / "a.bin", "<i2", count=4).tolist() == [0, 1, 2, 3]
-    with pytest.raises(InputError, match="fewer than 12 bytes"):
+    with pytest.raises(InputError, match="12 bytes"):
         read_words(tmp_path / "a.bin", "<i2", count=6)
     data = bytearray(npz_bytes({"a": npy_bytes(np.zeros(9))}))
     (tmp_path / "a.zip").write_bytes(data)

@@ -46,7 +46,7 @@ def test_pictures_are_upright(tmp_path: Path, orientation: int, kind: str):
 
 def test_sizes_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     Image.fromarray(PIXELS[:20]).save(tmp_path / "small.png")
-    with pytest.raises(InputError, match="has only 60 x 20 pixels"):
+    with pytest.raises(InputError, match="60 x 20"):
         open_picture(tmp_path / "small.png")
     monkeypatch.setattr(safe_pictures, "MAX_PIXELS", 2000)
     Image.fromarray(PIXELS).save(tmp_path / "large.png")

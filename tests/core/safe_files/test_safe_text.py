@@ -40,7 +40,7 @@ def test_files_have_a_largest_size_and_an_encoding(tmp_path: Path):
     with pytest.raises(InputError, match="is larger than"):
         read_json(file, max_bytes=50)
     file.write_bytes(b"caf\xe9")
-    with pytest.raises(InputError, match="no UTF-8 text \\(byte 3\\)"):
+    with pytest.raises(InputError, match=r"UTF-8.*byte 3"):
         read_text(file)
     assert read_text(file, errors="replace") == "caf\ufffd"
     file.write_bytes(b"\xef\xbb\xbfplain")

@@ -156,3 +156,20 @@ def test_who_crawls_longer_than_the_floor_goes_to_and_fro():
     way_m = np.linalg.norm(np.diff(pelvis_m[::12], axis=0), axis=1).sum()
     assert way_m > 1.3 * np.ptp(pelvis_m, axis=0).max()
     assert way_m > 1.5
+
+
+def test_an_advised_window_is_one_that_the_radar_has():
+    """The radar sees up to 5.07 m; where the free floor begins beyond, only other radars are named."""
+    plan = plan_motion("a person waves", 2.0)
+    for first_free_m, sees_it in ((4.3, True), (6.0, False)):
+        far = room(boxes=((-3.0, 3.0, 0.0, first_free_m),), depth_m=9.0, width_m=6.0)
+        with pytest.raises(NoRoomError) as caught:
+            compose(plan, far, seed=0, range_window_m=WINDOW_M, farthest_m=5.07)
+        window_m = caught.value.ways_on["range_m"]
+        assert (window_m is not None) == sees_it
+        if sees_it:
+            assert window_m[1] <= 5.07
+            compose(plan, far, seed=0, range_window_m=tuple(window_m))
+        else:
+            assert "--range" not in str(caught.value).split("try ")[-1]
+            assert caught.value.ways_on["radars"]

@@ -14,7 +14,7 @@ def test_a_compressed_file_needs_the_library_and_gives_its_content(tmp_path: Pat
     block = b"bvxn" + (40).to_bytes(4, "little") + (3).to_bytes(4, "little") + b"\x06\0\0" + b"bvx$"
     assert unpacked_length(block) == 40
     (tmp_path / "a").write_bytes(block)
-    with pytest.raises(InputError, match="no LZFSE file of 50 bytes"):
+    with pytest.raises(InputError, match="50 bytes"):
         read_lzfse(tmp_path / "a", 50)
     if importlib.util.find_spec("liblzfse") is None:
         with pytest.raises(InputError, match="pip install pyliblzfse"):

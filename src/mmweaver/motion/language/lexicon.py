@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from mmweaver.core.records import LANDMARK_KINDS
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
@@ -17,8 +18,7 @@ _WORDS = {name: words_in(words) for name, words in read_toml(Path(__file__).with
 GOING = frozenset({"go", "move", "head", "come", "return"})
 # A word for a place to go to -> Landmark.kind.
 TARGETS = {
-    **{kind: kind for kind in ("door", "table", "window", "couch", "chair", "bed", "desk", "shelf", "counter", "wall",
-                               "fridge", "tv", "wardrobe", "sink", "plant", "lamp", "stove", "cabinet")},
+    **{kind: kind for kind in LANDMARK_KINDS},
     **dict.fromkeys(("doorway", "exit", "entrance", "doors"), "door"),
     "sofa": "couch", "settee": "couch", "armchair": "chair",
     "stool": "chair", "bookshelf": "shelf", "bookcase": "shelf", "shelves": "shelf", "worktop": "counter",

@@ -4,6 +4,7 @@ Going on elsewhere; floor that is only assumed; walking on the spot; everything 
 another way; at last, lying where furniture is touched least.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -32,7 +33,7 @@ _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the rig
 _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 DEEP_M = 0.03  # into furniture, where floor is tight: another way is tried first
-_ANY_WINDOW_M = (0.2, 30.0)
+_ANY_NEAR_M, _ANY_FAR_M = 0.2, 30.0
 _MOST_RADARS = 3
 _MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
 ASSUMED_FLOOR = (
@@ -53,13 +54,15 @@ def with_more_room(
     *,
     may_touch: bool = True,
     depth_m: Callable[[Result], float] = lambda _: 0.0,
+    farthest_m: float = math.inf,
 ) -> tuple[MotionPlan, Result, tuple[str, ...]]:
     """The first of several ways to compose a plan that finds room: the plan then, its result, and notes.
 
     In this order: as it is; walking on elsewhere than ahead; on floor that is only assumed; walking on the spot; where
     `may_touch`, all that travels on the spot, falls another way, and at last kneeling or lying where furniture is
     touched least. Of these last ways the first whose result is at most DEEP_M into furniture (`depth_m`), else the one
-    that is least. Raises the error of the first way, with ways on where no floor is free at all.
+    that is least. Raises the error of the first way, with ways on where no floor is free at all; `farthest_m`: what
+    the radar can see at most.
     """
     first_error: InputError | None = None
     deep: list[tuple[MotionPlan, Result, tuple[str, ...]]] = []
@@ -76,7 +79,7 @@ def with_more_room(
         return min(deep, key=lambda one: depth_m(one[1]))
     assert first_error is not None
     if isinstance(first_error, NoRoomError):
-        raise NoRoomError(str(first_error), ways_on=ways_on(floor, plan)) from None
+        raise NoRoomError(str(first_error), ways_on=ways_on(floor, plan, farthest_m)) from None
     raise first_error
 
 
@@ -175,30 +178,41 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
     return replace(plan, steps=tuple(steps)), tuple(notes)
 
 
-def ways_on(floor: FloorMap, plan: MotionPlan) -> dict[str, Any]:
+def ways_on(floor: FloorMap, plan: MotionPlan, farthest_m: float = math.inf) -> dict[str, Any]:
     """Where there would be room: the nearest free place, the range window it needs, and presets that have it.
 
-    Where the room has nothing of a place that the plan names, the nearest of that place. Empty where the photo shows no
-    such floor at any distance, or hardly more than in the window.
+    Where the room has nothing of a place that the plan names, the nearest of that place. The window is one that the
+    radar, which sees up to `farthest_m`, can have, or None. Empty where the photo shows no such floor at any distance,
+    or hardly more than in the window.
     """
-    anywhere = FloorMap.of(floor.scene, _ANY_WINDOW_M, floor.height_m, with_assumed=True)
-    named = [step.place for step in plan.steps if step.place is not None and not len(_cells_if_any(step.place, floor))]
-    if not named and np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
+    place = None
+    for reach_m in dict.fromkeys((min(farthest_m, _ANY_FAR_M), _ANY_FAR_M)):
+        if place is None and reach_m > _ANY_NEAR_M:
+            place, is_own = _nearest_place(floor, plan, (_ANY_NEAR_M, reach_m)), reach_m <= farthest_m
+    if place is None:
         return {}
-    places_m = _cells_if_any(named[0], anywhere) if named else anywhere.walkable_m
-    if not len(places_m):
-        return {}
-    place = places_m[np.argmin(np.hypot(*places_m.T))]
     near_m, far_m = window_about(floor.scene, floor.height_m, place, floor.range_window_m)
     radars = [
         name for name in PRESETS
         if PRESETS[name].range_m[0] <= near_m and PRESETS[name].range_m[-1] >= far_m
-    ]  # fmt: skip
+    ][:_MOST_RADARS]  # fmt: skip
+    if not (is_own or radars):
+        return {}
     return {
         "nearest_place_m": [round(float(part), 2) for part in place],
-        "range_m": [near_m, far_m],
-        "radars": radars[:_MOST_RADARS],
+        "range_m": [near_m, far_m if far_m <= farthest_m else math.floor(100 * farthest_m) / 100] if is_own else None,
+        "radars": radars,
     }
+
+
+def _nearest_place(floor: FloorMap, plan: MotionPlan, window_m: tuple[float, float]) -> Float[np.ndarray, "2"] | None:
+    """The free place in another window that is nearest to the radar, if that window shows much more floor."""
+    anywhere = FloorMap.of(floor.scene, window_m, floor.height_m, with_assumed=True)
+    named = [step.place for step in plan.steps if step.place is not None and not len(_cells_if_any(step.place, floor))]
+    if not named and np.count_nonzero(anywhere.walkable) < _MUCH_MORE * np.count_nonzero(floor.walkable):
+        return None
+    places_m = _cells_if_any(named[0], anywhere) if named else anywhere.walkable_m
+    return places_m[np.argmin(np.hypot(*places_m.T))] if len(places_m) else None
 
 
 def _cells_if_any(place: Place, floor: FloorMap) -> Float[np.ndarray, "cell 2"]:

@@ -102,11 +102,11 @@ def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
     """Middles of what the place is relative to. Raises InputError where the photo shows none."""
     if kind == "corner":
         found = _corners(scene)
-    elif kind in SEATS:
-        found = [np.asarray(seat.position_m[:2], float) for seat in scene.seats]
     else:
         kinds = kinds_of(kind)
         found = [np.asarray(mark.position_m[:2], float) for mark in scene.landmarks if mark.kind in kinds]
+        if kind in SEATS and not found:
+            found = [np.asarray(seat.position_m[:2], float) for seat in scene.seats]
     if not found:
         way_on = "" if kind == "corner" else f" give its position with --landmark {kinds_of(kind)[0]}=X,Y, or"
         what = "corner of two walls" if kind == "corner" else kind

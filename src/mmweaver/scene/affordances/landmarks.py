@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import FreeSpace, Landmark, Plane, Scene, Seat
+from mmweaver.core.records import LANDMARK_KINDS, FreeSpace, Landmark, Plane, Scene, Seat
 from mmweaver.core.shapes import Array, GridMask, Vec3
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.affordances.seats import bed_squares
@@ -23,7 +23,6 @@ _MAX_SOLID_SHARE = 0.6  # of a table's visible front; chests are solid below the
 _BODY_RADIUS_M, _MAX_REACH_M = 0.27, 1.1  # a body's half width, and how far from a landmark one may stand to use it
 _MIN_SPACING_M = 0.5  # between landmarks of a kind
 _BEARING_BIN_RAD = 0.02
-KINDS = ("door", "window", "table", "counter", "bed")
 _MAX_GIVEN_M = 10.0
 
 
@@ -68,8 +67,8 @@ def with_given_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, f
     """
     added = []
     for kind, (x, y) in given:
-        if kind not in KINDS:
-            raise InputError(f"no sentence goes to a {kind!r}; known: {', '.join(KINDS)}")
+        if kind not in LANDMARK_KINDS:
+            raise InputError(f"no sentence goes to a {kind!r}; known: {', '.join(LANDMARK_KINDS)}")
         if not (abs(x) <= _MAX_GIVEN_M and 0 < y <= _MAX_GIVEN_M):
             raise InputError(
                 f"the {kind} at {x:g},{y:g} is not in front of the radar; give metres to the right of and ahead of it,"

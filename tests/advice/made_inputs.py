@@ -1,0 +1,150 @@
+"""The small files that the commands of the advice tests name."""
+
+import argparse
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver.cli import generate, train
+from mmweaver.cli.main import main
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.formats.dca1000 import write_bin
+from mmweaver.generate import Weaver, compose_request
+from mmweaver.generation import Generation, Room
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
+from mmweaver.motion.motion_models import MotionTask
+from mmweaver.request import Request
+from tests.captures import CFG
+from tests.cli.test_motion_options import waving
+from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES
+from tests.recordings.test_plausibility import RADAR, room
+
+SAMPLE = Path(generate.__file__).parents[1] / "sample"
+FEW_FRAMES = 2
+
+
+def still(task: MotionTask) -> MotionClip:
+    """A motion model: a person who stands and moves an arm."""
+    joints = waving(max(task.seconds or 1.0, 1.0) + 0.5)[..., [2, 0, 1]] / 100
+    return MotionClip(joints_m=joints, fps=30.0, label=task.sentence)
+
+
+def make(folder: Path) -> dict[str, Any]:
+    """Writes them; their paths, by name."""
+    (folder / "texts.txt").write_text("a person waves\na person stands\n")
+    (folder / "with_nobody.txt").write_text("a person stands\nnobody\n")
+    (folder / "nothing").mkdir()
+    _motions(folder)
+    for name, config in (("radar", RADAR), ("two_loops", replace(AWR1843, num_loops=2))):
+        (folder / f"{name}.json").write_text(config.to_json())
+    for order in ("iq", "qi", "interleaved"):
+        write_bin(folder / f"{order}.bin", room(RADAR, FEW_FRAMES), iq_order=order, counts_per_unit=1.0)
+    (folder / "made.cfg").write_text(CFG)
+    (folder / "best_range.cfg").write_text(BEST_RANGE)
+    (folder / "sub_frames.cfg").write_text(SUB_FRAMES)
+    (folder / "other_device.cfg").write_text(CFG.replace("adcCfg 2 1", "adcCfg 2 1\nchirpComnCfg 1 2 3"))
+    (folder / "points.csv").write_text("Frame,X,Y,Z,Doppler\n0,0.1,2.0,0.0,0.1\n1,0.1,2.0,0.0,0.1\n")
+    (folder / "points_log.txt").write_text((folder / "points.csv").read_text())
+    np.save(folder / "samples.npy", room(RADAR, FEW_FRAMES).samples)
+    np.save(folder / "mmmesh.npy", np.ones((2, 3, 4, 128, 256), np.complex64))
+    (folder / "activities.toml").write_text(
+        '[activities]\nwaving = ["a person waves"]\nstanding = ["a person stands"]\n'
+    )
+    (folder / "jumping.toml").write_text('[activities]\njumping = ["a person jumps"]\nwalking = ["a person walks"]\n')
+    (folder / "task.toml").write_text("")
+    (folder / "own_room").mkdir()
+    for name in ("depth.png", "camera.json"):
+        shutil.copy(SAMPLE / name, folder / "own_room" / name)
+    with Image.open(SAMPLE / "rgb.webp") as picture:
+        picture.save(folder / "own_room" / "rgb.png")
+    made = {path.stem: path for path in folder.iterdir()} | {"walk": _result(folder / "walk")}
+    for name, words in (
+        ("processed", "process {iq} --radar {radar} --no-pictures --no-analysis --out {folder}/processed"),
+        ("packed.mmwl", "compress {iq} --radar {radar} --lossless -o {folder}/packed.mmwl"),
+    ):
+        assert main([word.format(folder=folder, **made) for word in (words + " --quiet").split()]) == 0
+        made[Path(name).stem] = folder / name
+    return made | {
+        "rgb": SAMPLE / "rgb.webp", "depth": SAMPLE / "depth.png", "camera": SAMPLE / "camera.json",
+        "model": f"{__name__}:{still.__name__}",
+        "weights": SAMPLE.parent / "weights" / "weaver.safetensors", "results": _results(folder / "results"),
+        **{name: folder / name for name in ("mesh", "scan", "views", "capture")},
+    }  # fmt: skip
+
+
+def _motions(folder: Path) -> None:
+    joints = waving()  # centimetres, y up
+    np.save(folder / "motion.npy", joints)
+    np.savez(folder / "clip.npz", joints=joints[..., [2, 0, 1]] / 100, fps=np.float32(30))
+    np.save(folder / "giant.npy", 0.05 * joints)
+    np.save(folder / "leaning.npy", joints @ np.array([[1, 1, 0], [-1, 1, 0], [0, 0, np.sqrt(2)]]) / np.sqrt(2))
+    ours = (
+        "pelvis", "left_hip", "left_knee", "left_ankle", "left_foot", "right_hip", "right_knee", "right_ankle",
+        "right_foot", "spine1", "spine2", "neck", "head", "left_shoulder", "left_elbow", "left_wrist",
+        "right_shoulder", "right_elbow", "right_wrist",
+    )  # fmt: skip
+    cmu = np.zeros((len(joints), 38, 3), np.float32)
+    cmu[:, list(CMU_NAMES)] = joints[:, [JOINT_NAMES.index(name) for name in ours]] / 100
+    lengths = np.array([10, len(joints) - 10])
+    np.savez(
+        folder / "several.npz", names=np.array(["walk", "run"]), lengths=lengths, pos=cmu, parents=np.zeros(38, int)
+    )
+    track = np.linspace(0, 600, len(joints))[:, None, None] * np.array([1.0, 0.0, 0.0])
+    np.save(folder / "far.npy", (joints + track) / 100)
+
+
+def _result(folder: Path) -> Path:
+    """A folder of mmweaver generate, samples included."""
+    with signals_made_once():
+        words = ["generate", "--demo", "--text", "a person waves", "--frames", "1", "--bin", "--no-pictures", "--quiet"]
+        assert main([*words, "--out", str(folder)]) == 0
+    return folder
+
+
+def _results(folder: Path) -> Path:
+    """A folder of mmweaver generate --texts."""
+    texts = folder.with_name("texts.txt")
+    with signals_made_once():
+        words = ["generate", "--demo", "--frames", "1", "--no-pictures", "--quiet", "--texts", str(texts)]
+        assert main([*words, "--out", str(folder)]) == 0
+    return folder
+
+
+@contextmanager
+def signals_made_once() -> Iterator[None]:
+    """The room is the sample room, whatever is read, all signals are the first one, and nothing is trained.
+
+    Motions are composed.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(generate, "_photographed_room", _sample_room)
+        patch.setattr(Weaver, "carry_out", _signal)
+        patch.setattr(train, "_trained", lambda *_: {"weights": "out", "steps": 0, "validation_loss": 0.0})
+        yield
+
+
+_made: dict[str, Any] = {}
+_carry_out = Weaver.carry_out
+
+
+def _sample_room(weaver: Weaver, arguments: argparse.Namespace) -> Room:
+    generate._further(arguments.further_photos)
+    if "room" not in _made:
+        _made["room"] = weaver.sample_room()
+    return _made["room"]
+
+
+def _signal(weaver: Weaver, request: Request, of_room: Room, people: Any = None) -> Generation:
+    people = compose_request(request, of_room.scene) if people is None else people
+    if "signal" not in _made:
+        _made["signal"] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
+    return _made["signal"]

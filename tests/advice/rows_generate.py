@@ -1,0 +1,226 @@
+"""Advice of `mmweaver generate`."""
+
+from pathlib import Path
+
+from tests.advice.harness import Row, add, drop, first, flag, instead
+
+SHORT = "--frames 1 --no-pictures --out out"
+DEMO = f"generate --demo {SHORT}"
+PHOTO = "--rgb {rgb} --depth {depth} --camera {camera}"
+OWN = f"generate {PHOTO} --text 'a person waves' {SHORT}"
+BATCH = f"generate --demo --texts {{texts}} {SHORT}"
+STREAM = f"generate --demo --stream --text 'a person waves' {SHORT}"
+
+
+def _holds_something(name: str = "out/notes.txt") -> None:
+    Path(name).parent.mkdir(parents=True, exist_ok=True)
+    Path(name).write_text("mine")
+
+
+def _a_stream() -> None:
+    _holds_something("out/parts.jsonl")
+
+
+ROWS = (
+    Row(
+        "--demo brings its own room",
+        f"{DEMO} {PHOTO} --text 'a person waves'",
+        (
+            drop("--rgb", "--depth", "--camera"),
+            drop("--demo"),
+        ),
+    ),
+    Row(
+        "which room? give --rgb and --depth",
+        f"generate --text 'a person waves' {SHORT}",
+        (
+            flag("--demo"),
+            add("--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),
+        ),
+    ),
+    Row(
+        "--rgb needs --depth too",
+        f"generate --rgb {{rgb}} --camera {{camera}} --text 'a person waves' {SHORT}",
+        (
+            add("--depth", "{depth}"),
+            add("--depth-model"),
+        ),
+    ),
+    Row(
+        "--depth needs --rgb too",
+        f"generate --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
+        (add("--rgb", "{rgb}"),),
+    ),
+    Row("--mesh brings the whole room", f"{OWN} --mesh {{mesh}}", (drop("--rgb", "--depth", "--camera"),)),
+    Row(
+        "options of a mesh need --mesh FILE",
+        f"generate --mesh-up z --text 'a person waves' {SHORT}",
+        (add("--mesh", "{mesh}"),),
+    ),
+    Row("--further-photos are those of a scan", f"{OWN} --further-photos auto", (drop("--further-photos"),)),
+    Row("--views names its own photos", f"{OWN} --views {{views}}", (drop("--rgb", "--depth", "--camera"),)),
+    Row(
+        "--capture brings its own depth and camera",
+        f"generate --capture {{capture}} --depth {{depth}} --camera {{camera}} --depth-model auto"
+        f" --text 'a person waves' {SHORT}",
+        (drop("--depth", "--camera", "--depth-model"),),
+    ),
+    Row(
+        "--further-photos are those of a scan",
+        f"generate --further-photos auto --text 'a person waves' {SHORT}",
+        (add("--capture", "{scan}"),),
+    ),
+    Row(
+        "are no numbers of photos",
+        f"generate --capture {{scan}} --further-photos many --text 'a person waves' {SHORT}",
+        (
+            instead("write 60,120,180", "many", "60,120,180"),
+            instead("or auto", "many", "auto"),
+        ),
+    ),
+    Row(
+        "what does the person do? give --text",
+        f"generate {PHOTO} {SHORT}",
+        (
+            add("--text"),
+            add("--motion", "{motion}", "--motion-fps", "30"),
+        ),
+    ),
+    Row(
+        "where to? give --out",
+        f"generate {PHOTO} --text 'a person waves' --frames 1 --no-pictures",
+        (add("--out", "out"),),
+    ),
+    Row(
+        "--html shows a radar at the camera",
+        f"{DEMO} --radar-pose 0,0,0,0,0 --html page.html",
+        (
+            drop("--radar-pose"),
+            drop("--html"),
+        ),
+    ),
+    Row("holds a stream already", STREAM, (instead("choose another --out", "out", "other"),), before=_a_stream),
+    Row(
+        "a stream needs a folder of its own",
+        STREAM,
+        (instead("choose another --out", "out", "other"),),
+        before=_holds_something,
+    ),
+    Row(
+        "--motion-model acts out one text",
+        f"{DEMO} --motion-model {{model}} --text 'a person waves' --text 'a person jumps'",
+        (instead("give --text once", "--text 'a person jumps'"),),
+    ),
+    Row(
+        "--motion is a recorded motion",
+        f"{DEMO} --motion {{clip}} --motion-model {{model}} --text 'a person waves'",
+        (
+            instead("give one of them", "--motion {clip}"),
+            instead("give one of them", "--motion-model {model}"),
+        ),
+    ),
+    Row(
+        "--motion-model acts out a text; give --text",
+        f"generate {PHOTO} {SHORT} --texts {{texts}} --motion-model {{model}}",
+        (instead("give --text", "--texts {texts}", "--text 'a person waves'"),),
+    ),
+    Row(
+        "--path is for a sentence",
+        f"{DEMO} --motion {{clip}} --path '0,1.6 0.4,1.6' --text 'a person walks'",
+        (
+            instead("leave one of them out", "--path '0,1.6 0.4,1.6'"),
+            instead("leave one of them out", "--motion {clip}"),
+        ),
+    ),
+    Row(
+        "--as-recorded moves nothing",
+        f"{DEMO} --motion {{clip}} --as-recorded --at 0,2 --heading 0",
+        (
+            drop("--at", "--heading"),
+            drop("--as-recorded"),
+        ),
+    ),
+    Row(
+        "is about a recorded motion; give --motion too",
+        f"{DEMO} --motion-unit cm --motion-fps 30",
+        (add("--motion", "{motion}"),),
+    ),
+    Row(
+        "--subframe, --antennas and --lanes belong to a radar",
+        "process {iq} --antennas boost --no-pictures --out out",
+        (add("--radar", "{radar}"),),
+    ),
+    Row(
+        "holds no □; give a folder of mmweaver train",
+        f"{DEMO} --weights {{nothing}}",
+        (instead("or a weight file", "{nothing}", "{weights}"),),
+    ),
+    Row(
+        "does not exist; give a .safetensors file",
+        f"{DEMO} --weights absent.safetensors",
+        (instead("give a .safetensors file", "absent.safetensors", "{weights}"),),
+    ),
+    # many sentences
+    Row("--texts makes many sequences", f"{BATCH} --motion {{clip}}", (drop("--motion"), drop("--texts"))),
+    Row(
+        "--texts takes one --radar-pose",
+        f"{BATCH} --radar-pose 0,0,0,0,0 --radar-pose 0.1,0,0,0,0",
+        (instead("takes one --radar-pose", "--radar-pose 0.1,0,0,0,0"),),
+    ),
+    Row(
+        "--texts makes sequences of one person each",
+        f"{BATCH} --at 0,2 --at 0.5,2",
+        (instead("give --at once", "--at 0.5,2"),),
+    ),
+    Row("--repeat must be 1 to", f"{BATCH} --repeat 100000", (instead("--repeat must be 1 to", "100000", "1"),)),
+    Row(
+        "an empty room is no sequence of a person",
+        f"generate --demo --texts {{with_nobody}} {SHORT}",
+        (instead("with --text", "--texts {with_nobody}", "--text nobody"),),
+    ),
+    Row(
+        "holds something else; choose another --out",
+        f"{BATCH} --draws free",
+        (
+            instead("choose another --out", "out", "other"),
+            flag("--overwrite"),
+        ),
+        before=lambda: _holds_something("out/0000/meta.json"),
+    ),
+    Row("--iq is for --store", f"{BATCH} --iq none", (flag("--store"),)),
+    Row(
+        "--store is for --texts",
+        f"{DEMO} --store",
+        (first("mmweaver export", drop("--store"), DIR="{walk}", OUT="zarr"),),
+    ),
+    Row("--store keeps cubes at the radar's frame rate", f"{BATCH} --store --fps 5", (drop("--fps"), drop("--store"))),
+    Row(
+        "--store holds cubes of matched draws",
+        f"{BATCH} --store --draws free",
+        (
+            drop("--draws"),
+            drop("--store"),
+        ),
+    ),
+    Row(
+        "--store holds the points of our own detector",
+        f"{BATCH} --store --points firmware",
+        (
+            drop("--points"),
+            drop("--store"),
+        ),
+    ),
+    # a stream
+    Row("--stream takes sentences", f"{STREAM} --html page.html", (drop("--html"), drop("--stream"))),
+    Row("--stream is of one person", f"{STREAM} --at 0,2 --at 0.5,2", (instead("give --at once", "--at 0.5,2"),)),
+    Row("--stream says every sentence once", f"{STREAM} --repeat 2", (drop("--repeat"),)),
+    Row(
+        "--stream needs sentences",
+        f"generate --demo --stream {SHORT}",
+        (
+            add("--text", "a person waves"),
+            add("--texts", "{texts}"),
+            add("--texts", "-"),
+        ),
+    ),
+)

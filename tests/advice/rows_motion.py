@@ -1,0 +1,139 @@
+"""Advice where a sentence or a recorded motion does not fit its room or its time."""
+
+from tests.advice.harness import Row, add, both, drop, first, instead, plus
+
+SHORT = "--no-pictures --out out"
+DEMO = f"generate --demo {SHORT}"
+ONE = f"{DEMO} --frames 1"
+
+ROWS = (
+    Row("class mask (--classes)", f"{ONE} --text 'a person walks to the sink'", (add("--landmark", "sink=0.3,2.3"),)),
+    Row(
+        "class mask (--classes)",
+        f"{ONE} --text 'a person walks to the wardrobe'",
+        (add("--landmark", "wardrobe=0.3,2.3"),),
+    ),
+    Row(
+        "class mask (--classes)", f"{ONE} --text 'a person walks to the fridge'", (add("--landmark", "fridge=0.3,2.3"),)
+    ),
+    Row(
+        "or say another side to face",
+        f"{ONE} --text 'a person points at the lamp'",
+        (add("--landmark", "lamp=0.3,2.3"),),
+    ),
+    Row(
+        " give its position with --landmark □=X,Y, or",
+        f"{ONE} --text 'a person stands near the plant'",
+        (add("--landmark", "plant=0.3,2.3"),),
+    ),
+    Row(
+        "try --range □,□",
+        f"{ONE} --range 0.7,1.0 --text 'a person waves'",
+        (add("--range"), both(drop("--range"), add("--radar"))),
+    ),
+    Row(
+        "keep more range bins (--range)",
+        f"{ONE} --range 0.7,1.0 --text 'a person waves'",
+        (
+            instead("keep more range bins", "0.7,1.0", "0.7,3.5"),
+            plus("another radar", "--range", "0.5,3.5", "--radar", "iwr6843isk"),
+        ),
+    ),
+    Row(
+        "listed by 'mmweaver motions'",
+        f"{ONE} --text 'a person photosynthesises'",
+        (first("mmweaver motions", instead("known are", "'a person photosynthesises'", "'a person waves'")),),
+    ),
+    Row(
+        "--seconds or --frames, or leave them out",
+        f"{DEMO} --text 'a person sits down' --frames 1",
+        (
+            instead("more --seconds", "--frames 1", "--seconds 6"),
+            instead("or --frames", "--frames 1", "--frames 60"),
+            drop("--frames"),
+        ),
+    ),
+    Row(
+        "or none and ask for more --seconds",
+        f"{DEMO} --text 'a person claps and bows, repeating it 40 times'",
+        (
+            instead(
+                "say fewer",
+                "'a person claps and bows, repeating it 40 times'",
+                "'a person claps and bows, repeating it 4 times'",
+            ),
+            instead(
+                "more --seconds",
+                "'a person claps and bows, repeating it 40 times'",
+                "'a person claps and bows' --seconds 40",
+            ),
+        ),
+    ),
+    Row(
+        "say it of one and give --text once for each",
+        f"{ONE} --text 'two people wave'",
+        (instead("give --text once for each", "'two people wave'", "'a person waves' --text 'a person waves'"),),
+    ),
+    Row(
+        "say so, or leave out --path",
+        f"{ONE} --text 'a person waves' --path '0,1.6 0.4,1.6'",
+        (
+            drop("--path"),
+            instead("walks or runs; say so", "'a person waves'", "'a person walks'"),
+        ),
+    ),
+    Row(
+        "s are too short for the path",
+        f"{DEMO} --text 'a person walks' --path '-0.2,1.6 0.3,1.7 -0.2,1.8' --frames 2",
+        (
+            instead("more --seconds", "--frames 2", "--seconds 8"),
+            instead("or --frames", "--frames 2", "--frames 80"),
+            instead("a shorter path", "'-0.2,1.6 0.3,1.7 -0.2,1.8'", "'0,1.6 0.4,1.6'"),
+        ),
+    ),
+    # recorded motions
+    Row(
+        "states no frame rate; give --motion-fps",
+        f"{ONE} --motion {{motion}}",
+        (plus("HumanML3D and MotionGPT: 20", "--motion-fps", "20"),),
+    ),
+    Row("frames a second, not", f"{ONE} --motion {{motion}} --motion-fps 0", (add("--motion-fps", "30"),)),
+    Row("is a person of", f"{ONE} --motion {{giant}} --motion-fps 30", (add("--motion-unit", "0.1"),)),
+    Row(
+        "the upward axis cannot be estimated",
+        f"{ONE} --motion {{leaning}} --motion-fps 30",
+        (
+            add("--motion-up", "y"),
+            plus("or z", "--motion-up", "z"),
+        ),
+    ),
+    Row(
+        "so it cannot start at",
+        f"{ONE} --motion {{motion}} --motion-fps 30 --motion-start 50",
+        (add("--motion-start", "0.1"),),
+    ),
+    Row(
+        "then it sets the length, or give a longer motion",
+        f"{DEMO} --motion {{motion}} --motion-fps 30 --seconds 60",
+        (drop("--seconds"),),
+    ),
+    Row(
+        "holds a single motion, so there is no clip □; leave out --clip",
+        f"{ONE} --motion {{motion}} --motion-fps 30 --clip b",
+        (drop("--clip"),),
+    ),
+    Row("motions; choose one with --clip", f"{ONE} --motion {{several}} --motion-fps 30", (add("--clip"),)),
+    Row(
+        "another --motion-start, --at or --heading",
+        f"{DEMO} --motion {{far}} --motion-fps 30 --motion-unit m --motion-up y",
+        (
+            add("--frames", "2"),
+            plus("or --as-recorded", "--as-recorded"),
+        ),
+    ),
+    Row(
+        "take a radar with a longer window (--radar)",
+        f"{ONE} --motion {{motion}} --motion-fps 30 --range 0.7,1.0",
+        (plus("or --as-recorded", "--as-recorded"),),
+    ),
+)

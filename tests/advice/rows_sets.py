@@ -1,0 +1,112 @@
+"""Advice about data sets, training, recognisers and what else takes long: up to where the work would begin."""
+
+from tests.advice.harness import Row, add, drop, first, instead
+
+SET = "dataset out --activities {activities} --dry-run"
+TRAIN = "train weaver --data {walk} --out out"
+ROOMS = "dataset out --layouts 1 --sequences 1 --dry-run"
+
+ROWS = (
+    Row(
+        "is for labelled sets; give --activities, too",
+        f"{ROOMS} --each 2",
+        (
+            instead(
+                "give --activities",
+                "--layouts 1 --sequences 1",
+                "--activities {activities} --rgb {rgb} --depth {depth}",
+            ),
+        ),
+    ),
+    Row(
+        "is for data sets of rooms; leave it out",
+        f"{SET} --rgb {{rgb}} --depth {{depth}} --layouts 3",
+        (instead("leave it out", "--layouts 3"),),
+    ),
+    Row(
+        "--from-results takes sequences as they are", "dataset out --from-results {results} --each 2", (drop("--each"),)
+    ),
+    Row(
+        "give --room folders or --rgb and --depth, not both",
+        f"{SET} --room {{own_room}} --rgb {{rgb}} --depth {{depth}}",
+        (
+            drop("--room"),
+            drop("--rgb", "--depth"),
+        ),
+    ),
+    Row("--rgb needs --depth, too", f"{SET} --rgb {{rgb}}", (add("--depth", "{depth}"),)),
+    Row(
+        "which room? give --room DIR",
+        SET,
+        (
+            add("--room", "{own_room}"),
+            instead("or --rgb and --depth", "--dry-run", "--dry-run --rgb {rgb} --depth {depth}"),
+        ),
+    ),
+    Row(
+        "give what mmweaver generate --texts wrote",
+        "dataset out --from-results {nothing}",
+        (instead("give what mmweaver generate --texts wrote", "{nothing}", "{results}"),),
+    ),
+    Row(
+        "is a sentence of no activity",
+        "dataset out --from-results {results} --activities {jumping}",
+        (
+            drop("--activities"),
+            instead("add it to one", "{jumping}", "{activities}"),
+        ),
+    ),
+    # training: the options alone
+    Row("what to train on? give --data", "train weaver --out out", (add("--data", "{walk}"),)),
+    Row(
+        "--captures fine-tunes existing weights",
+        "train weaver --captures {walk} --out out",
+        (add("--from", "builtin"),),
+    ),
+    Row(
+        "--encoder is for recipe weaver on --data",
+        "train weaver --captures {walk} --from builtin --encoder none --out out",
+        (drop("--encoder"),),
+    ),
+    Row(
+        "--rgb, --depth and --camera are the photo of --captures",
+        f"{TRAIN} --rgb {{rgb}} --depth {{depth}}",
+        (instead("are the photo of --captures", "--rgb {rgb} --depth {depth}"),),
+    ),
+    Row(
+        "--rgb and --depth belong together",
+        "train weaver --captures {walk} --from builtin --rgb {rgb} --out out",
+        (add("--depth", "{depth}"),),
+    ),
+    Row(
+        "--learning-rate must be above 0",
+        f"{TRAIN} --learning-rate 0",
+        (instead("above 0", "--learning-rate 0", "--learning-rate 0.001"),),
+    ),
+    Row("--save-every must be 0 or more seconds", f"{TRAIN} --save-every -1", (instead("0 or more", "-1", "0"),)),
+    Row(
+        "train pose needs a task",
+        "train pose --out model/",
+        (first("mmweaver train pose", lambda *_: [], **{"TASK.toml": "{task}"}),),
+    ),
+    Row("a task and --sequences are for recipe pose", f"{TRAIN} --sequences 4", (drop("--sequences"),)),
+    Row(
+        "recipe pose is trained on the sentences of its task",
+        "train pose {task} --data {walk} --out out",
+        (drop("--data"),),
+    ),
+    Row(
+        "--captures is for recipe weaver; recipe",
+        "train activity --captures {walk} --from builtin --out out",
+        (instead("is trained on --data", "--captures {walk} --from builtin", "--data {walk}"),),
+    ),
+    # others
+    Row(
+        "nobody is there: leave out --height",
+        "motion nobody --height 1.8",
+        (
+            drop("--height"),
+            instead("say what a person does", "nobody", "'a person waves'"),
+        ),
+    ),
+)
