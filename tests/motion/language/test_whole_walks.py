@@ -18,7 +18,6 @@ from mmweaver.motion.language.sentence import parse
         ("a person walks forward, turns around and walks back, slowly", [-1, -1, -1]),
         ("a person raises the left arm, then the right arm slowly", [0, -1]),
         ("a person bends left and right slowly", [-1, -1]),
-        ("a person walks forward and backward at a slow pace", [-1, -1]),
         ("a person walks forward and slowly backward", [0, -1]),
         ("a person walks forward slowly and then quickly walks backward", [-1, 1]),
         ("a person walks forward, then sits down slowly", [0, -1]),

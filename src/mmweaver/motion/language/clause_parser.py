@@ -6,6 +6,7 @@ from functools import reduce
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.approximations import MARK, approximation_of
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.described_person import PEOPLE
@@ -18,6 +19,7 @@ from mmweaver.motion.language.lexicon import (
     FILLERS,
     FLOOR_VERBS,
     LEG_VERBS,
+    LEGS,
     MANNERS,
     MANY,
     NEGATIONS,
@@ -40,8 +42,7 @@ from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import AIM, Place, place_of
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import LEGS, step_of
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
+from mmweaver.motion.language.verb_steps import step_of
 from mmweaver.motion.language.words import Word
 
 

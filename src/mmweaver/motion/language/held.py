@@ -3,12 +3,11 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.lexicon import ARMS
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.simultaneous import ARMS_TAKEN, ONE_ARMED
-from mmweaver.motion.language.verbs import words_in
 
 # Postures of the arms, which last, and movements of the head alone, for which they come down.
 ARM_POSTURES = words_in("cross_arms hips arms_out raise_hold hands_up")

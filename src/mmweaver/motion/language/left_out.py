@@ -9,11 +9,13 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations, pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import words_in
 from mmweaver.motion.language.approximations import MARK
 from mmweaver.motion.language.clause_parser import is_known, parse_clause
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.lexicon import (
     ARMS,
+    LEGS,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
@@ -22,12 +24,11 @@ from mmweaver.motion.language.lexicon import (
     PRONOUNS,
     SEATS,
     TARGETS,
+    WHOLE_BODY,
 )
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.verb_steps import LEGS
-from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
 
 # How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
@@ -42,17 +43,7 @@ _OPENING = words_in(
 _TO_THE_END = words_in("like as without using while having showing being holding looking due")
 _DIRECTIONS = words_in("left right forwards backwards forward backward in_circle towards away sideways")
 # Movements of the whole body that no other may stand for.
-_WHOLE_BODY = (
-    MANY
-    | NOT_HUMAN
-    | words_in(
-        """
-    handstand headstand cartwheel cartwheels flip side_flip backflip somersault allfours roll rolls rolling-over
-    breakdance breakdancing bike bicycle wheelchair leap-frog not never no cannot cant dont doesnt didnt nobody nor
-    neither sit sits sitting seated sit_down lying
-    """
-    )
-)
+_WHOLE_BODY = MANY | NOT_HUMAN | WHOLE_BODY
 _HOW = words_in("with without using by because since that which where like as if for in showing supported")
 _BEFORE_HOW = words_in("and then thereby always a bit little maybe perhaps possibly quite almost kind of")
 _SUBJECTS = PRONOUNS | words_in("person man woman human user guy girl boy subject figure")

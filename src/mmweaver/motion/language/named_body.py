@@ -1,10 +1,9 @@
 """What a body activity of a step shows, in words: with its leg, its way, its seat, what it lies on."""
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.named_counts import PACES, SPEEDS_SAID, how_often, steps_said, times_said
 from mmweaver.motion.language.named_hands import hand_of, with_hand
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 
 _SIDES = ("left", "right")
 _BODY = {  # with the slots "leg" and "foot"; others by their names

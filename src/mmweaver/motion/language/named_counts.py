@@ -1,8 +1,7 @@
 """How often, with how many steps and how fast a step is shown, in words."""
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 
 # Done once where the sentence has no number, though they do not end the step; again and again within two seconds.
 _ONCE = words_in("lunge roll_over roll_in_bed raise point swipe")

@@ -1,9 +1,8 @@
 """What an activity of the hands shows, in words: with the hand or arm that does it, and where that goes."""
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.named_counts import SPEEDS_SAID, how_often
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 
 _SIDES = ("left", "right")
 _HANDS = {  # with the slots "hand", "arm", "forearm" of the side that acts

@@ -4,11 +4,10 @@ import re
 from dataclasses import replace
 from itertools import pairwise
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.held import STAYING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import FALLING_ON, Step
-from mmweaver.motion.language.verbs import words_in
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}

@@ -7,13 +7,13 @@ import re
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import words_in
 from mmweaver.motion.language.clause_parser import parse_clause
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.left_out import is_odd, shown
 from mmweaver.motion.language.lexicon import ARMS
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
 
 _ARMS = ARMS | words_in("forearm forearms elbow elbows finger fingers knuckles")

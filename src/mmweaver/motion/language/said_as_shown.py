@@ -4,11 +4,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+from mmweaver.motion.language.activities import words_in
 from mmweaver.motion.language.held import ARM_POSTURES, LOWERED
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.named_steps import steps_of_each
 from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import word_of
 
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")

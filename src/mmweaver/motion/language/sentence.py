@@ -25,24 +25,21 @@ from mmweaver.motion.language.left_out import (
     parse_with_less,
     says_more_of,
 )
-from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR
+from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR, RECOVERING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.named_steps import with_what_is_shown
-from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import ENTERING, carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
-from mmweaver.motion.language.reworded_phrases import reworded
+from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.rough_readings import read_roughly
-from mmweaver.motion.language.shared_steps import says_again, says_how_far_it_pivots
 from mmweaver.motion.language.sideways import sideways_throughout
 from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
-from mmweaver.motion.language.verbs import RECOVERING
 from mmweaver.motion.language.whole_walks import at_one_gait, with_shared_speeds
 from mmweaver.motion.language.words import Word, words_of
 
@@ -62,9 +59,9 @@ LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "
 def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     """Parses what a person does into steps in temporal order, not scheduled yet.
 
-    What is not understood as it is, is tried in other words (`normal_forms`), then with similar movements instead of
+    What is not understood as it is, is tried in other words (`rewrite_rules`), then with similar movements instead of
     unknown ones (`approximations`), which the clause's record says. `in_part`: last, clauses that are not understood
-    are recorded as not done, where at least as many are understood, or read roughly (`rough_readings`); labelled data
+    are recorded as not done, where at least as many are understood, or read roughly (`fallback_parsing`); labelled data
     is parsed without.
 
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
@@ -81,13 +78,14 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = reworded(in_seconds(_YOUR.sub("his", text)))
+    text = rewritten(in_seconds(_YOUR.sub("his", text)), "first")
     try:
         return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
-        normal = with_approximations(in_normal_form(text), only_always=True)
-        similar = with_approximations(in_normal_form(text), is_understood=cache(_is_understood_alone))
-        partly = with_approximations(in_normal_form(text), in_part=in_part)
+        other_words = rewritten(text.lower(), "last")
+        normal = with_approximations(other_words, only_always=True)
+        similar = with_approximations(other_words, is_understood=cache(_is_understood_alone))
+        partly = with_approximations(other_words, in_part=in_part)
         attempts = (
             (normal, EXACT), (similar, EXACT), (normal, LEAVING_OUT), (similar, LEAVING_OUT), (similar, MISSING),
             (partly, EXACT), (partly, ROUGH), (normal, ROUGH),
@@ -270,7 +268,7 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             speed=last.speed or more.speed, direction=last.direction or more.direction,
             clauses=(*last.clauses, parsed.number),
         )  # fmt: skip
-    elif parsed.steps and says_how_far_it_pivots(found, parsed):
+    elif parsed.steps and _says_how_far_it_pivots(found, parsed):
         last, turn = found[-1].steps[-1], parsed.steps[0]
         found[-1].steps[-1] = replace(turn, foot=last.foot, clauses=(*last.clauses, parsed.number))
     elif parsed.steps and not _is_its_end(found, parsed):
@@ -456,7 +454,20 @@ def _is_another(before: ParsedClause, parsed: ParsedClause) -> bool:
     """Whether a stumble is a second one: 'stumbles to the left, then stumbles to the right', 'is pushed again'."""
     sides = {before.steps[-1].direction, parsed.steps[0].direction}
     verbs = [{word.lemma for word in one.words if word.is_activity} for one in (before, parsed)]
-    return says_again(parsed) or (len(sides) == 2 and "" not in sides and bool(verbs[0] & verbs[1]))
+    return _says_again(parsed) or (len(sides) == 2 and "" not in sides and bool(verbs[0] & verbs[1]))
+
+
+def _says_again(parsed: ParsedClause) -> bool:
+    return any(word.text == "again" for word in parsed.words)
+
+
+def _says_how_far_it_pivots(found: list[ParsedClause], parsed: ParsedClause) -> bool:
+    """Whether a turn is the pivot of the clause before it: 'pivots on his left foot and does a half turn'."""
+    pivot, turn = found[-1].steps[-1] if found else None, parsed.steps[0]
+    if pivot is None or {pivot.lower, turn.lower} != {"turn"} or len(parsed.steps) > 1 or parsed.link == "then":
+        return False
+    on_a_foot = pivot.foot and not (pivot.turn_deg or pivot.direction in OPPOSITE or _says_again(parsed))
+    return bool(on_a_foot) and any(word.lemma == "pivot" for word in found[-1].words)
 
 
 def _is_raised(steps: list[Step]) -> bool:

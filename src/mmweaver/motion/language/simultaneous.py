@@ -5,13 +5,12 @@ import re
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.left_out import ROUGH
 from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 
 # Hand activities that leave the other arm free, and those of them that the head goes with.
 ONE_ARMED = words_in(

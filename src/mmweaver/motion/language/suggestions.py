@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, PARAPHRASES
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import (
     ARMS,
@@ -21,7 +21,6 @@ from mmweaver.motion.language.lexicon import (
     SPEEDS,
     TARGETS,
 )
-from mmweaver.motion.language.paraphrases import PARAPHRASES
 from mmweaver.motion.language.words import word_of
 
 NEAR = 0.6  # least similarity for a suggestion

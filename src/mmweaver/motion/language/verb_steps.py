@@ -4,15 +4,13 @@ from dataclasses import replace
 from itertools import pairwise, takewhile
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, BY_KEY, words_in
 from mmweaver.motion.language.described_person import PERSON_NOUNS
-from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
+from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, LEGS, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import HOPPING, Step
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import Word
 
-LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
