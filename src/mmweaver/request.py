@@ -13,9 +13,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
-from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.step_names import with_what_is_shown
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts

@@ -16,8 +16,8 @@ from mmweaver.motion.animation.assemble import RATE_HZ, dense_times
 from mmweaver.motion.animation.carry_over import ControlsState
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
-from mmweaver.motion.language.continued import HELD_FIRST_S, continued, goes_on, posture_held
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan_resumption import HELD_FIRST_S, continued, goes_on, posture_held
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits

@@ -10,9 +10,9 @@ from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.named_steps import doing, in_turn, steps_of_each, with_what_is_shown
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.step_names import doing, in_turn, steps_of_each, with_what_is_shown
 from mmweaver.motion.language.timing import plan_motion
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")

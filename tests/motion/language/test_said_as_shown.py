@@ -2,10 +2,10 @@
 
 import pytest
 
-from mmweaver.motion.language.named_steps import with_what_is_shown
+from mmweaver.motion.language.explanations import saying_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Step
-from mmweaver.motion.language.said_as_shown import saying_what_is_shown
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.step_names import with_what_is_shown
 
 
 def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' is not shown") -> ClauseRecord:

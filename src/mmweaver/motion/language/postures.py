@@ -5,9 +5,9 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.held import STAYING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import FALLING_ON, Step
+from mmweaver.motion.language.posture_persistence import STAYING
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}

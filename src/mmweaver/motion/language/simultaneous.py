@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.left_out import ROUGH
+from mmweaver.motion.language.fallback_parsing import ROUGH
 from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause

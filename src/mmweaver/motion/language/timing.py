@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.named_counts import PACES
-from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.step_names import PACES, with_what_is_shown
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it

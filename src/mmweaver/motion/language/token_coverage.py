@@ -32,9 +32,9 @@ from mmweaver.motion.language.lexicon import (
     TARGETS,
     TIMES,
 )  # fmt: skip
-from mmweaver.motion.language.named_hands import hand_of
 from mmweaver.motion.language.plan import ClauseRecord, Step
 from mmweaver.motion.language.spelling import correct_spelling
+from mmweaver.motion.language.step_names import hand_of
 from mmweaver.motion.language.words import Word, word_of
 
 _TABLE = read_toml(Path(__file__).with_suffix(".toml"))

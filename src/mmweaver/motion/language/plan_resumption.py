@@ -1,4 +1,4 @@
-"""The plan of a sentence that is said to somebody who is in the room already: it begins and ends in a held posture."""
+"""The plan of a sentence for somebody who is in the room already: it begins and ends in a held posture."""
 
 from dataclasses import replace
 
