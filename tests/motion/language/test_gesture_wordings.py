@@ -90,13 +90,6 @@ def test_a_limb_that_was_named_goes_on():
     assert (step.upper, step.count) == ("knock_elbow", 2)
 
 
-def test_arm_and_leg_of_two_sides_are_no_exercise_of_one():
-    (step,) = parse("a person lifts the left arm and the right leg").steps
-    assert (step.lower, step.foot, step.upper, step.hand) == ("raise_leg", "right", "raise", "left")
-    steps = parse("a person does side lunges to the left and to the right").steps
-    assert [step.foot for step in steps] == ["left", "right"]
-
-
 @pytest.mark.parametrize(
     ("text", "known"),
     [

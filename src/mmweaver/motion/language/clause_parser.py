@@ -85,6 +85,9 @@ def parse_clause(clause: Clause) -> ParsedClause:
         own = words[begin:end]
         about = modifiers(own, clause.text, parsed.notes)
         step = replace(step_of(own, at - begin, about, clause.text), clauses=(clause.number,))
+        is_held = words[at].form == "past" and any(word.text == "with" for word in words[begin:at])
+        if is_held and step.upper == "raise" and not step.count:  # "with the left arm raised"
+            step = replace(step, upper="raise_hold")
         parsed.steps.append(step)
         parsed.forms.append(_form(words[starts[k] :], at - starts[k]) if k else parsed.form)
     for token in places:

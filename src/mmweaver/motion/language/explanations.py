@@ -4,13 +4,11 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
-from mmweaver.motion.language.activities import words_in
 from mmweaver.motion.language.alignment import given_words
 from mmweaver.motion.language.described_person import without_stature
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.posture_persistence import ARM_POSTURES, LOWERED
 from mmweaver.motion.language.step_names import steps_of_each, with_what_is_shown
 from mmweaver.motion.language.token_coverage import not_covered
 from mmweaver.motion.language.words import word_of
@@ -50,7 +48,6 @@ def saying_what_is_shown(
         shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
         is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
-        briefly = "the arms coming down after that" if is_same and _comes_down(record, own, steps) else briefly
         whole = [] if is_plain and not goes_on else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
         hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
@@ -58,12 +55,6 @@ def saying_what_is_shown(
         status = APPROXIMATED if otherwise else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
     return said
-
-
-def _comes_down(record: ClauseRecord, own: Sequence[Step], steps: Sequence[Step]) -> bool:
-    """Whether a clause only ends a posture of the arms, whose step it shares with the clause before."""
-    held = any(step.upper in ARM_POSTURES and step is not steps[-1] for step in own[-1:])
-    return held and bool(words_in(record.clause.lower()) & LOWERED)
 
 
 def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:

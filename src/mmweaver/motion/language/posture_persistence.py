@@ -15,7 +15,6 @@ _OF_THE_HEAD = words_in("look_around nod shake_head")
 # Postures that the legs or the trunk are held in -> the step that holds them.
 _HELD_LOW = {"squat": "crouch", "crouch": "crouch", "raise_leg": "one_leg", "one_leg": "one_leg"}
 _HELD_BENT = ("bend", "lean")
-_NOT_HELD = words_in("lunge kick twist bow side_lunge limb_extension march")
 STAYING = words_in(
     "stay stays staying remain remains remaining hold holds holding keep keeps keeping wait waits waiting pause pauses"
     " pausing freeze freezes freezing rest rests resting"
@@ -66,8 +65,6 @@ def with_what_is_held(
         elif before.upper in ARM_POSTURES and before.other_hand is None and not step.upper:
             result[-1:] = _with_the_arms(before, step, moves_arms=bool(own & ARMS))
         else:
-            if step.clauses and stays and (before.lower in _NOT_HELD):
-                lost.append((step.clauses[0], "the posture is not kept"))
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
             result.append(step)
@@ -83,6 +80,12 @@ def with_what_is_held(
     return result, lost
 
 
+def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
+    """The clause after the last step, without a step of its own, that ends a posture that is held."""
+    after = {number: words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)}
+    return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
+
+
 def _lowered_from_there(result: list[Step], step: Step, lost: Lost) -> Step:
     """A step that lowers arms, which stay up in the step before it; one that stands where they have not been up."""
     if not result or step.upper != "lower_arm" or step.lower != "stand" or step.other_hand is not None:
@@ -94,12 +97,6 @@ def _lowered_from_there(result: list[Step], step: Step, lost: Lost) -> Step:
         lost += [(number, _AS_HANGING) for number in step.clauses[:1]]
         return replace(step, upper="", hand="", count=0)
     return step
-
-
-def _comes_up_last(last: Step, clauses: Mapping[int, str]) -> int | None:
-    """The clause after the last step, without a step of its own, that ends a posture that is held."""
-    after = {number: words_in(words) for number, words in clauses.items() if number > max(last.clauses, default=-1)}
-    return next((number for number, own in after.items() if own & _RISING and not own & STAYING), None)
 
 
 def _brought_back_by(last: Step, clauses: Mapping[int, str]) -> int | None:

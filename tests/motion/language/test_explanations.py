@@ -100,13 +100,6 @@ def test_a_clause_without_a_step_of_its_own_is_shown_as_its_neighbour(status: st
 
 
 @pytest.mark.parametrize(
-    "text", ["is in a t-pose, drops the arms and jumps", "folds the arms, lowers them and sits down"]
-)
-def test_arms_that_only_come_down_are_not_said_to_stay(text: str) -> None:
-    assert parse(text).clauses[1].how == "is shown as the arms coming down after that"
-
-
-@pytest.mark.parametrize(
     ("text", "status", "how"),
     [
         (
