@@ -14,6 +14,7 @@ class Activity:
     key: str
     name: str  # as in "walking and waving"
     example: str
+    shown: str = ""  # what a step of it shows, where the name does not say it, with {hand}, {arm}, {leg}, {foot}
     least_s: float  # shortest time in which it can be shown
     natural_s: float
     once: bool = False  # takes its natural time; time that is left goes to other steps

@@ -50,19 +50,6 @@ def _number(count: int) -> str:
 
 
 _SIDES = ("left", "right")
-_BODY = {  # with the slots "leg" and "foot"; others by their names
-    "pick_up": "picking something up from the floor", "put_down": "putting something down on the floor",
-    "jumping_jacks": "doing jumping jacks", "push_ups": "doing push-ups", "sit_ups": "doing sit-ups",
-    "leap": "jumping", "stand_up": "standing up from a seat", "stomp": "stamping with {foot}",
-    "kick": "kicking with {foot}", "raise_leg": "raising and lowering {leg}", "one_leg": "standing on {leg}",
-    "limp": "limping on {leg}",
-    "hop_one_leg": "hopping on {leg}", "lunge": "lunging ahead with {leg}",
-    "side_lunge": "lunging to the side with {leg}, the arms out to the sides",
-    "limb_extension": "extending {leg} and the arm of that side to the side",
-    "roundhouse": "a roundhouse kick with {foot}", "side_kick": "kicking to the side with {foot}",
-    "roll_over": "rolling onto {own_side} and back", "roll_in_bed": "rolling onto {own_side} and back on furniture",
-    "twist": "twisting the trunk to both sides", "fall_off": "falling off a seat",
-}  # fmt: skip
 _WAYS = {
     **{way: f" {way}" for way in ("forwards", "backwards", "away", "around")},
     **{side: f" to the {side} in the photo" for side in _SIDES}, "away": " away from the radar",
@@ -77,7 +64,7 @@ _LYING = words_in("lie lie_down fall")
 
 def of_the_body(step: Step) -> str:
     """A body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'."""
-    name = _BODY.get(step.lower, BY_KEY[step.lower].name)
+    name = BY_KEY[step.lower].shown or BY_KEY[step.lower].name
     if step.lower == "jog" and step.style != "jog":
         name = "running"
     if step.lower == "kneel_up" and step.style == "knee":
@@ -162,17 +149,6 @@ def _own_side(angle_deg: float, style: str) -> str:
     return "" if style == "either" else f" to the person's {'left' if angle_deg > 0 else 'right'}"
 
 
-_SIDES = ("left", "right")
-_HANDS = {  # with the slots "hand", "arm", "forearm" of the side that acts
-    "raise": "raising {hand} overhead and lowering it", "raise_hold": "lifting {arm} overhead and keeping it up",
-    "lower_arm": "lowering {arm} from overhead", "push_hand": "pushing {hand} forward",
-    "pull_hand": "pulling {hand} to the chest", "knock_elbow": "raising and lowering {forearm}",
-    "arm_extension": "extending {arm} upwards at the side", "arm_circles": "circling {arm} at the sides",
-    "draw_circle": "drawing a circle in the air with {hand}", "draw_z": "drawing a Z in the air with {hand}",
-    "hands_up": "holding the hands up before the face", "sweep": "sweeping the floor with both hands",
-    "swipe": "swiping {hand} through the air", "cross_arms": "holding the arms crossed",
-    "golf": "a golf swing with both hands", "carry": "carrying something",
-}  # fmt: skip
 # Activities of one hand, and those of both unless the sentence names one.
 _ONE_HANDED = words_in(
     """
@@ -194,7 +170,7 @@ _HEIGHTS = {"high": " high up", "up": " upwards", "down": " downwards", "under":
 def of_a_hand(step: Step, part: Step) -> str:
     """What one activity of the hands shows, with its limb; `step` is the whole of it."""
     key, hand = part.upper, hand_of(part, part.upper)
-    name = _HANDS.get(key, BY_KEY[key].name)
+    name = BY_KEY[key].shown or BY_KEY[key].name
     if key == "arms_out":
         arms = "the arms" if hand == "both" else f"the {hand} arm"
         way = "ahead" if part.arms_ahead else "to the sides" if hand == "both" else "to the side"
@@ -234,9 +210,6 @@ def hand_of(part: Step, key: str) -> str:
     if key in ("punch", "text"):  # a phone is in one hand or both where the sentence names none
         return part.hand or (("one" if part.count == 1 else "both") if key == "punch" else "")
     return (part.hand or "both") if key in _BOTH else ""
-
-
-_SIDES = ("left", "right")
 
 
 def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
