@@ -11,6 +11,7 @@ from mmweaver.motion.language.approximations import MARK, approximation_of
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import (
+    ALL_WORDS,
     ARMS,
     BEFORE_NOUNS,
     BOTH,
@@ -20,7 +21,6 @@ from mmweaver.motion.language.lexicon import (
     FLOOR_VERBS,
     LEG_VERBS,
     LEGS,
-    MANNERS,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
@@ -31,8 +31,6 @@ from mmweaver.motion.language.lexicon import (
     PRONOUNS,
     RADAR,
     SEATS,
-    SIZES,
-    SPEEDS,
     STEPPING,
     TARGETS,
     THINGS,
@@ -336,28 +334,17 @@ def _unknown_manner(words: list[Word]) -> str:
     return ""
 
 
+_KNOWN = frozenset().union(
+    ALL_WORDS - NEGATIONS - MANY - NOT_HUMAN - OTHER_MOVEMENT,
+    FILLERS | OWN | PEOPLE | LEGS | NUMBERS.keys(),
+    words_in(
+        "left right not without moving sideways on_spot lookdown onback onbelly one_knee highkick frontlunge reach_high"
+    ),
+)
+
+
 def is_known(word: Word) -> bool:
     """Whether a word has a meaning, or none that matters, in a sentence about a movement."""
     text = word.text
-    return (
-        word.is_verb
-        or text in FILLERS
-        or text in MANNERS
-        or text in SIZES
-        or text in DIRECTIONS
-        or text in SPEEDS
-        or text in NUMBERS
-        or text in SEATS
-        or text in ARMS
-        or text in RADAR
-        or text in OWN
-        or text in BOTH
-        or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
-        or text in TARGETS
-        or text in PEOPLE
-        or text in LEGS
-        or text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_"))
-        or text in ("onback", "onbelly", "one_knee", "highkick", "frontlunge", "reach_high")
-        or text.replace(".", "").isdigit()
-        or len(text) == 1
-    )
+    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_")) or len(text) == 1
+    return word.is_verb or text in _KNOWN or is_token or text.replace(".", "").isdigit()

@@ -17,17 +17,10 @@ _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
 _NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
-_STAGGERS = "an unsteady gait is shown as staggering"  # of "like a zombie", whatever else the clause says
 _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
     "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
 }  # fmt: skip
-_LEG = "what happens with 'leg' is not shown"
-_VAGUE = {  # a reason -> those that say no more where it is there
-    "which foot it is is not shown": ("which hand or foot it is is not shown", _LEG),
-    "which hand or foot it is is not shown": ("how the arms move is not shown", "what the arms do is not shown"),
-    "how the arms move is not shown": ("what the arms do is not shown",),
-}
 
 
 def saying_what_is_shown(
@@ -50,7 +43,12 @@ def saying_what_is_shown(
         briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
         whole = [] if is_plain and not goes_on else [f"is shown as {briefly}"]
         hows = [how for how in record.how.split("; ") if how]
-        hows = _without_repeats([*whole, *_more_than(shown, hows)] or hows)
+        if "stagger" not in shown:  # of "like a zombie", whatever else the clause says
+            hows = [
+                how.replace("an unsteady gait is shown as staggering", "the unsteady gait is not shown") for how in hows
+            ]
+        more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
+        hows = _without_repeats([*whole, *more] or hows)
         otherwise = (goes_on and _is_another(said[-1])) or (roughly and not is_plain)
         status = APPROXIMATED if otherwise else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
@@ -78,14 +76,6 @@ def _of_a_part(record: ClauseRecord) -> ClauseRecord:
     return replace(record, status=APPROXIMATED, how="; ".join(hows))
 
 
-def _more_than(shown: str, hows: list[str]) -> list[str]:
-    """Reasons without those that say in general what `shown` says wholly, and without vague ones that add nothing."""
-    hows = [how if how != _STAGGERS or "stagger" in shown else "the unsteady gait is not shown" for how in hows]
-    more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
-    vague = {weaker for better in more for weaker in _VAGUE.get(better, ())}
-    return [how for how in more if how not in vague]
-
-
 def _is_within(how: str, shown: str) -> bool:
     """Whether a reason is only what something is shown as, and that is what is shown."""
     found = _SHOWN_AS.fullmatch(how)
@@ -99,8 +89,6 @@ def _without_repeats(hows: list[str]) -> list[str]:
     """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
     lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
     others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
-    others = [how for how in others if not any(_names(how, words) for words in lost)]
-    others = [how for how in others if "the other " not in how or how.replace("the other ", "the ") not in others]
     said = _stems(" ".join(others))
     kept = [
         words
@@ -112,12 +100,6 @@ def _without_repeats(hows: list[str]) -> list[str]:
     all_lost = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
     others = [how for how in others if not _NOT_SHOWN.fullmatch(how)]
     return [*others, *([f"{all_lost} {'is' if len(listed) == 1 else 'are'} not shown"] if listed else [])]
-
-
-def _names(how: str, words: str) -> bool:
-    """Whether a reason says only what happens with a part of the body that the words name, too."""
-    found = re.fullmatch("what happens with '([^']+)' is not shown", how)
-    return found is not None and f" {found[1]} " in f" {words} "
 
 
 def _stems(text: str) -> set[str]:

@@ -1,7 +1,7 @@
 """Rewriting of sentences into words that the grammar knows; the rows are in `rewrite_rules.toml`."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -33,14 +33,15 @@ _FEW = {"some": "3", "several": "3", "a few": "3"}
 @cache
 def _rules(stage: str) -> list[tuple[re.Pattern[str], Replacement]]:
     """Compiled when first needed: most sentences never need the last stage."""
-    rows = [(re.compile(_with_parts(pattern), re.IGNORECASE), to) for pattern, to in _TABLE["rules"][stage]]
+    rows = [(re.compile(with_parts(pattern, _PARTS), re.IGNORECASE), to) for pattern, to in _TABLE["rules"][stage]]
     if stage != "phrases":
         return rows
     return [(_PUNCHES, _punch_tokens), *((pattern, _as_participle(to) or to) for pattern, to in rows)]
 
 
-def _with_parts(pattern: str) -> str:
-    return re.sub(r"(?<!P)<([a-z_]+)>", lambda name: _with_parts(_PARTS[name[1]]), pattern)
+def with_parts(pattern: str, parts: Mapping[str, str]) -> str:
+    """A pattern with the parts that it names in angle brackets."""
+    return re.sub(r"(?<!P)<([a-z_]+)>", lambda name: with_parts(parts[name[1]], parts), pattern)
 
 
 def rewritten(text: str, stage: str) -> str:
@@ -61,7 +62,7 @@ def rewritten(text: str, stage: str) -> str:
 
 def words_of_phrases() -> set[str]:
     """The words, and stems of words, that the patterns of phrases are made of."""
-    patterns = " ".join(_with_parts(pattern) for pattern, _ in _TABLE["rules"]["phrases"])
+    patterns = " ".join(with_parts(pattern, _PARTS) for pattern, _ in _TABLE["rules"]["phrases"])
     return set(re.findall("[a-z]+", re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", patterns)))
 
 
