@@ -13,9 +13,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
-from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.step_names import with_what_is_shown
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
@@ -213,10 +213,10 @@ def parsed_text(text: str) -> MotionPlan:
     if says_nobody(text):
         raise InputError(f"{text[:60]!r} is an empty place, a sequence of its own: generate --text {NOBODY}, alone")
     try:
-        return parse(text)
+        return parse_sentence(text)
     except InputError:
         load_activity_plugins()
-        return parse(text, in_part=True)
+        return parse_sentence(text, in_part=True)
 
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:

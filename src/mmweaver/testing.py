@@ -92,11 +92,11 @@ def check_activity(key: str) -> None:
     """Checks a registered activity: its example is understood as it, and the body moves smoothly and stays whole."""
     from mmweaver.motion.empty_floor import act_out
     from mmweaver.motion.language.activities import BY_KEY
-    from mmweaver.motion.language.sentence import parse
+    from mmweaver.motion.language.sentence_parser import parse_sentence
 
     assert key in BY_KEY, f"there is no activity {key!r}; register it first"
     activity = BY_KEY[key]
-    step = parse(activity.example).steps[-1]
+    step = parse_sentence(activity.example).steps[-1]
     assert key in (step.lower, step.upper), f"{activity.example!r} is understood as {step.name}, not as {activity.name}"
     pose, again = (act_out(activity.example, duration_s=activity.natural_s + 0.5, seed=1).pose for _ in range(2))
     _equal(pose.joints_m, again.joints_m, "the same seed must give the same motion")

@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Animates the sentence and writes the requested files. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
     from mmweaver.motion.empty_place import says_nobody
-    from mmweaver.motion.language.named_steps import doing
+    from mmweaver.motion.language.step_names import doing
 
     _check_files(arguments)
     if says_nobody(arguments.text):

@@ -117,10 +117,10 @@ def motion_of_model(arguments: argparse.Namespace, text: str | None, seconds: fl
 
 
 def _is_known(text: str) -> bool:
-    from mmweaver.motion.language.sentence import parse
+    from mmweaver.motion.language.sentence_parser import parse_sentence
 
     try:
-        parse(text)
+        parse_sentence(text)
     except InputError:
         return False
     return True

@@ -17,9 +17,9 @@ from mmweaver.motion.animation.assemble import RATE_HZ, dense_times
 from mmweaver.motion.animation.carry_over import ControlsState
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
-from mmweaver.motion.language.continued import HELD_FIRST_S, continued, goes_on, posture_held
 from mmweaver.motion.language.plan import MotionPlan, Step
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.plan_resumption import HELD_FIRST_S, continued, goes_on, posture_held
+from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
@@ -103,7 +103,7 @@ class ContinuousMotion:
         """Nothing new: the last activity goes on, or the posture is held. Never raises after the first sentence."""
         person = self._person or person_of(self._subject, None, self._height_m)
         if self._end is None or self._last is None:
-            return self._compose(_lasting(parse(_NOTHING_SAID), IDLE_S), person, "")
+            return self._compose(_lasting(parse_sentence(_NOTHING_SAID), IDLE_S), person, "")
         step = None if refused or self._said is None else goes_on(self._said, IDLE_S)
         if step is not None and step.posture == self._end.posture:
             try:
@@ -119,7 +119,7 @@ class ContinuousMotion:
         self._last = replace(self._last, num_frames=end_frame - self._last.first_frame)
 
     def _base(self) -> MotionPlan:
-        return parse(_NOTHING_SAID) if self._said is None else replace(self._said, notes=(), clauses=())
+        return parse_sentence(_NOTHING_SAID) if self._said is None else replace(self._said, notes=(), clauses=())
 
     def _compose(self, plan: MotionPlan, person: Person, text: str, *, may_touch: bool = True) -> MotionPart:
         number = self._parts

@@ -7,10 +7,9 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.registry import load_plugin, plugins
 from mmweaver.motion.animation.library.activity_registry import GESTURES, POSTURES
-from mmweaver.motion.language.activities import BY_KEY, CLEARANCE_M, Activity
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, BY_KEY, CLEARANCE_M, Activity
 from mmweaver.motion.language.spelling import forget_known_words
 from mmweaver.motion.language.suggestions import forget_suggestions
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import word_of
 
 GROUP = "mmweaver.activities"

@@ -10,7 +10,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.empty_place import NOBODY, says_nobody
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.sentence_parser import parse_sentence
 
 MAX_LABELS, MAX_SENTENCES = 1000, 1000
 
@@ -43,7 +43,7 @@ def activities_of(content: dict[str, Any], file: Path, *, with_nobody: bool = Fa
             if says_nobody(one):
                 raise InputError(f"{file}, {label}: {one!r} is an empty place; say here what a person does")
             try:
-                parse(one)
+                parse_sentence(one)
             except InputError as error:
                 raise InputError(f"{file}, {label}: {error}") from None
         sentences[label] = tuple(said)

@@ -16,7 +16,7 @@ from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
 from mmweaver.recognition.observed_points import PointRadar, observed_cloud
@@ -56,7 +56,7 @@ class GenerationRecipe:
             if not sentences:
                 raise InputError(f"activity {name!r} has no sentence; say how it is done")
             for sentence in sentences:
-                parse(sentence)
+                parse_sentence(sentence)
         known = {one.name for one in fields(Variation)}
         for name, spans in self.habits.items():
             if name not in self.activities or not set(spans) <= known:
@@ -147,7 +147,7 @@ def _pose(
     recipe: GenerationRecipe, now: VariationSample, sentence: str, person: int, rng: np.random.Generator
 ) -> PoseSequence:
     """A section of the motion at the sampled tempo, vigour and heading; time 0 is the first frame."""
-    plan = parse(sentence)
+    plan = parse_sentence(sentence)
     moves = any(step.moves for step in plan.steps)
     tempo = now.tempo * (recipe.variation.way_tempo if moves else 1.0)
     lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * tempo  # of the motion's own time

@@ -16,7 +16,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.profiles import rise
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
 from mmweaver.motion.people import MOST_SUBJECTS, person_of
 from mmweaver.recognition.generated_windows import (
@@ -147,7 +147,7 @@ def perform(
     What ends by itself and cannot be repeated (a fall) happens somewhere in these seconds. Raises InputError where the
     sentence cannot be carried out there.
     """
-    plan = parse(sentence) if once else lasting(parse(sentence))
+    plan = parse_sentence(sentence) if once else lasting(parse_sentence(sentence))
     is_event = not once and happens_once(plan)
     moves = any(step.moves for step in plan.steps)
     now, person = who.surroundings, person_of(who.subject, plan.person)

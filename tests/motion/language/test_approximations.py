@@ -6,14 +6,11 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.approximations import APPROXIMATIONS, with_approximations
-from mmweaver.motion.language.normal_forms import NORMAL_FORMS, in_normal_form
 from mmweaver.motion.language.plan import DONE, ClauseRecord
 from mmweaver.motion.language.sentence import parse
 
 
-def test_every_pattern_compiles_and_every_replacement_is_understood():
-    for pattern, _ in NORMAL_FORMS:
-        re.compile(pattern)
+def test_every_replacement_is_understood():
     for one in APPROXIMATIONS:
         instead = re.sub(r"\\\d", "", one.instead).strip()
         if (
@@ -52,9 +49,7 @@ def test_what_is_shown_and_how_it_is_recorded(text: str, keys: list[str], status
     assert all(clause.how for clause in plan.clauses if clause.status != "done")
 
 
-def test_each_limb_is_raised_and_each_turn_turned():
-    step = parse("raises the left arm to the side and the right leg").steps[0]
-    assert (step.lower, step.upper, step.hand, step.foot) == ("raise_leg", "arms_out", "left", "right")
+def test_each_turn_is_turned():
     assert parse("turns around twice").steps[0].turn_deg == 360.0
     assert parse("turns around").steps[0].direction == "around"
 
@@ -62,7 +57,6 @@ def test_each_limb_is_raised_and_each_turn_turned():
 def test_known_sentences_are_left_alone_and_unknown_ones_refused():
     text = "A person walks to the left, then waves."
     assert with_approximations(text, only_always=True) == text
-    assert in_normal_form("a person waves") == "a person waves"
     for unknown in ("a person does a handstand", "a person teleports", "a person does a cartwheel"):
         with pytest.raises(InputError, match=r"names no activity|cannot be shown"):
             parse(unknown)
@@ -152,12 +146,6 @@ def test_what_is_begun_and_given_up_is_said_to_be_done_wholly():
     assert [clause.status for clause in plan.clauses] == ["approximated", "done"]
     assert "only begun" in plan.clauses[0].how
     assert parse("starts to sit down").clauses[0].status == "done"
-
-
-def test_who_hops_from_point_to_point_points_at_nothing():
-    plan = parse("a person carefully hops from point to point")
-    assert [(step.lower, step.upper) for step in plan.steps] == [("hop", "")]
-    assert "from where to where is not shown" in plan.clauses[0].how
 
 
 def test_who_goes_around_something_to_sit_does_not_walk_to_and_fro():

@@ -6,22 +6,6 @@ from mmweaver.motion.language.sentence import parse
 
 
 @pytest.mark.parametrize(
-    ("text", "ways"),
-    [
-        ("takes 2 steps to the right walks to the left then back to the right", ["right", "left", "right"]),
-        ("takes three steps forward walks back", ["forwards", "back"]),
-        ("walks to the left walks to the right", ["left", "right"]),
-        ("jumps to the left jumps to the right", ["left", "right"]),
-        ("walks forward steps back", ["forwards", "backwards"]),
-        ("walks forward three steps", ["forwards"]),
-        ("walks four straight steps forward", ["forwards"]),
-    ],
-)
-def test_a_gait_with_a_way_of_its_own_is_a_movement(text: str, ways: list[str]) -> None:
-    assert [step.direction for step in parse(f"a person {text}", in_part=True).steps] == ways
-
-
-@pytest.mark.parametrize(
     ("text", "steps"),
     [
         ("picks up two boxes", [("pick_up", "")]),

@@ -37,7 +37,7 @@ def test_rounds_of_a_circle(text: str, rounds: int):
         ("walks to the left three times", "how often is not kept"),
         ("stirs the soup four times", "how often is not kept"),
         ("claps with the left hand", "which hand or foot it is is not shown"),
-        ("dances with the left foot", "which foot it is is not shown"),
+        ("dances with the left foot", "which hand or foot it is is not shown"),
     ],
 )
 def test_what_no_step_keeps_is_said(text: str, lost: str):

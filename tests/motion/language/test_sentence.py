@@ -340,13 +340,6 @@ def test_paces_of_a_sideways_walk_are_sideways():
     ]  # fmt: skip
 
 
-def test_who_carries_a_thing_that_is_put_down_walks_there():
-    carries, puts = parse("a man carries a suitcase and puts it down near the window").steps
-    assert (carries.lower, carries.upper, puts.lower) == ("walk", "carry", "put_down")
-    assert carries.place is not None
-    assert carries.place.landmark == "window"
-
-
 def test_somebody_who_is_spoken_to_does_it():
     assert parse("shake your head").steps[0].upper == "shake_head"
     assert parse("raise your left hand").steps[0].hand == "left"

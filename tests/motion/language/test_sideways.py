@@ -22,7 +22,6 @@ def test_a_walk_after_sidesteps_is_a_walk() -> None:
 @pytest.mark.parametrize(
     ("text", "ways"),
     [
-        ("takes side steps to the left, then to the right, then back to the starting position", ["left", "right"]),
         ("sidesteps to the left, then back to the starting position", ["left", "right"]),
         ("sidesteps to the left, then to the right, then back to the left", ["left", "right", "left"]),
     ],

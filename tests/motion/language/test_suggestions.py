@@ -1,5 +1,4 @@
-from mmweaver.motion.language.activities import BODY, HANDS
-from mmweaver.motion.language.paraphrases import PARAPHRASES
+from mmweaver.motion.language.activities import BODY, HANDS, PARAPHRASES
 from mmweaver.motion.language.suggestions import nearest, not_known
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import Scene
+from mmweaver.core.records import LANDMARK_KINDS, Scene
+from mmweaver.motion.language.lexicon import TARGETS
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -69,3 +70,7 @@ def test_given_landmarks_replace_those_found(office: ProceduralRoom):
         with_given_landmarks(scene, [("swing", (0.2, 2.0))])
     with pytest.raises(InputError, match=r"0\.2,-2"):
         with_given_landmarks(scene, [("door", (0.2, -2.0))])
+
+
+def test_whatever_a_sentence_can_go_to_can_be_given():
+    assert set(TARGETS.values()) == set(LANDMARK_KINDS)

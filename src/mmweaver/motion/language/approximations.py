@@ -57,22 +57,14 @@ APPROXIMATIONS = _read()
 _pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
 _LINK = re.compile(r"[,.;]|\b(?:and|then|while|before|after)\b")
 _HELD = re.compile(r"<(\d+)>(?: +for (\d+(?:\.\d+)?) seconds\b)?")
-_STEMS = re.compile(r"\\b\(\?:[a-z'|-]+\)\(\?:")  # patterns that begin with stems of verbs and their endings
-_ARTICLE = re.compile(r"\b(?:an?|the|his|her|their)$")
-_OF_A_NOUN = re.compile(r"(?<!performs )(?<!does )(?<!doing )(?<!makes )\b(?:an?|the|his|her|their|its|some|of)$")
-
-
-def _is_noun(found: re.Match[str]) -> bool:
-    """Whether what looks like a verb's plain form follows an article: "in a sort of", "a cook"."""
-    plain = not re.match(r"[a-z]+(?:s|ed|ing)\b", found[0])
-    return plain and _OF_A_NOUN.search(found.string[: found.start()].rstrip()) is not None
 
 
 def _is_adjective(found: re.Match[str]) -> bool:
     """Whether a participle between an article and a noun describes that noun: "carries a sleeping child"."""
     before, after = found.string[: found.start()].rstrip(), found.string[found.end() :]
     is_described = re.match(r" (?!and\b|then\b|while\b|with\b|in\b|on\b|for\b|at\b)[a-z]", after) is not None
-    return re.fullmatch("[a-z]+ing", found[0]) is not None and is_described and _ARTICLE.search(before) is not None
+    follows_article = re.search(r"\b(?:an?|the|his|her|their)$", before) is not None
+    return re.fullmatch("[a-z]+ing", found[0]) is not None and is_described and follows_article
 
 
 def with_approximations(
@@ -93,9 +85,7 @@ def with_approximations(
             continue
 
         def hold(found: re.Match[str], number: int = number, one: Approximation = one) -> str:
-            if _is_adjective(found) or (_STEMS.match(one.pattern) and _is_noun(found)):
-                return found[0]
-            if not one.always and is_understood(_part_around(found)):
+            if _is_adjective(found) or (not one.always and is_understood(_part_around(found))):
                 return found[0]
             words = "_".join(re.findall("[a-z]+", found[0]) if _THESE in one.how else ())
             at_once = "while " if _says_what_is_done_meanwhile(found, one.instead) else ""

@@ -6,10 +6,12 @@ from functools import reduce
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.approximations import MARK, approximation_of
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import (
+    ALL_WORDS,
     ARMS,
     BEFORE_NOUNS,
     BOTH,
@@ -18,7 +20,7 @@ from mmweaver.motion.language.lexicon import (
     FILLERS,
     FLOOR_VERBS,
     LEG_VERBS,
-    MANNERS,
+    LEGS,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
@@ -29,8 +31,6 @@ from mmweaver.motion.language.lexicon import (
     PRONOUNS,
     RADAR,
     SEATS,
-    SIZES,
-    SPEEDS,
     STEPPING,
     TARGETS,
     THINGS,
@@ -40,8 +40,7 @@ from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import AIM, Place, place_of
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import LEGS, step_of
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
+from mmweaver.motion.language.verb_steps import step_of
 from mmweaver.motion.language.words import Word
 
 
@@ -74,8 +73,6 @@ def parse_clause(clause: Clause) -> ParsedClause:
             subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
             if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
                 raise InputError(not_known(clause.text, words[at - 1].text))
-    if _limb_goes(words, verbs[0]):
-        raise InputError(not_known(clause.text, words[verbs[0]].text))
     _note_unknown(words, clause, parsed, has_verb=True)
     parsed.form = _form(words, verbs[0])
     # Words before the first verb belong to it.
@@ -101,13 +98,6 @@ def parse_clause(clause: Clause) -> ParsedClause:
     if lengths and not kept:
         parsed.approximations.append("the distance is not kept: it follows from time and speed")
     return parsed
-
-
-def _limb_goes(words: list[Word], at: int) -> bool:
-    """Whether it is a hand or leg that goes or turns: 'the left hand comes to the chest'."""
-    subject = {word.text for word in words[:at]}
-    limb = subject & (ARMS | LEGS) and not subject & {"with", "person", "man", "woman", *PRONOUNS}
-    return bool(limb and (words[at].is_going or words[at].lemma in ("turn", "rotate", "circle", "jump")))
 
 
 def _put_at(parsed: ParsedClause, place: Place) -> None:
@@ -156,7 +146,7 @@ def _refuse(clause: Clause) -> None:
     still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
     if texts & NEGATIONS and not still:
         raise InputError(f"{clause.text!r} says what is not done; say what the person does instead")
-    if texts & MANY or _OF_THEM.search(clause.text) or "guys" in texts:
+    if texts & MANY or _OF_THEM.search(clause.text):
         raise InputError(f"{clause.text!r} speaks of several people; say it of one and give --text once for each")
     if texts & NOT_HUMAN:
         raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
@@ -187,7 +177,6 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
     return word.text == "against" and "pushed" in lemmas
 
 
-_NO_THINGS = words_in("way step steps few little bit couple room body position feet foot")  # that are moved
 _FACED = words_in("the a an to me us another other each opposite what where away")
 _IT = ("them", "it", "him", "her")
 _OF_THE_BODY = frozenset({"waist", "hips", "torso", "trunk", "shoulders", "head", "legs", "leg", "knees", "body"})
@@ -212,10 +201,6 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
         after = words[i + 1].text if i + 1 < len(words) else ""
         if word.lemma == "throw" and any(other.lemma in ("kick", "punch", "jab") for other in words[i + 1 : i + 5]):
             continue  # "throws two front kicks"
-        if _is_gait(word) and _has_a_limb(words[i + 1 : i + 5]):
-            continue  # "runs it up the chest", "runs his hand along it"
-        if word.lemma == "move" and _moves_a_thing(words[i + 1 : i + 4]):
-            continue  # "moving the right hamd"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
         goes_somewhere = is_placed or bool(texts & {*DIRECTIONS, *RADAR, *SEATS, *TARGETS})
@@ -228,22 +213,6 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
 
 def _is_gait(word: Word) -> bool:
     return ACTIVITY_OF_LEMMA.get(word.lemma, ("", ""))[0] in ("walk", "jog", "march", "hop", "jump")
-
-
-def _has_a_limb(after: list[Word]) -> bool:
-    """Whether "runs" has an object, which nobody is who runs: it, or a hand."""
-    texts = [word.text for word in after]
-    if texts[:1] in (["it"], ["them"]):
-        return True
-    return texts[:1] != [] and texts[0] in (*OWN, "the") and bool({*texts} & (ARMS | {"finger", "fingers"}))
-
-
-def _moves_a_thing(after: list[Word]) -> bool:
-    """Whether "moves" has an object, which is neither a way nor how far somebody goes."""
-    texts = [word.text for word in after]
-    if not texts or texts[0] not in (*OWN, "the", "a", "an"):
-        return False
-    return not _NO_THINGS & {*texts}
 
 
 def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
@@ -261,27 +230,13 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return bool(found)
     if _is_plain_noun(word, _before_adjectives(words, i) if found else before, after_a_verb=bool(found)):
         return True
-    if found and word.form == "s" and _goes_another_way(words, found[-1], i):
-        return False
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
     going = any(words[k].lemma in STEPPING or _is_gait(words[k]) for k in found)
     if word.lemma == "step" and word.form in ("base", "s") and going:
         return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
     same = [k for k in found if ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma]]
-    # "walks a walk", not "walks to the left, turns around walk back"
-    return bool(same) and (same[-1] == found[-1] or before in BEFORE_NOUNS or before in ("a", "the", "this", "that"))
-
-
-def _goes_another_way(words: list[Word], before: int, i: int) -> bool:
-    """Whether a gait after another one has a way of its own: "takes two steps to the right walks to the left"."""
-    between, after = words[before + 1 : i], words[i + 1 : i + 4]
-    counted = any(word.text in NUMBERS or word.text.isdigit() for word in between)
-    has_way = bool(between) and between[-1].text in _WAYS and any(word.text in _WAYS for word in after)
-    return (_is_gait(words[i]) or words[i].lemma == "sidestep") and has_way and not counted
-
-
-_WAYS = frozenset({"left", "right", "forward", "forwards", "backward", "backwards", "back", "ahead", "away"})
+    return bool(same) and same[-1] == found[-1]  # "walks a walk", not "walks to the left, turns around walk back"
 
 
 def _before_adjectives(words: list[Word], i: int) -> str:
@@ -318,21 +273,10 @@ def _is_the_face(words: list[Word], i: int) -> bool:
 
 
 def _is_adjective(words: list[Word], i: int) -> bool:
-    """'a clean kick', 'lowers the raised arms'."""
-    word, before = words[i], words[i - 1].text if i else ""
-    noun = words[i + 1] if i + 1 < len(words) else None
-    if word.form == "ing" and before in ("a", "an") and noun is not None and not is_known(noun):
-        return any(other.is_verb for other in words[:i])  # "throws a skipping rock"
-    if word.lemma == "clean" and word.form == "base" and (before in SIZES or before in ("a", "an", "the", "very")):
-        return True
-    of_a_turn = word.form == "ing" and before in ("a", "an") and len(words) > i + 2 and words[i + 2].is_activity
-    if of_a_turn and words[i + 1].text in ("left", "right", *SIZES, *SPEEDS):
-        return True  # "a sweeping right turn"
-    raised = word.form == "past" and before in (*OWN, "the", "both", "with")  # "lowers their raised arms"
-    arms = words[i + 1 : i + 2] and words[i + 1].text in ARMS
-    if word.text == "types" and before in ("different", "of"):
-        return True
-    return bool(raised and arms and any(other.is_verb for other in words[:i]))
+    """ "Throws a skipping rock"."""
+    before, noun = words[i - 1].text if i else "", words[i + 1] if i + 1 < len(words) else None
+    is_article = words[i].form == "ing" and before in ("a", "an")
+    return is_article and noun is not None and not is_known(noun) and any(other.is_verb for other in words[:i])
 
 
 def _form(words: list[Word], at: int) -> str:
@@ -349,8 +293,6 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
-    if {word.text for word in words} & {"hook", "hooks"}:
-        parsed.approximations.append("the kind of punch is not distinguished")
     if moved is not None and {word.text for word in words} & ARMS and sum(word.is_activity for word in words):
         parsed.approximations.append("how the arms move is not shown")
     odd = _unknown_manner(words)
@@ -392,28 +334,17 @@ def _unknown_manner(words: list[Word]) -> str:
     return ""
 
 
+_KNOWN = frozenset().union(
+    ALL_WORDS - NEGATIONS - MANY - NOT_HUMAN - OTHER_MOVEMENT,
+    FILLERS | OWN | PEOPLE | LEGS | NUMBERS.keys(),
+    words_in(
+        "left right not without moving sideways on_spot lookdown onback onbelly one_knee highkick frontlunge reach_high"
+    ),
+)
+
+
 def is_known(word: Word) -> bool:
     """Whether a word has a meaning, or none that matters, in a sentence about a movement."""
     text = word.text
-    return (
-        word.is_verb
-        or text in FILLERS
-        or text in MANNERS
-        or text in SIZES
-        or text in DIRECTIONS
-        or text in SPEEDS
-        or text in NUMBERS
-        or text in SEATS
-        or text in ARMS
-        or text in RADAR
-        or text in OWN
-        or text in BOTH
-        or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
-        or text in TARGETS
-        or text in PEOPLE
-        or text in LEGS
-        or text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_"))
-        or text in ("onback", "onbelly", "one_knee", "highkick", "frontlunge", "reach_high")
-        or text.replace(".", "").isdigit()
-        or len(text) == 1
-    )
+    is_token = text.startswith((AIM, "arc", "deg", "from_", "on_", "fraction_", "rounds_")) or len(text) == 1
+    return word.is_verb or text in _KNOWN or is_token or text.replace(".", "").isdigit()

@@ -83,8 +83,6 @@ def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
         direction = "back"
     if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
         return about
-    if text in ("towards", "toward") and following & SEATS:
-        return replace(about, direction=about.direction or "seat")
     if _is_no_direction(text, words, i, following):
         return about
     if direction == "forwards" and about.direction:

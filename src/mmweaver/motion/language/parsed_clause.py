@@ -1,7 +1,6 @@
 """A clause with its steps, and what a clause without an activity adds to the steps of the one before."""
 
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import NUMBERS, SPEEDS, TIMES
@@ -58,13 +57,8 @@ class ParsedClause:
         about = more.about
         self.take_its_speed(more)
         last = self.steps[-1]
-        if (
-            more.link == "and"
-            and last.lower in GAITS
-            and about.direction == "back"
-            and last.direction in ("", "seat")
-            and last.moves
-        ):
+        comes_back = more.link == "and" and about.direction == "back" and last.direction in ("", "seat")
+        if comes_back and last.lower in GAITS and last.moves:  # "walks to the door and back"
             back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
             self.steps.append(_as_far_as(about, back))
             self.forms.append("s")
@@ -112,9 +106,6 @@ class ParsedClause:
     def _leads_back(self, last: Step, more: "ParsedClause") -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
         about, number = more.about, more.number
-        if any(word.text == "back_to_start" for word in more.words) and self._has_come_back():
-            self.steps[-1] = replace(last, clauses=(*last.clauses, number))
-            return True
         if last.lower == "sidestep":
             other = {"left": "right", "right": "left"}.get(last.direction, "")
             if about.direction not in ("back", "backwards", other) or not other:
@@ -129,14 +120,6 @@ class ParsedClause:
         self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
-
-    def _has_come_back(self) -> bool:
-        """Whether the last steps aside lead to where the first of them began: as far to the left as to the right."""
-        aside = list(takewhile(lambda step: step.lower == "sidestep", reversed(self.steps)))
-        ways = [(step.direction, step.count, step.distance_m, step.seconds) for step in aside]
-        return bool(ways) and sorted(("left", *way[1:]) for way in ways if way[0] == "right") == sorted(
-            way for way in ways if way[0] == "left"
-        )
 
 
 def _count_of(last: Step, more: ParsedClause) -> int:

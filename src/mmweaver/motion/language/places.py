@@ -2,96 +2,28 @@
 
 import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import NUMBERS, RADAR, TARGETS
+from mmweaver.motion.language.rewrite_rules import with_parts
 
 MARK = "place_"
-_RELATIONS = {
-    "near": "near|next to|beside|besides|close to|by|at",
-    "behind": "behind|in back of",
-    "front": "in front of|before",
-    "leftof": "to the left of|left of|on the left of",
-    "rightof": "to the right of|right of|on the right of",
+_TABLE = read_toml(Path(__file__).with_suffix(".toml"))
+_PARTS = {
+    "object": "|".join(sorted((word for word in TARGETS if word != "wall"), key=len, reverse=True)),
+    "radar": "|".join(RADAR),
+    "numbers": "|".join(word for word, value in NUMBERS.items() if value < 13),
+    "people": "|".join(sorted(PEOPLE)),
+    **_TABLE["parts"],
 }
-_OBJECT = "|".join(sorted((word for word in TARGETS if word not in ("wall",)), key=len, reverse=True))
-_ADJECTIVES = r"(?:(?:open|closed|dining|kitchen|coffee|big|small|front|back|left|right|wooden|leather|garden|room) )*"
-_NUMBER = (
-    r"(?P<number>\d+(?:\.\d+)?|" + "|".join(word for word, value in NUMBERS.items() if value < 13) + r"|an?|half a)"
+_WHOM, _WHOSE, _AIMED, _FACED, _ACTS_THERE, _ROOM = (
+    re.compile(with_parts(pattern, _PARTS)) for pattern in _TABLE["patterns"].values() if isinstance(pattern, str)
 )
-_ROOMS = "kitchen|living room|bedroom|bathroom|office|hall|hallway|corridor|lab|laboratory|garage|gym|studio|classroom"
-_END = (
-    r"(?= *(?:$|[,.;!]|and\b|then\b|while\b|with\b|for\b|facing\b|near\b|next\b|beside\b|behind\b|in\b|on\b|at\b|waving\b"
-    rf"|{MARK}))"
-)
-_ARTICLE = "(?:the|an?|one|his|her|their)"
-_AT_ONE = rf"{_ARTICLE} {_ADJECTIVES}"
-_ANY_OBJECT = f"{_OBJECT}|wall"
-_MIDDLE_OF = r"(?:very |exact )?(?:middle|centre|center)(?: of the (?:room|picture|photo|image|scene|floor))?"
-_GOES = (
-    r"(?:walk|go|run|jogg?|mov|head|com|return|stroll|stepp?|stagger|limp|sneak|hobbl|wander|march|saunter|trudg|strid)"
-    r"(?:e?s|e|ing|ed)?"
-)
-# What is done to something under furniture, or with the eyes, and what is thrown outside, leaves the person where he is.
-_DONE_THERE = (
-    r"(?:put|plac|tak|pick|look|peer|peek|reach|push|pull|roll|kick|throw|toss|slid|sweep|vacuum|clean|mopp?|wip|search"
-    r"|dropp?|stor|lay|chas|point|star|gaz|glanc|listen|grab|get|fetch)(?:e?s|e|t?ing|ed)?"
-)
-_UNDER = "table|desk|bed|chair|couch|sofa|settee|counter"
-_PATTERNS = (
-    (re.compile(rf"\bbetween {_AT_ONE}(?P<object>{_ANY_OBJECT}) and (?:{_AT_ONE})?(?P<other>{_ANY_OBJECT})\b"), "between"),
-    (re.compile(rf"\bbetween (?:(?:the|two|both|his|her|their) )+{_ADJECTIVES}(?P<object>{_OBJECT})(?:e?s)\b"), "between"),
-    (re.compile(r"\b(?:in|into) the (?:open )?(?P<object>doorway|door|entrance)\b(?! frame)"), "in"),
-    (re.compile(rf"\b(?:near|next to|beside|besides|close to|by|at|in front of) {_AT_ONE}(?P<object>wall)\b"), "near"),
-    (re.compile(r"(?:(?<=stands )|(?<=standing )|(?<=stand )|(?<=sits )|(?<=sitting )|(?<=waits )|(?<=squats )|(?<=crouches )"
-                rf"|(?<= back )|(?<=kneels ))against {_AT_ONE}(?P<object>wall)\b"), "against"),
-    *((re.compile(rf"\b(?:{words}) (?:the |a |an |his |her |their )?{_ADJECTIVES}(?P<object>{_OBJECT})\b"), relation)
-      for relation, words in _RELATIONS.items()),
-    (re.compile(rf"\b(?:at |about |some |around )*(?:a distance of )?{_NUMBER}(?P<half> and a half)? ?(?:m|met(?:er|re)s?)"
-                rf" (?:away|off|distant)?(?: ?(?:from|in front of|before|ahead of) (?:the )?(?:{'|'.join(RADAR)}))?{_END}"), "range"),
-    (re.compile(rf"\b(?:on|at|in) the (?P<object>left|right)(?: hand(?= (?:side|half|corner|part)))?(?: side| half| corner| part)?"
-                rf"(?: of the (?:room|picture|photo|image|scene))?{_END}"), "side"),
-    (re.compile(rf"\bin the {_MIDDLE_OF}{_END}"), "middle"),
-    (re.compile(r"\b(?:in the background|(?:in|at) the back(?: of the (?:room|picture|scene))|at the (?:far|other) end(?: of the room)?)" + _END), "far"),
-    (re.compile(rf"\b(?:in the foreground|(?:close to|near|next to|right in front of) (?:the )?(?:{'|'.join(RADAR)}))" + _END), "close"),
-)  # fmt: skip
-# Places of which a part of the sentence before them decides whether the person is there; the first group is kept.
-_CORNER = r"(?:the|a|one) (?:far |near |back )?(?:(?P<side>left|right)(?: hand)? )?(?:far |back )?corner\b(?: of the room\b)?(?! of)"
-_FURTHER = r"(?: (?!and\b|then\b|while\b|with\b)[a-z_]+){0,4}?"
-_THERE = (
-    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:in)?to(?:wards?)? {_CORNER}"), "in_corner"),
-    (re.compile(rf"\b(?P<goes>)(?:in|inside|at) {_CORNER}"), "in_corner"),
-    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:to|into|towards?) the {_MIDDLE_OF}{_END}"), "middle_go"),
-    (re.compile(rf"\b(?P<goes>{_GOES}{_FURTHER}) (?:up )?to {_AT_ONE}wall\b"), "near_wall"),
-)
-_AWAY_FROM_IT = (
-    (re.compile(rf"(?<!from )\b(?:under|underneath|beneath|below) {_AT_ONE}(?P<object>{_UNDER})\b"), "under"),
-    (re.compile(r"\b(?P<object>)(?:outside|outdoors)\b(?! of| the)"), "outside"),
-)
-_ACTS_THERE = re.compile(rf"\b{_DONE_THERE}\b(?:(?!\band\b|\bthen\b|\bwhile\b|[,.;]).)*$")
-_ROOM = re.compile(rf"\b(?:in|inside|across|through|around) (?:the|a|his|her|their|an) ({_ROOMS})\b")
-
-
-_PERSON = rf"(?:{'|'.join(sorted(PEOPLE))}|person|human|user|somebody|someone|friend|neighbou?r|stranger|other)"
-# Somebody else's side, who is waved to: the body faces it.
-_WHOM = re.compile(
-    r"\b((?:point|wav|turn|nod|bow|gestur|clap|shout|talk|speak|sing|smil)(?:e?s|e|ing|ed)?\b(?: (?!and\b|then\b|while\b)[a-z]+){0,4}? )"
-    rf"(?:at|to|towards?|for) (?:the |an? |his |her |their |another )*(?:[a-z]+ )?{_PERSON} (?:who is )?(?:standing |sitting )?"
-    r"(?:on|at|to) (?:the|his|her|their) (left|right)(?: hand side| side)?\b(?! of the (?!room|picture|photo|image|scene))"
-)
-# Where the person of the sentence is: "a man on the left waves".
-_WHOSE = re.compile(
-    rf"^((?:an? |the |my |our )?(?:[a-z-]+ ){{0,2}}?{_PERSON}) (?:(?:who|that) (?:is |stands |sits )?)?(?:standing |seated )?"
-    r"(?:(?:on|at) the (?P<side>left|right)(?: hand side| side| half| corner)?|in the (?P<middle>middle|cent(?:re|er))"
-    r"|(?P<far>in the background|(?:in|at) the back|at the (?:far|other) end)|(?P<close>in the foreground))"
-    r"(?: of the (?:room|picture|photo|image|scene|floor))? (?=[a-z]+(?:s|ing)\b)"
-)
-_AIMED = re.compile(
-    r"\b((?:point|wav|turn|nod|bow|gestur)(?:e?s|e|ing|ed)?\b(?: (?!and\b|then\b|while\b)[a-z]+){0,4}? )(?:at|to|towards?)"
-    rf" (?:the |a |an |his |her |their ){_ADJECTIVES}({_OBJECT})\b"
-)
-_FACED = re.compile(
-    rf"\b(fac(?:es|e|ing)) (?:to |towards? )?(?:the |a |an |his |her |their ){_ADJECTIVES}({_OBJECT})\b"
+_THERE, _AWAY_FROM_IT, _PATTERNS = (
+    [(re.compile(with_parts(pattern, _PARTS)), relation) for pattern, relation in _TABLE["patterns"][group]]
+    for group in ("there", "away", "at")
 )
 AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
 
@@ -100,8 +32,8 @@ AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
 class Place:
     """A place of a sentence, for the planner to find in the room."""
 
-    # near | behind | front | leftof | rightof | in | against | between | under | outside | range | left | right | middle
-    # | far | close
+    # near | behind | front | leftof | rightof | in | against | between | under | outside | range | left | right
+    # | middle | far | close
     relation: str
     landmark: str = ""  # the Landmark.kind that it is relative to; wall, corner: of the room
     other: str = ""  # of "between", the other one

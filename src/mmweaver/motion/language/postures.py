@@ -4,15 +4,12 @@ import re
 from dataclasses import replace
 from itertools import pairwise
 
-from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.held import STAYING
-from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.plan import FALLING_ON, Step
-from mmweaver.motion.language.verbs import words_in
+from mmweaver.motion.language.posture_persistence import STAYING
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
 STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
-_RISEN_FROM = {"stand_up": "sit", "kneel_up": "kneel", "get_up": "lie"}
 _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # What is done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
@@ -26,19 +23,11 @@ def with_postures(steps: list[Step]) -> list[Step]:
     """The steps with transitions (sitting down, kneeling, lying down, getting up) inserted where they are needed."""
     result: list[Step] = []
     posture = ""  # not known yet
-    for step in _from_where_it_rises(steps):
+    for step in steps:
         for one in _with_transitions(step, posture, result):
             result.append(one)
             posture = one.posture
     return merged(_styled(_falling_on(result)))
-
-
-def _from_where_it_rises(steps: list[Step]) -> list[Step]:
-    """Who waits first and then gets up waits where that begins: on a seat, on the knees or on the floor."""
-    if len(steps) < 2 or steps[1].lower not in _RISEN_FROM:
-        return steps
-    waits = steps[0].lower == "stand" and not steps[0].on_feet and bool(STAYING & {*steps[0].clause.split()})
-    return [replace(steps[0], lower=_RISEN_FROM[steps[1].lower]), *steps[1:]] if waits else steps
 
 
 def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step]:
@@ -178,15 +167,6 @@ def _styled(steps: list[Step]) -> list[Step]:
     return steps
 
 
-def _back_in_place(before: Step, step: Step) -> Step:
-    """ "Returns to the starting position" of who has not walked: stands as before, or turns back."""
-    turned = before.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
-    if turned and (before.turn_deg == 0.0 or before.turn_deg % 360.0):
-        back = OPPOSITE.get(before.direction, "")
-        return replace(step, lower="turn", direction=back, turn_deg=-before.turn_deg)
-    return replace(step, lower="stand", direction="")
-
-
 def carried_over(steps: list[Step]) -> list[Step]:
     """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
 
@@ -195,7 +175,7 @@ def carried_over(steps: list[Step]) -> list[Step]:
     gone = False
     for k, step in enumerate(steps):
         if step.direction == "back" and not gone and k and _ITS_PLACE.search(step.clause):  # it has left no place
-            steps[k] = _back_in_place(steps[k - 1], step)
+            steps[k] = replace(step, lower="stand", direction="")
         elif step.direction == "back" and not gone:  # "turns around and walks back" goes where the person faces then
             turned = k > 0 and steps[k - 1].lower == "turn"
             steps[k] = replace(step, direction="forwards" if turned else "backwards")
@@ -203,9 +183,6 @@ def carried_over(steps: list[Step]) -> list[Step]:
         lifted = next((one for one in reversed(steps[:k]) if one.lower == "pick_up"), None)
         if step.lower == "put_down" and not step.hand and lifted is not None:
             steps[k] = replace(step, hand=lifted.hand)
-        before = steps[k - 1]
-        if k and step.upper == "wave" and not step.hand and before.upper == "raise":
-            steps[k] = replace(step, hand=before.hand)
     return steps
 
 

@@ -4,57 +4,47 @@ import re
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import parse_clause
-from mmweaver.motion.language.clause_records import in_own_words, in_the_given_words, note_what_is_not_shown
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.durations import in_seconds
-from mmweaver.motion.language.held import ARM_POSTURES, with_what_is_held
-from mmweaver.motion.language.left_out import (
+from mmweaver.motion.language.explanations import in_own_words, in_the_given_words, note_what_is_not_shown
+from mmweaver.motion.language.fallback_parsing import (
     EXACT,
     LEAVING_OUT,
     MISSING,
     ROUGH,
-    follows_another,
     may_be_missed,
     parse_with_less,
+    read_roughly,
     says_more_of,
 )
-from mmweaver.motion.language.lexicon import ARMS, NUMBERS, OWN, RADAR
+from mmweaver.motion.language.gait_merging import at_one_gait, sideways_throughout, with_shared_speeds
+from mmweaver.motion.language.lexicon import ARMS, NUMBERS, RECOVERING
 from mmweaver.motion.language.modifiers import OPPOSITE
-from mmweaver.motion.language.named_steps import with_what_is_shown
-from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.postures import ENTERING, carried_over, with_postures
+from mmweaver.motion.language.posture_persistence import ARM_POSTURES, with_what_is_held
+from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
-from mmweaver.motion.language.reworded_phrases import reworded
-from mmweaver.motion.language.rough_readings import read_roughly
-from mmweaver.motion.language.shared_steps import says_again, says_how_far_it_pivots
-from mmweaver.motion.language.sideways import sideways_throughout
-from mmweaver.motion.language.simultaneous import going_on, in_sequence, overlay
+from mmweaver.motion.language.rewrite_rules import rewritten
+from mmweaver.motion.language.simultaneous import going_on, in_sequence
 from mmweaver.motion.language.spelling import correct_spelling
+from mmweaver.motion.language.step_names import with_what_is_shown
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
-from mmweaver.motion.language.verbs import RECOVERING
-from mmweaver.motion.language.whole_walks import at_one_gait, with_shared_speeds
 from mmweaver.motion.language.words import Word, words_of
 
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
-_ON_THE_FLOOR = re.compile(r"\b(?:on|onto|to) the (?:floor|ground)\b")
-_TRAVELLING = ("leap", "crawl", "limp", "stagger")  # the walks go on otherwise: `_goes_elsewhere`
-_OTHER_WAY = {**OPPOSITE, "forwards": "backwards", "backwards": "forwards"}
 JUMPING = ("jump", "leap", "hop")
-_HELD_ON_TO = re.compile(r"\b(?:on|onto|at|against|by|with) (?!(?:his|her|its|their) (?:feet|foot|legs?|balance))[a-z]")
 BENT = ("bend", "bow", "squat", "crouch", "lunge")  # they end upright
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
@@ -62,9 +52,9 @@ LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "
 def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     """Parses what a person does into steps in temporal order, not scheduled yet.
 
-    What is not understood as it is, is tried in other words (`normal_forms`), then with similar movements instead of
+    What is not understood as it is, is tried in other words (`rewrite_rules`), then with similar movements instead of
     unknown ones (`approximations`), which the clause's record says. `in_part`: last, clauses that are not understood
-    are recorded as not done, where at least as many are understood, or read roughly (`rough_readings`); labelled data
+    are recorded as not done, where at least as many are understood, or read roughly (`fallback_parsing`); labelled data
     is parsed without.
 
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
@@ -81,13 +71,14 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = reworded(in_seconds(_YOUR.sub("his", text)))
+    text = rewritten(in_seconds(_YOUR.sub("his", text)), "first")
     try:
         return _parsed(with_approximations(text, only_always=True), given_text)
     except InputError as error:
-        normal = with_approximations(in_normal_form(text), only_always=True)
-        similar = with_approximations(in_normal_form(text), is_understood=cache(_is_understood_alone))
-        partly = with_approximations(in_normal_form(text), in_part=in_part)
+        other_words = rewritten(text.lower(), "last")
+        normal = with_approximations(other_words, only_always=True)
+        similar = with_approximations(other_words, is_understood=cache(_is_understood_alone))
+        partly = with_approximations(other_words, in_part=in_part)
         attempts = (
             (normal, EXACT), (similar, EXACT), (normal, LEAVING_OUT), (similar, LEAVING_OUT), (similar, MISSING),
             (partly, EXACT), (partly, ROUGH), (normal, ROUGH),
@@ -138,28 +129,12 @@ def _parsed(text: str, given_text: str, leaving: int = EXACT) -> MotionPlan:
 
 
 def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int) -> MotionPlan:
-    _check_turning_jumps(given_text, words)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
     sequence = with_shared_speeds(
         at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
     )
-    if sequence[0].lower in ENTERING and follows_another(sequence[0], every_clause, records):  # sits down then
-        sequence[0] = replace(sequence[0], lower=ENTERING[sequence[0].lower])
-    on_the_floor = _ON_THE_FLOOR.search(given_text.lower()) is not None
-    for number, (before, step) in enumerate(pairwise(sequence), start=1):
-        if step.lower in ("lie", "lie_down") and before.seat and not step.style:
-            sequence[number] = replace(step, lower="recline", seat=before.seat)
-        taken = [one.upper or one.lower for one in sequence[:number] if one.upper == "reach" or one.lower == "pick_up"]
-        # what was taken from a table goes back there
-        if step.lower == "put_down" and taken[-1:] == ["reach"] and not on_the_floor:
-            sequence[number] = replace(step, lower="stand", upper="reach")
-        if before.upper == "carry" and before.lower == "stand" and step.lower == "put_down":  # it is carried there
-            walk = replace(before, lower="walk", place=step.place)
-            sequence[number - 1 : number + 1] = [walk, replace(step, place=None)]
-        if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
-            sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(going_on(sideways_throughout(sequence))))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
@@ -252,10 +227,8 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
         _fill_in(found[-1], parsed)
         last = found[-1].steps[-1]
-        other, another = _other_limb(last, parsed), _another_step(last, parsed)
-        if other is not None:
-            found[-1].steps[-1] = overlay(last, other)
-        elif another is not None:
+        another = _another_step(last, parsed)
+        if another is not None:
             found[-1].take_its_speed(parsed)
             found[-1].steps.append(replace(another, speed=another.speed or parsed.about.speed))
             found[-1].forms.append("s")
@@ -263,22 +236,11 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             found[-1].go_on(parsed)
         else:
             found[-1].absorb(parsed)
-    elif parsed.steps and _says_more_of_it(found, parsed):
-        last, more = found[-1].steps[-1], parsed.steps[0]
-        found[-1].steps[-1] = replace(
-            last, hand=last.hand or more.hand, foot=last.foot or more.foot, count=last.count or more.count,
-            speed=last.speed or more.speed, direction=last.direction or more.direction,
-            clauses=(*last.clauses, parsed.number),
-        )  # fmt: skip
-    elif parsed.steps and says_how_far_it_pivots(found, parsed):
-        last, turn = found[-1].steps[-1], parsed.steps[0]
-        found[-1].steps[-1] = replace(turn, foot=last.foot, clauses=(*last.clauses, parsed.number))
     elif parsed.steps and not _is_its_end(found, parsed):
         found.append(parsed)
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
         last = found[-1].steps[-1]
         found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
-        parsed.lost += _lost_without_a_step(last, parsed)
     elif not parsed.is_empty:
         raise InputError(not_known(parsed.text))
 
@@ -293,48 +255,18 @@ def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
         before.steps[-1] = replace(last, direction="right")
 
 
-def _lost_without_a_step(last: Step, parsed: ParsedClause) -> list[str]:
-    """What a clause that needs no step says and the step before does not show."""
-    words = set(parsed.text.split())
-    if last.hand == "both" and LOWERING & words and set(OPPOSITE) & words:
-        return ["both arms come down"]
-    held_on_to = last.lower == "stumble" and _HELD_ON_TO.search(parsed.text)
-    return ["what the person holds on to is not shown"] if held_on_to else []
-
-
-def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
-    """The step of a clause that names one more limb to raise: 'raises the left arm and the right leg'."""
-    about = replace(parsed.about, clause=parsed.text, clauses=(parsed.number,), direction="")
-    if last.upper in ("raise", "arms_out") and last.lower == "stand" and about.foot:
-        return replace(about, lower="raise_leg", hand="")
-    ways = {last.direction, parsed.about.direction}
-    if (
-        last.upper == "arms_out"
-        and about.hand == OPPOSITE.get(last.hand)
-        and not last.moves
-        and ways == {"", "forwards"}
-    ):
-        return replace(about, lower="stand", upper="arms_out", direction=parsed.about.direction)
-    if last.lower == "raise_leg" and not last.upper and about.hand:
-        return replace(about, lower="stand", upper="raise", foot="")
-    return None
-
-
 def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
-    """The next step that a clause without a verb asks for: the last one with the other hand, to another side, ..."""
+    """The next step that a clause without a verb asks for: the last one with the other hand, or to another side."""
     other_side = _with_the_other_one(last, parsed)
     if other_side is not None or _goes_elsewhere(last, parsed):
         return other_side
-    if _faces_next(last, parsed):
-        facing = parsed.about.facing or "towards"
-        return Step(lower="turn", facing=facing, clause=parsed.text, clauses=(parsed.number,))
-    return _to_the_other_side(last, parsed) if _once_more(last, parsed) else _again_otherwise(last, parsed)
-
-
-def _faces_next(last: Step, parsed: ParsedClause) -> bool:
-    """Whether a clause without a verb is the next turn to something: 'turns to the window, then to the radar'."""
-    aimed = parsed.about.facing or any(word.text in RADAR for word in parsed.words)
-    return last.lower == "turn" and parsed.link in ("then", "and", "comma") and bool(aimed)
+    if not _once_more(last, parsed):
+        return None
+    side = parsed.about.direction
+    way = {"facing": side, "direction": ""} if last.facing in OPPOSITE else {"direction": side}
+    if last.lower == "turn" and last.turn_deg:  # "spins clockwise, then counterclockwise"
+        way = {"turn_deg": abs(last.turn_deg) * SIDES[side], "direction": "", "style": ""}
+    return replace(last, **way, clauses=(parsed.number,))
 
 
 def _once_more(last: Step, parsed: ParsedClause) -> bool:
@@ -346,54 +278,12 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
 
 
-def _to_the_other_side(last: Step, parsed: ParsedClause) -> Step:
-    if last.facing in OPPOSITE:  # "faces left, then right"
-        return replace(last, facing=parsed.about.direction, direction="", clauses=(parsed.number,))
-    side = _own_side(parsed)
-    if last.lower == "turn" and last.turn_deg:  # "spins clockwise, then counterclockwise"
-        angle_deg = abs(last.turn_deg) * SIDES[side]
-        return replace(last, turn_deg=angle_deg, direction="", style="", clauses=(parsed.number,))
-    return replace(last, direction=side, clauses=(parsed.number,))
-
-
-def _again_otherwise(last: Step, parsed: ParsedClause) -> Step | None:
-    """The last movement at another speed or the other way round: 'waves slowly, then quickly'."""
-    about = parsed.about
-    if last.lower == "bend" and not last.upper and about.direction == "backwards" and parsed.link in ("then", "comma"):
-        # "bends forward, then back"
-        return replace(last, lower="lean", direction="backwards", clauses=(parsed.number,))
-    if about.direction == last.direction == "circle" and about.arc_deg * last.arc_deg < 0:
-        return replace(last, arc_deg=about.arc_deg, style="", clauses=(parsed.number,))
-    if last.direction == "circle" and SIDES.get(about.direction, 0.0) * last.arc_deg < 0:
-        return replace(last, arc_deg=-last.arc_deg, style="", clauses=(parsed.number,))
-    elsewhere = about.direction in _OTHER_WAY and last.direction not in ("", about.direction)
-    if (
-        last.lower in _TRAVELLING
-        and elsewhere
-        and (parsed.link != "and" or _OTHER_WAY[about.direction] == last.direction)
-    ):
-        return replace(last, direction=about.direction, count=about.count or last.count, clauses=(parsed.number,))
-    if about.speed and last.speed == -about.speed and not (about.hand or about.foot or about.direction):
-        return replace(last, speed=about.speed, clauses=(parsed.number,))
-    return None
-
-
-def _own_side(parsed: ParsedClause) -> str:
-    """The side of a movement on the spot, which is the person's own: "then to his left" is no side of the picture."""
-    side = parsed.about.direction
-    whose = any(one.text in OWN and other.text == OPPOSITE[side] for one, other in pairwise(parsed.words))
-    return OPPOSITE[side] if whose else side
-
-
 def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
     about = parsed.about
     aimed = parsed.link == "and" and not (about.hand or about.foot)  # "to the left and to the right"
-    counted = parsed.link == "and" and bool(about.count)  # "twice with the right fist and once with the left"
-    in_turn = parsed.link in ("then", "comma") or aimed or counted
+    in_turn = parsed.link in ("then", "comma") or aimed or (parsed.link == "and" and about.count)
     side = about.hand or about.foot or about.direction
-    if side == "both" and parsed.link in ("then", "comma") and last.hand in OPPOSITE and not last.moves:
-        return replace(last, hand="both", count=about.count or last.count, clauses=(parsed.number,))
     is_aim = last.hand and not about.hand and not aimed and any(word.text == "to" for word in parsed.words)
     if is_aim or not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
         return None
@@ -403,76 +293,32 @@ def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
 
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
-    direction, came_back = parsed.about.direction, last.lower == "sidestep" and len(last.clauses) > 1
-    ahead = ("forwards", "backwards", "back")
-    sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
+    direction = parsed.about.direction
+    sideways = direction in OPPOSITE and last.direction in ("forwards", "backwards", "back", *OPPOSITE)
     sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
     measured = bool(parsed.about.seconds or parsed.about.distance_m)  # "to the left for 3 s and to the right for 5 s"
-    return (
-        (parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep")))
-        and last.lower in ("walk", "jog", "sidestep")
-        and (direction != last.direction or (parsed.link == "then" and (came_back or direction in OPPOSITE)))
-        and not last.arc_deg
-        and sideways
-    )
-
-
-def _says_more_of_it(found: list[ParsedClause], parsed: ParsedClause) -> bool:
-    """Whether a participle only describes the movement before it: 'is boxing, throwing punches with both hands'."""
-    participle = parsed.form == "ing" or (found and found[-1].form == "ing" and parsed.link == "comma")
-    if not found or not participle or parsed.link not in ("comma", "while") or len(parsed.steps) > 1:
-        return False
-    last, more = found[-1].steps[-1], parsed.steps[0]
-    same = (last.lower, last.upper) == (more.lower, more.upper)
-    alike = all(
-        not one or not other or one == other
-        for one, other in ((last.hand, more.hand), (last.foot, more.foot), (last.direction, more.direction))
-    )
-    return same and alike and not last.moves and last.lower not in JUMPING
+    follows = parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep"))
+    is_other = direction != last.direction or (parsed.link == "then" and direction in OPPOSITE)
+    return follows and is_other and sideways and last.lower in ("walk", "jog", "sidestep") and not last.arc_deg
 
 
 def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
     """Whether a clause only ends the movement before it: 'lifts a foot and puts it down', 'is pushed and stumbles'."""
-    if not parsed_clauses:
+    if not parsed_clauses or len(parsed.steps) > 1:
         return False
     before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
-    if [word.text for word in parsed.words[:-1]] in (["the"], ["this"], ["that"]) and _same(before, now):
-        return True  # "turns, and stumbles after the turn"
-    if now.lower == "put_down" and len(parsed.steps) == 1 and _is_raised([one.steps[-1] for one in parsed_clauses]):
+    if now.lower == "put_down" and before.upper in ("raise", "arms_out"):
         return True
-    if len(parsed.steps) > 1 or before.upper:
+    if before.upper:
         return False
-    if (before.lower, now.lower) == ("stumble", "stumble") and _is_another(parsed_clauses[-1], parsed):
+    stumbles = before.lower == now.lower == "stumble"
+    if stumbles and now.direction and before.direction not in ("", now.direction):
         return False
-    if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
+    if stumbles and (now.direction or now.style) and not before.direction:
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
     again = before.lower in JUMPING and now.lower in JUMPING and parsed.link == "comma" and parsed.form == "ing"
-    described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
-    lifted = (before.lower, now.lower) == ("march", "raise_leg") and parsed.form == "ing"
-    return described or lifted or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
-
-
-def _is_another(before: ParsedClause, parsed: ParsedClause) -> bool:
-    """Whether a stumble is a second one: 'stumbles to the left, then stumbles to the right', 'is pushed again'."""
-    sides = {before.steps[-1].direction, parsed.steps[0].direction}
-    verbs = [{word.lemma for word in one.words if word.is_activity} for one in (before, parsed)]
-    return says_again(parsed) or (len(sides) == 2 and "" not in sides and bool(verbs[0] & verbs[1]))
-
-
-def _is_raised(steps: list[Step]) -> bool:
-    """Whether a hand that was raised is what is put down, nothing having been picked up since."""
-    last = next((step for step in reversed(steps) if step.lower != "stand" or step.upper), None)
-    return last is not None and last.upper in ("raise", "arms_out")
-
-
-def _same(one: Step, other: Step) -> bool:
-    return (one.lower, one.upper) == (other.lower, other.upper)
-
-
-def _check_turning_jumps(text: str, words: list[Word]) -> None:
-    lemmas = {word.lemma for word in words}
-    if {"jump", "turn"} <= lemmas and {word.text for word in words} & {"air", "during"}:
-        raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
+    lifted = before.lower == "march" and now.lower == "raise_leg" and parsed.form == "ing"
+    return stumbles or lifted or (before.lower, now.lower) == ("raise_leg", "put_down") or (again and not now.direction)
 
 
 def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:

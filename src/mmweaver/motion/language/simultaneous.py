@@ -5,13 +5,12 @@ import re
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.left_out import ROUGH
+from mmweaver.motion.language.activities import BY_KEY, words_in
+from mmweaver.motion.language.fallback_parsing import ROUGH
 from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import Step
-from mmweaver.motion.language.verbs import words_in
 
 # Hand activities that leave the other arm free, and those of them that the head goes with.
 ONE_ARMED = words_in(
@@ -29,7 +28,6 @@ _WALKS_ON = re.compile(
 )
 _PAUSING = ("pause", "stop", "halt")  # not meanwhile: "pauses and waves"
 _HELD = ("raise", "raise_hold", "hips", "arms_out", "phone")
-_TURNING_JUMPS = {(jump, "turn", "ing") for jump in ("jump", "leap", "hop")}
 # What goes on for as long as there is time, so that what "and" adds happens meanwhile.
 _GOING_ON = {"dance", "march", "hop", "twist"}
 _PLAYED = {"guitar", "violin"}
@@ -62,11 +60,6 @@ def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
             is_last = i + 1 == len(parsed_clauses)
             if steps and _reads_as_at_once(parsed_clauses[i - 1], parsed, is_last=is_last):  # "dances, jumping"
                 parsed.say_in_turn(steps[-1], first)
-            if steps and (steps[-1].lower, first.lower, parsed.form) in _TURNING_JUMPS and parsed.link == "comma":
-                parsed.lost.append("the turn in the air is shown after the jump")
-            low = bool(steps) and steps[-1].lower in ("crouch", "lean")
-            if low and first.moves and first.lower != "crawl" and parsed.link == "and":  # "ducks and steps aside"
-                parsed.lost.append(f"{first.name} is shown upright, after {steps[-1].name}")
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
             in_turn = form == "s" and steps[-1].moves  # "walks forward lifts the arms"
@@ -109,17 +102,15 @@ def _only_begins(before: Step, step: Step) -> bool:
 
 
 def _as_the_body_faces(before: Step, step: Step) -> Step:
-    """A turn back is as far as the turn before; who turns, opens a door or 'walks on', goes ahead."""
-    words = set(step.clause.split())
+    """Who turns, opens a door or 'walks on', goes ahead."""
     both_turn = before.lower == step.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
-    if both_turn and step.direction == "around" and "back" in words:
+    if both_turn and step.direction == "around" and "back" in step.clause.split():  # as far as the turn before
         return replace(step, direction=OPPOSITE.get(before.direction, ""), turn_deg=-before.turn_deg)
     if step.lower not in ("walk", "jog") or step.target or step.place or step.seat:
         return step
     aimless = not step.direction and not step.arc_deg
-    turned = (
-        before.lower == "turn" and not before.facing and (aimless or step.direction == "away") and not words & RADAR
-    )
+    turned = before.lower == "turn" and not before.facing and not RADAR & {*step.clause.split()}
+    turned &= aimless or step.direction == "away"
     onward = aimless and (before.upper == "open_door" or _WALKS_ON.search(step.clause) is not None)
     return replace(step, direction="forwards") if turned or onward else step
 
@@ -157,10 +148,6 @@ def _joined(one: Step, other: Step) -> list[Step]:
             return [one, other]
         bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
         return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
-    if {one.lower, other.lower} == {"turn", "stumble"}:
-        return [one, other]
-    if more.lower == "fall" and walk.moves:  # "falls while walking"
-        return [walk, more]
     return [overlay(one, other)]
 
 
@@ -176,7 +163,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
     one, other = before.steps[-1], parsed.steps[0]
     if parsed.link == "comma" and parsed.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
         return True
-    if parsed.link == "while" or _is_its_gait(before, parsed):
+    if parsed.link == "while":
         return True
     compatible = _can_overlay(one, other)
     if parsed.link == "and" and compatible and _is_meanwhile(one, other):
@@ -190,16 +177,6 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         paces = any(step.count and step.moves for step in (one, other))
         return compatible and before.form == parsed.form == "ing" and not paces
     return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
-
-
-def _is_its_gait(before: ParsedClause, parsed: ParsedClause) -> bool:
-    """Whether a limp or a stagger is how the walk before goes: 'walks, limping', 'has a limp and walks'."""
-    one, other = before.steps[-1], parsed.steps[0]
-    if parsed.link not in ("comma", "and") or one.upper or other.upper:
-        return False
-    uneven = ("limp", "stagger")
-    described = one.lower == "walk" and other.lower in uneven and parsed.form == "ing" and not other.direction
-    return described or (one.lower in uneven and other.lower == "walk" and one.clause.endswith("a limp"))
 
 
 def _is_meanwhile(one: Step, other: Step) -> bool:

@@ -10,10 +10,18 @@ from collections.abc import Iterable
 from functools import lru_cache
 from itertools import pairwise
 
-from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
-from mmweaver.motion.language.lexicon import ALL_WORDS, GOING, IRREGULAR, LIGHT
-from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.lexicon import (
+    ALL_WORDS,
+    GOING,
+    IRREGULAR,
+    LIGHT,
+    MORE_WORDS,
+    OTHER_VERBS,
+    OTHER_WORDS,
+    RECOVERING,
+)
+from mmweaver.motion.language.rewrite_rules import words_of_phrases
 
 LONG = 6  # letters; shorter words have too many neighbours
 SHORTEST = 4
@@ -21,44 +29,6 @@ SHORTEST = 4
 UNSPEAKABLE = re.compile(
     r"[^aeiouy]+$|(?!b[lr]|c[hlr]|d[rw]|f[lr]|g[hlnr]|k[lnr]|p[hlrs]|rh|s[chklmnpqtvw]|t[hrsw]|w[hr])[^aeiouy]{2}"
 )
-# Correct English words one edit away from words of the lexicon.
-OTHER_WORDS = words_in(
-    """
-    shovel shovels shoveling shovelling jagged swagger swaggers
-    sagging staging slapping clasping swaying strokes singing clasps shaved
-    showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
-    stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
-    falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
-    tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
-    painting printing bending sending lending mending
-    angel baht beta booth clam clasp clod dose east fits garb garbs hoops juts leis lien lisp posse quiet resp spied
-    spies steep sties tinny tort torts tried weer wheen writs rial maths paris moore donne angels boyd salas
-    """
-)
-# Other verbs: their inflected forms are no misspellings of words of the lexicon.
-OTHER_VERBS = words_in(
-    """
-    talk cook wash watch wish work warn warm weep whip shout shine shave shoot shop show sing sink slip slap sleep
-    slide smell smile smoke sneeze sniff snore spit split spread squeeze steal sting strike string strip study
-    swear sweep swim swing switch teach tear tell think tickle tie tighten tremble twist unpack vacuum visit wake
-    want wear win wind wink worry yawn yell hide hit hug hurt hum hunt iron join juggle knit laugh lead learn
-    leave lick light listen live load lock look lose love melt mend mix mop mow nail open order pack paint park
-    pass paste pay peel pet pick plan plant play pour pray press print pump punish race rake reply rest ride ring
-    roll row rub sail sew shake sharpen bake bathe beat beg bite blow brake break breathe build burn bury buy call
-    camp care carve catch change charge chase chat check chew chop climb close coach collect cough count cover
-    crash crawl creep cry curl cut dig dive draw dream dress drill drive drop drum dry escape exercise explode
-    fail fan fasten feed fight fill film find fix flap float fly follow fry gather gaze glue grin grip groan guess
-    joke fake spike smack mark sin lump trap map clip pat swat rot band sand bind wade fade thread pave rave starve
-    graze lace lance sow saw claw paw lunch pinch match cull heal seal retch cope slope drape skim heap reap beep drawl
-    list waste ease gasp skate
-    handle hang wave wag speak stare store stir star strain train trim tap tape taste trade
-    """
-)
-_MORE = (
-    "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
-    " teenage teenaged gigantic adolescent infant dwarf"
-)
-_WORD = re.compile(r"[a-z]+")
 
 
 def correct_spelling(text: str) -> tuple[str, list[str]]:
@@ -120,25 +90,19 @@ def _one_edit_apart(one: str, other: str) -> bool:
 @lru_cache(maxsize=1)
 def _known() -> frozenset[str]:
     """Every word that the parser knows in some form."""
-    return _whole_words() | frozenset(word for word in _of_patterns() if word.isalpha() and word.islower())
+    return _whole_words() | frozenset(word for word in words_of_phrases() if word.isalpha() and word.islower())
 
 
 @lru_cache(maxsize=1)
 def _whole_words() -> frozenset[str]:
     """The known words without the stems of patterns."""
-    known = _movements() | _forms(LIGHT) | ALL_WORDS | RECOVERING | words_in(_MORE)
+    known = _movements() | _forms(LIGHT) | ALL_WORDS | RECOVERING | MORE_WORDS
     return frozenset(word for word in known if word.isalpha() and word.islower())
 
 
 @lru_cache(maxsize=1)
 def _movements() -> frozenset[str]:
     return _forms({*ACTIVITY_OF_LEMMA, *GOING}) | set(IRREGULAR)
-
-
-def _of_patterns() -> set[str]:
-    """The words, and stems of words, that patterns of phrases are made of."""
-    patterns = " ".join(pattern for pattern, _ in (*GESTURE_PHRASES, *ACTIVITY_PHRASES))
-    return set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", patterns)))
 
 
 def _forms(verbs: Iterable[str]) -> frozenset[str]:
@@ -155,7 +119,7 @@ def _forms(verbs: Iterable[str]) -> frozenset[str]:
 
 @lru_cache(maxsize=1)
 def _other_forms() -> frozenset[str]:
-    return _forms({*OTHER_VERBS, *(word for word in _of_patterns() if len(word) > 2)})
+    return _forms({*OTHER_VERBS, *(word for word in words_of_phrases() if len(word) > 2)})
 
 
 def forget_known_words() -> None:

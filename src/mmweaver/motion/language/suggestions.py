@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import BY_KEY, PARAPHRASES, words_in
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import (
     ARMS,
@@ -21,24 +21,11 @@ from mmweaver.motion.language.lexicon import (
     SPEEDS,
     TARGETS,
 )
-from mmweaver.motion.language.paraphrases import PARAPHRASES
 from mmweaver.motion.language.words import word_of
 
 NEAR = 0.6  # least similarity for a suggestion
-ON_HANDS = frozenset(  # movements over the hands or through the air, of which none is known
-    [
-        "handstand",
-        "handstands",
-        "headstand",
-        "headstands",
-        "cartwheel",
-        "cartwheels",
-        "flip",
-        "backflip",
-        "backflips",
-        "handspring",
-    ]
-)
+# Movements over the hands or through the air, of which none is known.
+ON_HANDS = words_in("handstand handstands headstand headstands cartwheel cartwheels flip backflip backflips handspring")
 _EMPTY = PRONOUNS | PEOPLE | FILLERS  # words that name no movement
 _KNOWN = frozenset().union(
     _EMPTY, ARMS, DIRECTIONS, MANNERS, NUMBERS, OWN, RADAR, SEATS, SIZES, SPEEDS, TARGETS

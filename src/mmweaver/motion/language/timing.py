@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.named_counts import PACES
-from mmweaver.motion.language.named_steps import with_what_is_shown
 from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
-from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.step_names import PACES, with_what_is_shown
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
@@ -31,7 +30,7 @@ def plan_motion(text: str, duration_s: float | None = None) -> MotionPlan:
     >>> [(step.name, round(step.start_s, 2), round(step.end_s, 2)) for step in plan.steps]
     [('bowing', 0.0, 2.2), ('waving', 2.2, 4.0)]
     """
-    plan = parse(text, in_part=True)
+    plan = parse_sentence(text, in_part=True)
     if duration_s is None:
         return schedule(plan, natural_s(plan))
     return schedule(repeated(plan, duration_s), duration_s)

@@ -4,15 +4,13 @@ from dataclasses import replace
 from itertools import pairwise, takewhile
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, BY_KEY, words_in
 from mmweaver.motion.language.described_person import PERSON_NOUNS
-from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
+from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, LEGS, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
 from mmweaver.motion.language.plan import HOPPING, Step
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, words_in
 from mmweaver.motion.language.words import Word
 
-LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
 SIDES = {"left": 1.0, "right": -1.0}
@@ -123,8 +121,6 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down"):
         step = replace(step, hand="")
-    if step.upper in ("drink", "eat", "phone") and step.hand == "both":
-        step = replace(step, hand="")
     return step
 
 
@@ -149,8 +145,6 @@ def _in_place(step: Step, words: list[Word]) -> Step:
     if step.upper in AIMED:
         facing = step.facing or (step.direction if step.direction in SIDES else "")
         facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
-        if step.upper == "point" and {"up", "upwards", "down", "behind", "backwards"} & {w.text for w in words}:
-            raise InputError(f"{step.clause!r}: pointing is known to the left, to the right and ahead only")
     if not facing and step.upper and {w.text for w in words} & RADAR and {w.text for w in words} & _TOWARDS:
         facing = "towards"  # "pushes a hand towards the radar"
     kept = step.upper == "arms_out" and step.direction == "forwards"
@@ -163,11 +157,7 @@ def _in_place(step: Step, words: list[Word]) -> Step:
 
 
 def _going_step(step: Step, words: list[Word], at: int) -> Step:
-    lemmas, texts = {word.lemma for word in words}, {word.text for word in words}
-    direction = step.direction
-    for verb, implied in (("approach", "towards"), ("retreat", "away"), ("advance", "forwards")):
-        if not direction and verb in lemmas:
-            direction = implied
+    texts, direction = {word.text for word in words}, step.direction
     if not direction and texts & RADAR and "to" in texts:
         direction = "towards"
     if direction == "around":
@@ -222,16 +212,12 @@ def target_of(words: list[Word]) -> str:
 
 def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     word, texts = words[at], {other.text for other in words}
-    if step.facing:
-        return replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
-    facing = "towards" if texts & RADAR and step.direction != "away" else ""
-    if step.direction == "backwards" and word.lemma == "face":
-        return replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
-    if step.direction == "away" or word.lemma == "face":
-        facing = facing or step.direction.removeprefix("forwards") or "towards"
-        return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
-    if facing:
-        return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
+    aimless = replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
+    facing = step.facing or ("towards" if texts & RADAR and step.direction != "away" else "")
+    if not facing and (step.direction == "away" or word.lemma == "face"):
+        facing = "" if step.direction == "backwards" else step.direction.removeprefix("forwards") or "towards"
+    if facing or word.lemma == "face":
+        return replace(aimless, facing=facing)
     angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == "circle" or word.lemma == "spin" else 0.0)
     side, times = SIDES.get(step.direction, 0.0), step.count if texts & {*TIMES, "times", "turns"} else 0
     step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
@@ -252,20 +238,16 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
 def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
     """On the spot, somewhere, or on one leg."""
     texts = {word.text for word in words}
-    on_one_leg = bool(texts & ON_ONE_LEG)
-    if step.direction == "circle" and (on_one_leg or step.lower == "hop"):
-        return replace(step, lower="hop_one_leg" if on_one_leg else "hop")
+    if step.direction == "circle" and step.lower == "hop":
+        return step
     if step.turn_deg or step.arc_deg or step.direction in ("circle", "around", "pacing"):
         raise InputError(f"{step.clause!r}: jumping with a turn is not known; say 'jumps, then turns'")
-    if on_one_leg:
-        direction = "" if step.direction == "spot" else step.direction
-        if direction and step.direction not in _HOPPED:
-            raise InputError(f"{step.clause!r}: that way of hopping on one leg is not known; say another direction")
+    direction = {"spot": "", "back": "backwards"}.get(step.direction, step.direction)
+    if texts & ON_ONE_LEG:
+        direction = direction if direction in _HOPPED else ""
         return replace(step, lower="hop_one_leg", direction=direction, facing="" if direction else facing_of(words))
-    if "sideways" in texts and step.direction in ("", "spot"):
-        return replace(step, lower="leap", direction="right")
-    if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):
-        direction = "backwards" if step.direction == "back" else step.direction
+    direction = "right" if "sideways" in texts and not direction else direction
+    if direction in (*_HOPPED, "backwards"):
         return replace(step, lower="leap", direction=direction)
     return replace(step, direction="", facing=facing_of(words))
 

@@ -1,14 +1,14 @@
 """Tokenization: phrases become one token, inflected verbs get their lemma."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.described_person import without_stature
-from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
+from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT
 from mmweaver.motion.language.places import mark_places
-from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.rewrite_rules import rewritten
 
 _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
@@ -37,31 +37,8 @@ class Word:
 def words_of(text: str) -> list[Word]:
     """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
-    folded = mark_places(without_stature(folded))
-    for pattern, replacement in _phrases():
-        folded = " ".join(re.sub(pattern, replacement, folded).split())
+    folded = rewritten(mark_places(without_stature(folded)), "phrases")
     return [word_of(token) for token in _TOKEN.findall(folded)]
-
-
-@lru_cache(maxsize=1)
-def _phrases() -> list[tuple[str, str | Callable[[re.Match[str]], str]]]:
-    """Patterns and replacements; the token of a hand activity ends in "ing" where the first word did."""
-    return [(pattern, _as_participle(replacement) or replacement) for pattern, replacement in PHRASES]
-
-
-def _as_participle(replacement: str | Callable[[re.Match[str]], str]) -> Callable[[re.Match[str]], str] | None:
-    if not isinstance(replacement, str):
-        return None
-    token = next(iter(replacement.split()), "")
-    lower, upper = ACTIVITY_OF_LEMMA.get(token, ("", ""))
-    if lower or not upper:
-        return None
-
-    def replaced(found: re.Match[str]) -> str:
-        words = found.expand(replacement)
-        return words.replace(token, f"{token}ing", 1) if re.match(r"[a-z]+ing\b", found[0]) else words
-
-    return replaced
 
 
 @lru_cache(maxsize=4096)

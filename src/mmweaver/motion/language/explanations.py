@@ -1,0 +1,206 @@
+"""The record of every clause: what of it no step shows, and what it is shown as, in the sentence's own words."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from mmweaver.motion.language.alignment import given_words
+from mmweaver.motion.language.described_person import without_stature
+from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
+from mmweaver.motion.language.parsed_clause import ParsedClause
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.step_names import steps_of_each, with_what_is_shown
+from mmweaver.motion.language.token_coverage import not_covered
+from mmweaver.motion.language.words import word_of
+
+_LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
+_NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
+_SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
+_ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
+_STEM = 4
+_ALIKE = {  # one limb either way; a knee is not kneeling
+    "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
+}  # fmt: skip
+
+
+def saying_what_is_shown(
+    records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool
+) -> list[ClauseRecord]:
+    """The records with what each is shown as, done or not, where its words do not say just that.
+
+    Of a sentence that is read `roughly` no clause is done whose words do not say what is shown.
+    """
+    of_each = steps_of_each(len(records), steps)
+    records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
+    said: list[ClauseRecord] = []
+    for number, (record, own) in enumerate(zip(records, of_each, strict=True)):
+        if record.status == NOT_DONE or not record.shown:
+            said.append(record)
+            continue
+        goes_on = number > 0 and _goes_on(record, own, said[-1], of_each[number - 1])
+        shown, is_plain = record.shown.removeprefix("then "), _says(record, own)
+        is_same = bool(said) and said[-1].shown.removeprefix("then ") == shown
+        briefly = "the same movement" if is_same and "is shown as" in said[-1].how else shown
+        whole = [] if is_plain and not goes_on else [f"is shown as {briefly}"]
+        hows = [how for how in record.how.split("; ") if how]
+        if "stagger" not in shown:  # of "like a zombie", whatever else the clause says
+            hows = [
+                how.replace("an unsteady gait is shown as staggering", "the unsteady gait is not shown") for how in hows
+            ]
+        more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
+        hows = _without_repeats([*whole, *more] or hows)
+        otherwise = (goes_on and _is_another(said[-1])) or (roughly and not is_plain)
+        status = APPROXIMATED if otherwise else record.status
+        said.append(replace(record, status=status, how="; ".join(hows)))
+    return said
+
+
+def _goes_on(record: ClauseRecord, own: Sequence[Step], before: ClauseRecord, steps: Sequence[Step]) -> bool:
+    """Whether a clause only says with which limb or which way the movement goes on whose record says what is shown."""
+    words = _stems(record.clause) - _NO_WORDS
+    same = {(step.lower, step.upper) for step in own} & {(step.lower, step.upper) for step in steps}
+    return "is shown as" in before.how and bool(words and same) and words <= _OF_NUMBERS | _OF_SIDES
+
+
+def _is_another(record: ClauseRecord) -> bool:
+    """Whether a movement is shown as another one, no word for it being the same: "scratches", "waving"."""
+    alike = _stems(record.clause) & _stems(record.shown)
+    return record.status == APPROXIMATED and alike <= _NO_WORDS | _OF_NUMBERS | _OF_SIDES
+
+
+def _of_a_part(record: ClauseRecord) -> ClauseRecord:
+    """The record of a clause that has steps; of one that is not done, a part is that patterns have made a clause of."""
+    if record.status != NOT_DONE:
+        return record
+    hows = ["a part of it is not done" if how.startswith("no activity") else how for how in record.how.split("; ")]
+    return replace(record, status=APPROXIMATED, how="; ".join(hows))
+
+
+def _is_within(how: str, shown: str) -> bool:
+    """Whether a reason is only what something is shown as, and that is what is shown."""
+    found = _SHOWN_AS.fullmatch(how)
+    if found is None:
+        return False
+    generally = not found["what"] or ("'" not in how and _stems(found["how"]) - _NO_WORDS <= _stems(shown))
+    return generally or found["how"] == shown
+
+
+def _without_repeats(hows: list[str]) -> list[str]:
+    """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
+    lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
+    others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
+    said = _stems(" ".join(others))
+    kept = [
+        words
+        for words in dict.fromkeys(lost)
+        if not any(words != more and f" {words} " in f" {more} " for more in lost) and not _stems(words) <= said
+    ]
+    generally = [found[1] for how in others if (found := _NOT_SHOWN.fullmatch(how))]
+    listed = [*generally, *map(repr, kept)]
+    all_lost = " and ".join([", ".join(listed[:-1]), listed[-1]] if len(listed) > 1 else listed)
+    others = [how for how in others if not _NOT_SHOWN.fullmatch(how)]
+    return [*others, *([f"{all_lost} {'is' if len(listed) == 1 else 'are'} not shown"] if listed else [])]
+
+
+def _stems(text: str) -> set[str]:
+    lemmas = [word_of(word).lemma for word in re.findall("[a-z0-9]+", text.lower())]
+    return {_ALIKE.get(lemma, lemma)[:_STEM] for lemma in lemmas}
+
+
+def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
+    """Whether the words of a clause and what it is shown as say the same: 'she kneels down', 'kneeling down'.
+
+    Sides, ways, counts and postures are compared both ways; one movement has no order. The words for a seat or a
+    landmark are free.
+    """
+    said, seen = _stems(record.clause) - _NO_WORDS, _stems(record.shown)
+    if not said:
+        return True
+    kept = {word for word, kind in TARGETS.items() if any(kind in _where(step) for step in own)}
+    kept |= {word for word in SEATS if any(step.seat == word for step in own)}
+    if len(own) != 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
+        return False
+    numbers, counts = _numbers(record.clause), _numbers(record.shown)
+    return numbers <= counts and counts - {1.0, 90.0} <= numbers  # "once", "one hand", a turn to a side
+
+
+def _numbers(text: str) -> set[float]:
+    """The numbers of a text, in words or digits."""
+    words = re.findall(r"[a-z]+|\d+(?:\.\d+)?", text.lower())
+    values = [NUMBERS.get(word) if word.isalpha() else float(word) for word in words]
+    return {float(value) for value in values if value is not None}
+
+
+def _where(step: Step) -> tuple[str, ...]:
+    """The Landmark.kinds that a step goes to, is done at or faces."""
+    return step.target, step.facing, *(() if step.place is None else step.place.words.split())
+
+
+_NO_WORDS = _stems(
+    " ".join((*PRONOUNS, "a an the person man woman child boy girl is are his her their to at for on does do still"))
+)
+_OF_NUMBERS = _stems(" ".join((*NUMBERS, *TIMES, "times seconds")))
+_OF_SIDES = _stems("left right both other side one hand arm leg foot with again forward back backwards and then")
+_TELLING = _stems(
+    "left right both backwards towards away circle slowly quickly knee belly sitting lying kneeling overhead lowering"
+)
+
+
+_WORSE = (DONE, APPROXIMATED, NOT_DONE)
+
+
+def note_what_is_not_shown(
+    given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
+) -> None:
+    """Records what of each clause its steps do not show: what parsing has found, then each word without a field."""
+    parts = [part for step in steps for part in step.each]
+    lost = [(parsed.number, how) for parsed in every_clause for how in parsed.lost]
+    approximated = {parsed.number for parsed in every_clause if parsed.approximations}
+    lost += not_covered(without_stature(given_text.lower()), parts, records, approximated)
+    for number, how in lost:
+        quoted = how.split("'")[1:2]
+        is_reported = how in records[number].how or any(
+            quoted and quoted[0] in record.how for record in records.values()
+        )
+        if records[number].status != NOT_DONE and not is_reported:
+            records[number] = records[number].lowered_to(APPROXIMATED, how)
+
+
+def in_the_given_words(
+    given_text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], *, roughly: bool
+) -> tuple[list[Step], list[ClauseRecord], list[str]]:
+    """Steps and records with the clauses as they were given, in the sentence's order, and a note for each not done so.
+
+    A record says all that its clause is shown as, unless the words say just that; notes are of clauses that are not
+    done. A clause that patterns have added counts with the one before.
+    """
+    own_words = given_words(given_text, records)
+    given = [number for number in sorted(records) if own_words[number]] or [min(records)]
+    of_given = {number: max((one for one in given if one <= number), default=given[0]) for number in records}
+    clauses = []
+    for number in given:
+        parts = [record for other, record in sorted(records.items()) if of_given[other] == number]
+        words, status = own_words[number] or given_text.strip(), max((part.status for part in parts), key=_WORSE.index)
+        hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
+        clauses.append(ClauseRecord(words, status, "; ".join(hows)))
+    index = {number: given.index(of_given[number]) for number in records}
+    steps = [_in_own_words(step, index, clauses) for step in steps]
+    clauses = saying_what_is_shown(with_what_is_shown(clauses, steps), steps, roughly=roughly)
+    return steps, clauses, [record.sentence for record in clauses if record.status != DONE]
+
+
+def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
+    numbers = tuple(dict.fromkeys(index[number] for number in step.clauses))
+    words = ", ".join(clauses[number].clause for number in numbers) or step.clause
+    other_hand = None if step.other_hand is None else _in_own_words(step.other_hand, index, clauses)
+    return replace(step, clauses=numbers, clause=words, other_hand=other_hand)
+
+
+def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
+    """A message that quotes clauses as they were taken, with the sentence's own words instead."""
+    if not clauses:
+        return message
+    own_words = given_words(given_text, {number: ClauseRecord(text) for number, text in clauses.items()})
+    for number, text in clauses.items():
+        message = message.replace(repr(text), repr(own_words[number] or given_text.strip()))
+    return message

@@ -1,0 +1,138 @@
+"""What steps show is said wholly: as long as the body does it with the limb, the way and the count that are said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.motion.animation.library.activity_registry import perform
+from mmweaver.motion.animation.root_path import RootPath
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.places import Place
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.step_names import doing, in_turn, steps_of_each, with_what_is_shown
+from mmweaver.motion.language.timing import plan_motion
+
+WALK, WAVE = Step(lower="walk"), Step(upper="wave")
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        (Step(lower="walk", direction="backwards", count=3, speed=-1), "walking three steps backwards slowly"),
+        (Step(lower="walk", direction="left"), "walking to the left in the photo"),
+        (Step(lower="walk", direction="back"), "walking back the way it came"),
+        (Step(lower="walk", direction="circle", arc_deg=-720.0), "walking in a circle clockwise, twice round"),
+        (Step(lower="walk", arc_deg=90.0, style="either"), "walking in an arc of 90 degrees"),
+        (Step(lower="walk", target="door", distance_m=2.0), "walking 2 m to the door"),
+        (Step(lower="walk", foot="left", count=1), "walking one step"),  # no foot begins it
+        (Step(lower="walk", upper="wave", count=2), "walking while waving with one hand twice"),
+        (Step(lower="jog", style="jog", direction="spot"), "jogging on the spot"),
+        (Step(lower="jog"), "running"),
+        (Step(lower="turn", direction="left"), "turning 90 degrees to the person's left"),
+        (Step(lower="turn", turn_deg=-45.0), "turning 45 degrees to the person's right"),
+        (Step(lower="turn", facing="window"), "turning to face the window"),
+        (Step(lower="fall", style="left"), "falling on the person's left side"),
+        (Step(lower="lie", style="front"), "lying on the belly"),
+        (Step(lower="kneel_down", style="knee", foot="left"), "kneeling down on the left knee"),
+        (Step(lower="sit", seat="sofa", upper="clap"), "sitting on the sofa while clapping repeatedly"),
+        (Step(lower="lunge"), "lunging ahead with one leg once"),
+        (Step(lower="lunge", count=2), "lunging ahead with each leg in turn twice"),
+        (Step(lower="squat", style="several"), "squatting twice or more"),
+        (Step(lower="jump"), "jumping once or more"),
+        (Step(lower="bend", style="held", seconds=3.0), "bending down and staying down for 3 s"),
+        (Step(upper="raise", hand="left", count=12), "raising the left hand overhead and lowering it 12 times"),
+        (Step(upper="raise_hold", hand="both"), "lifting both arms overhead and keeping them up"),
+        (Step(lower="lean", direction="left", upper="raise_hold", hand="both"),
+         "leaning to the person's left once while holding both arms up overhead"),
+        (Step(lower="kneel_up", style="knee", foot="left"), "standing up from the left knee"),
+        (Step(upper="arms_out", hand="right", direction="forwards"), "holding the right arm out ahead"),
+        (Step(upper="point", facing="left"), "pointing to the left in the photo with one hand once"),
+        (Step(upper="wave", facing="towards"), "waving with one hand repeatedly, facing the radar"),
+        (Step(upper="clap", place=Place("near", "window")), "clapping repeatedly, near the window"),
+        (
+            Step(upper="drink", hand="left", other_hand=Step(upper="wave", hand="right", count=1)),
+            "drinking with the left hand once or more while waving with the right hand once",
+        ),
+    ],
+)  # fmt: skip
+def test_all_that_a_step_shows_is_said(step: Step, words: str) -> None:
+    assert doing(step) == words
+
+
+def test_order_and_repetitions_of_several_steps() -> None:
+    assert in_turn([WALK, WAVE]) == "walking, then waving with one hand repeatedly"
+    assert in_turn([WALK, WAVE] * 2) == "walking, then waving with one hand repeatedly, all of this twice"
+    assert in_turn([WALK] * 2) == "walking, twice in a row"
+    assert in_turn([WALK, WALK, WAVE]) == "walking, and again, then waving with one hand repeatedly"
+
+
+def test_a_step_that_no_clause_names_counts_with_the_next_one() -> None:
+    rises = Step(lower="stand_up")
+    steps = [replace(WALK, clauses=(0,)), rises, replace(WAVE, clauses=(1, 2))]
+    assert steps_of_each(4, steps) == [steps[:1], steps[1:], steps[2:], []]
+
+
+def test_a_clause_that_shares_its_step_shows_that_and_one_that_is_not_done_nothing() -> None:
+    lost, shared = ClauseRecord("waves", NOT_DONE, "no activity in it is known"), ClauseRecord("at a walk")
+    records = with_what_is_shown([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
+    assert [record.shown for record in records] == ["walking", "walking", ""]
+
+
+def _acted(step: Step) -> np.ndarray:
+    """Angles of both arms (n, 2, 4) in radians of a step of three seconds on the spot."""
+    time_s = np.arange(0.0, 3.0, 1 / 30)
+    context = StepContext(
+        time_s=time_s, step=replace(step, end_s=3.0), body=SkeletonProportions(1.75),
+        path=RootPath(start_m=(0.0, 3.0), heading_rad=-0.5 * np.pi), rng=np.random.default_rng(0),
+    )  # fmt: skip
+    return perform(context).arm_rad
+
+
+@pytest.mark.parametrize("hand", ["left", "right", "both"])
+def test_the_hands_that_are_said_are_those_that_move(hand: str) -> None:
+    for key in ("wave", "raise", "reach", "point", "comb", "wipe", "swipe", "draw_circle", "arms_out", "hips", "push"):
+        step = Step(upper=key, hand=hand)
+        still = _acted(replace(step, upper=""))
+        moved = np.abs(_acted(step) - still).max(axis=(0, 2)) > 0.25
+        words = doing(step)
+        both = any(part in words for part in (" both ", "the arms ", "the hands "))
+        said = [both or f"the {side} " in words for side in ("left", "right")]
+        assert list(moved) == said, words
+
+
+def test_what_is_cut_is_not_said_to_be_shown() -> None:
+    records = plan_motion("a person waves ten times, then bows", duration_s=3.0).clauses
+    assert records[0].shown == "waving with one hand six times"
+    assert records[1].shown == ""
+    (waves,) = plan_motion("a person waves ten times politely", duration_s=2.0).clauses
+    assert waves.how.startswith(f"is shown as {waves.shown}; 'politely' is not shown")
+
+
+def test_every_activity_has_words() -> None:
+    for key, activity in BY_KEY.items():
+        words = doing(Step(upper=key) if activity.hands else Step(lower=key))
+        assert words
+        assert "{" not in words
+        assert "  " not in words
+
+
+def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> None:
+    there, on, back = (replace(WALK, direction=way) for way in ("left", "right", "back"))
+    steps = [replace(there, clauses=(0,)), replace(on, clauses=(0, 1)), replace(back, clauses=(0, 1, 2))]
+    assert steps_of_each(3, steps) == [[steps[0]], [steps[1]], [steps[2]]]
+    waves = [Step(seconds=0.5, clauses=(0,)), replace(WAVE, clauses=(0, 1))]
+    assert steps_of_each(2, waves) == [waves, waves[1:]]
+    stops = Step(clauses=(1,))
+    again = [replace(WALK, clauses=(0,)), stops, replace(WALK, clauses=(0, 2)), replace(stops, clauses=(1, 2))]
+    assert steps_of_each(3, again) == [again[:1], again[1:2], again[2:]]
+    twice = [replace(WALK, clauses=numbers) for numbers in ((0,), (0, 1), (0, 2), (0, 1, 2), (0, 2), (0, 1, 2))]
+    assert steps_of_each(3, twice) == [twice[:1], twice[1:2], twice[2:]]
+
+
+def test_steps_with_others_between_them_are_not_in_a_row() -> None:
+    walks, bows = replace(WALK, clauses=(0,)), Step(lower="bow", clauses=(1,))
+    records = with_what_is_shown([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
+    assert [record.shown for record in records] == ["walking, later walking", "then bowing once"]
