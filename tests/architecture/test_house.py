@@ -23,7 +23,7 @@ VAGUE = {"utils", "util", "helpers", "misc", "common", "base"}
 
 def test_every_test_file_mirrors_a_source_file():
     """tests/dsp/test_cfar.py stands for src/mmweaver/dsp/cfar.py, tests/studies/x for studies/x."""
-    without_source = {"physics", "architecture", "real", "faults", "golden", "browser", "fuzz"}
+    without_source = {"physics", "architecture", "real", "faults", "golden", "browser", "fuzz", "advice"}
     for test in sorted((ROOT / "tests").rglob("test_*.py")):
         place = test.relative_to(ROOT / "tests")
         if place.parts[0] in without_source:
