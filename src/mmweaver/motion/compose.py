@@ -87,7 +87,7 @@ def compose(
         is_varied: False keeps people who stand facing the radar, where it sees them best, and gives them no habits.
         person: instead of the two, a person made otherwise.
         farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
-        others: people who are already in the scene; the trajectory keeps clear of them (see `multi_person`).
+        others: people who are in the scene already; the trajectory keeps clear of them (see `multi_person`).
         has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
             walk leads where there is room, and an assumption says so.
         after: how the motion before ended, which this one goes on from (see `continuous`).
@@ -98,11 +98,8 @@ def compose(
     """
     if plan.duration_s <= 0:
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
-    if not has_photo:
-        plan = without_targets(plan)
-    plan = settled(plan)
-    if person is None:
-        person = person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
+    plan = settled(plan if has_photo else without_targets(plan))
+    person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
     plan = with_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
@@ -132,9 +129,8 @@ def compose(
     plan, best, room_notes = with_more_room(
         plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m, farthest_m=farthest_m
     )
-    described = (person.note,) if person.described else ()
-    notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
-    placed = best.placement
+    placed, described = best.placement, (person.note,) if person.described else ()
+    notes = plan.notes + described + running_notes + room_notes + placed.assumptions + best.notes
     return Motion(
         pose=best.pose, plan=plan, assumptions=notes, person=person, end=placed.end_state(plan, body),
         controls=controls[id(placed)], chair=placed.chair,
