@@ -333,13 +333,6 @@ def test_exercises_on_the_belly_are_reached_and_left_on_the_belly():
     ]  # fmt: skip
 
 
-def test_paces_of_a_sideways_walk_are_sideways():
-    steps = parse("a man walks sideways like a crab, four steps to the left, four steps back").steps
-    assert [(step.lower, step.direction, step.count) for step in steps] == [
-        ("sidestep", "left", 4), ("sidestep", "right", 4),
-    ]  # fmt: skip
-
-
 def test_somebody_who_is_spoken_to_does_it():
     assert parse("shake your head").steps[0].upper == "shake_head"
     assert parse("raise your left hand").steps[0].hand == "left"

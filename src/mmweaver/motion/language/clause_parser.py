@@ -28,7 +28,6 @@ from mmweaver.motion.language.lexicon import (
     NUMBERS,
     OTHER_MOVEMENT,
     OWN,
-    PRONOUNS,
     RADAR,
     SEATS,
     STEPPING,
@@ -172,8 +171,6 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
         return bool(texts & {"step", "steps", "times", "meters", "metres", "m", "second", "seconds"})
     if word.text in ("floor", "ground"):
         return bool(lemmas & FLOOR_VERBS) or not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
-    if word.text == "ball":
-        return bool(lemmas & {"throw", "toss", "hurl", "lob", "kick", "pick_up", "put_down", "carry"})
     return word.text == "against" and "pushed" in lemmas
 
 
@@ -199,8 +196,6 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
         ):
             continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
-        if word.lemma == "throw" and any(other.lemma in ("kick", "punch", "jab") for other in words[i + 1 : i + 5]):
-            continue  # "throws two front kicks"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
         goes_somewhere = is_placed or bool(texts & {*DIRECTIONS, *RADAR, *SEATS, *TARGETS})
@@ -255,8 +250,6 @@ def _is_plain_noun(word: Word, before: str, *, after_a_verb: bool) -> bool:
     owned = before in ("a", "the", "his", "her", "their", "my")
     if word.form == "base" and word.lemma == "point":
         return after_a_verb or before in ("a", "the", "starting", "same", "specific")
-    if word.text == "type":
-        return before not in ("to", "and", "then", *PRONOUNS, "", "people")
     return (
         (word.lemma == "seat" and word.form != "past")
         or (owned and word.lemma in ("phone", "text", "comb"))

@@ -97,8 +97,6 @@ def _stronger(one: str, other: str) -> str:
         other = "after" if one == "first" else "then"
     if one == "first":
         return f"lead-{other}"
-    if one.startswith("lead-"):
-        return one
     return max(one, other, key=lambda link: _STRENGTH[link])
 
 

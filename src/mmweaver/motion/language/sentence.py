@@ -23,7 +23,6 @@ from mmweaver.motion.language.fallback_parsing import (
     read_roughly,
     says_more_of,
 )
-from mmweaver.motion.language.gait_merging import at_one_gait, sideways_throughout, with_shared_speeds
 from mmweaver.motion.language.lexicon import ARMS, NUMBERS, RECOVERING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
@@ -132,10 +131,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = with_shared_speeds(
-        at_one_gait(in_sequence(parsed_clauses, leaving), given_text), every_clause, given_text
-    )
-    steps = carried_over(with_postures(going_on(sideways_throughout(sequence))))
+    sequence = in_sequence(parsed_clauses, leaving)
+    steps = carried_over(with_postures(going_on(sequence)))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
@@ -251,8 +248,6 @@ def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
     if last.count and last.lower in ("walk", "sidestep") and not parsed.about.count:
         number = next((NUMBERS[word.text] for word in parsed.words if word.text in NUMBERS), 0)
         parsed.about = replace(parsed.about, count=number)
-    if last.lower == "sidestep" and not last.direction and parsed.about.direction in ("back", "backwards"):
-        before.steps[-1] = replace(last, direction="right")
 
 
 def _another_step(last: Step, parsed: ParsedClause) -> Step | None:

@@ -163,7 +163,8 @@ def _side(token: _Token) -> str:
     side = _SIDE.fullmatch(token.text)
     if side is None or _LIMBS & {*token.after(2)}:
         return ""
-    return "" if any(_goes(step, side[1]) for step in token.own) else "the side is not shown"
+    is_shown = any(_goes_aside(step) or {side[1], "both"} & {step.hand, step.foot} for step in token.own)
+    return "" if is_shown else "the side is not shown"
 
 
 def _goes(step: Step, way: str) -> bool:
