@@ -77,43 +77,6 @@ def test_noise_is_kept_on_request(tmp_path: Path):
     assert left[1] < left[0] - 1
 
 
-def test_files_of_version_1_are_still_read():
-    """Written by the release that made that version."""
-    path = Path(__file__).parents[1] / "golden" / "version_1.mmw"
-    assert path.read_bytes()[4] == 1
-    assert error_db(read_cube(path).values, crowd().values) < -10
-    assert describe_mmw(path)["chunks"][0]["scatterers"] > 10
-
-
-@pytest.mark.parametrize(
-    ("version", "transform", "errors_db"),
-    [
-        (
-            3,
-            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins",
-            [-38.74, -22.65, -38.80, -49.50],
-        ),
-        (
-            4,
-            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins, DCT of ranges",
-            [-43.24, -18.98, -43.3, -43.31],
-        ),
-    ],
-)
-def test_files_of_older_versions_are_still_read(version: int, transform: str, errors_db: list[float]):
-    """Written by the last commit that made that version: four ways to code the same three frames."""
-    path = Path(__file__).parents[1] / "golden" / f"version_{version}.mmw"
-    facts = describe_mmw(path)
-    with_rank, alone = transform.split("|")
-    modes = ["scatterers + beams, DCT of static bins", f"low rank + {with_rank}"]
-    modes += ["scatterers + noise + beams, DCT of static bins", alone]
-    assert facts["version"] == version
-    assert [chunk["mode"] for chunk in facts["chunks"]] == modes
-    values = read_cube(path).values
-    errors = [error_db(values[first : first + 3], crowd().values) for first in range(0, 12, 3)]
-    assert errors == pytest.approx(errors_db, abs=0.01)
-
-
 def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
     path, data = tmp_path / "a.mmw", long_file
     path.write_bytes(data)
