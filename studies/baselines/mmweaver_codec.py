@@ -4,10 +4,10 @@ import tempfile
 from pathlib import Path
 
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
-from mmweaver.compression.rivals.codec_interface import Codec
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import Codec
 
 
 class Mmw(Codec):

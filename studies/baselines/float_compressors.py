@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from mmweaver.compression.rivals.codec_interface import KnobCodec, library, merged, split
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import KnobCodec, library, merged, split
 
 
 class Sz3(KnobCodec):

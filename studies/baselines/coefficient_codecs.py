@@ -7,10 +7,10 @@ import numpy as np
 
 from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.residual_coder import ResidualCoder
-from mmweaver.compression.rivals.codec_interface import KnobCodec, library
 from mmweaver.compression.transforms import from_coefficients, to_coefficients
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import KnobCodec, library
 
 MAGNITUDE_BITS, PHASE_BITS = 8, 6
 LOUDEST_DB, DB_A_STEP = 0.0, 0.25

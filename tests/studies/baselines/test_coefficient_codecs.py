@@ -3,7 +3,7 @@ import warnings
 import numpy as np
 import pytest
 
-from mmweaver.compression.rivals.coefficient_codecs import (
+from studies.baselines.coefficient_codecs import (
     Wavelets,
     antenna_klt,
     packed_top,

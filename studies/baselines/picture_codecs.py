@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from mmweaver.compression.rivals.codec_interface import KnobCodec, library, merged, split
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import KnobCodec, library, merged, split
 
 ZERO, SPAN = 32768, 32000
 

@@ -4,9 +4,9 @@ import zlib
 
 import numpy as np
 
-from mmweaver.compression.rivals.codec_interface import PEAK, Codec, KnobCodec, library
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import PEAK, Codec, KnobCodec, library
 
 CP_STEPS = 300
 TUCKER_STEPS = 3

@@ -1,7 +1,7 @@
 import numpy as np
 
-from mmweaver.compression.rivals.tensor_codecs import packed, unpacked
 from mmweaver.core.seeding import stream
+from studies.baselines.tensor_codecs import packed, unpacked
 
 
 def test_parts_come_back_in_eight_bits():

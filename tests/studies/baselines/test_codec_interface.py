@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.compression.rivals.codec_interface import library, merged, split
 from mmweaver.core.errors import InputError
+from studies.baselines.codec_interface import library, merged, split
 from studies.fields.codecs import CODECS
 from tests.fields.echoes import crowd, error_db
 
