@@ -5,9 +5,10 @@ import zlib
 
 import numpy as np
 
-from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.residual_coder import ResidualCoder
-from mmweaver.compression.transforms import from_coefficients, to_coefficients
+from mmweaver.compression.cell_coder import FINE
+from mmweaver.compression.entropy import BitStream, Decoder, Encoder
+from mmweaver.compression.legacy_chunk import LegacyLevelCoder
+from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 from studies.baselines.codec_interface import KnobCodec, library
@@ -104,7 +105,7 @@ class TopCoefficients(KnobCodec):
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
         basis, packed = antenna_klt(values)
-        coefficients = to_coefficients(values.astype(np.complex128), basis)
+        coefficients = _transform(basis).forward(values.astype(np.complex128))
         largest = np.float32(np.abs(coefficients).max())
         return packed + largest.tobytes() + packed_top(coefficients / largest, int(knob))
 
@@ -113,7 +114,7 @@ class TopCoefficients(KnobCodec):
         basis, data = unpacked_klt(data, antennas)
         largest = np.frombuffer(data[:4], np.float32)[0]
         coefficients = unpacked_top(data[4:], (antennas, frames, num_range, num_doppler)) * largest
-        return from_coefficients(coefficients.astype(np.complex128), basis)
+        return _transform(basis).inverse(coefficients.astype(np.complex128))
 
 
 class KltContext(KnobCodec):
@@ -124,11 +125,11 @@ class KltContext(KnobCodec):
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
         basis, packed = antenna_klt(values)
-        coefficients = to_coefficients(values.astype(np.complex128), basis) / knob
+        coefficients = _transform(basis).forward(values.astype(np.complex128)) / knob
         parts = np.stack([np.real(coefficients), np.imag(coefficients)])
         levels = (np.sign(parts) * np.floor(np.abs(parts) + 0.35)).astype(np.int64)
         stream = Encoder()
-        ResidualCoder(levels.shape[1:]).code(stream, levels, np.zeros(levels.shape[2:], np.int64))
+        _code_levels(stream, levels)
         return packed + np.float32(knob).tobytes() + stream.to_bytes()
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
@@ -136,9 +137,20 @@ class KltContext(KnobCodec):
         basis, data = unpacked_klt(data, antennas)
         step = np.frombuffer(data[:4], np.float32)[0]
         levels = np.zeros((2, antennas, frames, num_range, num_doppler), np.int64)
-        ResidualCoder(levels.shape[1:]).code(Decoder(data[4:]), levels, np.zeros(levels.shape[2:], np.int64))
+        _code_levels(Decoder(data[4:]), levels)
         restored = levels - 0.05 * np.sign(levels)  # rounded towards zero a little more often than away
-        return from_coefficients((restored[0] + 1j * restored[1]) * float(step), basis)
+        return _transform(basis).inverse((restored[0] + 1j * restored[1]) * float(step))
+
+
+def _code_levels(stream: BitStream, levels: np.ndarray) -> None:
+    """Encodes levels (part, beam, frame, range, doppler) of all cells, or fills them in when decoding."""
+    classes = np.full(levels.shape[2:], FINE)
+    LegacyLevelCoder(levels.shape[1:], is_dense=True).code(stream, levels, classes, np.zeros_like(classes))
+
+
+def _transform(basis: np.ndarray) -> ChunkTransform:
+    """Directions of the antennas, and a cosine transform over frames of static cells."""
+    return ChunkTransform(choice=TransformChoice(), antennas=basis, doppler=None, signs=(False, False), words=b"")
 
 
 def antenna_klt(values: CubeValues) -> tuple[np.ndarray, bytes]:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.compression import segment
-from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression import optimiser
+from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube
 from mmweaver.compression.mmw_field import open_mmw
-from mmweaver.compression.rate_search import EXACT_DB
+from mmweaver.compression.optimiser import EXACT_DB
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
@@ -28,7 +28,7 @@ def long_cube() -> RadarCube:
 def long_file(long_cube: RadarCube) -> bytes:
     """In three chunks."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(segment, "MOST_FRAMES", 2)
+        patch.setattr(optimiser, "MAX_FRAMES", 2)
         return compress_cube(long_cube, num_bytes=8000, keep_noise=True, effort="fast")
 
 
@@ -227,7 +227,7 @@ def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, 
 def test_cubes_of_any_shape_reach_their_quality(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=20.0))
-    active = active_cells(cube.values)
+    active = active_mask(cube.values)
     assert -20.3 < error_db(read_cube(tmp_path / "a.mmw").values[active], cube.values[active]) <= -20
 
 

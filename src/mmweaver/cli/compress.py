@@ -130,8 +130,8 @@ def _compress_cube(arguments: argparse.Namespace) -> int:
 
 
 def _said(errors: dict[str, float], quality_db: float | None) -> str:
-    from mmweaver.compression.quality_search import MOST_OVER_DB
-    from mmweaver.compression.rate_search import EXACT_DB, FLOAT32_DB
+    from mmweaver.compression.mmw_codec import FLOAT32_DB
+    from mmweaver.compression.optimiser import EXACT_DB, QUALITY_WITHIN_DB
 
     signal_db, all_db = errors["signal_error_db"], errors["all_error_db"]
     if all_db <= EXACT_DB:
@@ -139,7 +139,7 @@ def _said(errors: dict[str, float], quality_db: float | None) -> str:
     said = f"error {signal_db:.1f} dB in cells with signal, {all_db:.1f} dB in all"
     if all_db <= FLOAT32_DB:
         return said + ", the last digits of float32: more bytes would change nothing"
-    if quality_db is not None and -signal_db > quality_db + MOST_OVER_DB:
+    if quality_db is not None and -signal_db > quality_db + QUALITY_WITHIN_DB:
         return said + "; better than asked for, as no smaller file was found"
     return said
 

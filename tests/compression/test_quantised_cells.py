@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
-from mmweaver.compression.class_map import CLOSED, COARSE, FINE
+from mmweaver.compression.cell_coder import CLOSED, COARSE, FINE
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.residual_stream import code_cells, quantized
+from mmweaver.compression.quantised_cells import code_cells, quantise
+from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.seeding import stream
 
 
@@ -15,7 +15,7 @@ def test_cells_open_where_coding_pays():
     values[:, 0, 1] = 0.3 + 0.3j
     values[:, 0, 2] = 40 + 40j
     is_active = np.array([[[True, False], [True, False], [True, False]]])
-    cells = quantized(values, 1.0, 4, is_active)
+    cells = quantise(values, 1.0, 4, is_active)
     assert cells.classes[0].tolist() == [[FINE, CLOSED], [CLOSED, CLOSED], [FINE, COARSE]]
     assert np.abs(cells.values(1.0, 4)[:, 0, 2] - values[:, 0, 2]).max() < 2.0
 
@@ -27,7 +27,7 @@ def test_any_shape_and_any_size_round_trips(shape: tuple[int, ...], step: float)
     decay = 10 ** (-np.arange(shape[1])[:, None, None] / 4) * np.ones(shape[1:])
     values = (noise[0] + 1j * noise[1]) * 20 * decay
     transform = ChunkTransform.of(TransformChoice(), np.moveaxis(values, 0, 3), np.eye(shape[0], dtype=complex))
-    cells = quantized(values, step, 4, decay > 0.1)
+    cells = quantise(values, step, 4, decay > 0.1)
     coder = Encoder()
     near = np.zeros(shape[1:], np.int64)
     code_cells(coder, cells.levels.copy(), cells.classes.copy(), near, transform.correlated, 4)

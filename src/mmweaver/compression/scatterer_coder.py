@@ -1,7 +1,8 @@
-"""Quantisation and entropy coding of scatterers: stronger scatterers get finer parameters.
+"""Quantisation and entropy coding of a chunk's layers: antenna gains, static layer and scatterers.
 
-An error of one step of any parameter leaves about the same energy in the cube as an error of one step of a residual
-cell, so one step serves all: a scatterer of amplitude k steps gets 2 pi k phases and about k positions per bin.
+Stronger scatterers get finer parameters: an error of one step of any parameter leaves about the same energy in the cube
+as an error of one step of a residual cell, so one step serves all. A scatterer of amplitude k steps gets 2 pi k phases
+and about k positions per bin.
 """
 
 import math
@@ -11,19 +12,21 @@ import numpy as np
 import torch
 from jaxtyping import Float, Int
 
-from mmweaver.compression.class_map import ClassMapCoder
-from mmweaver.compression.entropy import LARGEST_UNIFORM, BitModel, BitStream, Mixture, NumberModel
+from mmweaver.compression.cell_coder import ClassMapCoder, LevelCoder
+from mmweaver.compression.entropy import LARGEST_UNIFORM, BitModel, BitStream, NumberModel
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
+from mmweaver.fields.scatterers.fit_window import FitWindow
 
 Integers = Int[np.ndarray, "_"]
 Counts = Int[np.ndarray, "frame range doppler"]
 
 COARSE = 16  # cells of a direction cosine with adaptive probabilities
 OCTAVES = 24
-NUM_AROUND, NUM_NEAR = 8, 6
-AROUND_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 12])
+NUM_NEAR = 6
 SIXTEENTHS = 16
-SEVERAL, COUNT_PRIOR, MOST_POINTS = 2, (0.96, 0.03, 0.01), 2**20
+STATIC_ROUNDING = 0.4
+GAIN_STEPS = 64.0
+SEVERAL, COUNT_PRIOR, MAX_POINTS = 2, (0.96, 0.03, 0.01), 2**20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,14 +136,6 @@ def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axe
     )
 
 
-def uniform_bits(coded: CodedPoints, steps: PointSteps, num_directions: int) -> float:
-    """Bits of what `PointCoder` codes as uniform, most of all; those of one cell of sixteen of a direction are not."""
-    sizes = [_phases(coded.size), 2 ** _octave(coded.size)]
-    sizes += [_parts(coded.size, sixteenths) for sixteenths in (steps.range_sixteenths, steps.doppler_sixteenths)]
-    sizes += [_direction_parts(coded.size, sixteenths) for sixteenths in steps.direction_sixteenths[:num_directions]]
-    return sum(float(np.log2(one).sum()) for one in sizes)
-
-
 def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
     """Strength of the strongest scatterer near each cell: 0 none, then one level per two octaves, at most 5."""
     out = np.zeros(shape, np.int64)
@@ -154,19 +149,10 @@ def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
 
 
 class PointCoder:
-    """Adaptive models of one cube's scatterers. `moves`: range cells moved per Doppler cell and frame, times 256."""
+    """Adaptive models of the scatterers of working frames of a `shape` (frame, range, doppler)."""
 
-    def __init__(
-        self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int, *, by_rows: bool = False
-    ):
-        """`by_rows`: the number in each cell is coded row by row, as in versions 1 and 2 of the format."""
-        self.by_rows = by_rows
-        self.shape, self.steps, self.num_directions, self.moves = shape, steps, num_directions, moves
-        a = NUM_AROUND
-        self.more = [
-            Mixture([BitModel(a * a * 2, 0.03, 0.5), BitModel(a * a, 0.03, 0.5), BitModel(shape[2], 0.03, 0.5)])
-            for _ in range(4)
-        ]
+    def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int):
+        self.shape, self.steps, self.num_directions = shape, steps, num_directions
         self.many = NumberModel(1, 4)
         self.octave = NumberModel(OCTAVES, OCTAVES, 0.7)
         self.coarse = [[BitModel(COARSE, 0.5, 2.0) for _ in range(4)] for _ in range(2)]
@@ -176,7 +162,7 @@ class PointCoder:
         wanted = np.zeros(self.shape, np.int64)
         if coded is not None:
             np.add.at(wanted, (coded.frame, coded.range_cell, coded.doppler_cell), 1)
-        counts = self._counts_by_rows(stream, wanted) if self.by_rows else self._counts(stream, wanted)
+        counts = self._counts(stream, wanted)
         cells = np.repeat(np.stack(np.nonzero(counts)), counts[counts > 0], axis=1)
         return self._details(stream, cells, coded)
 
@@ -186,67 +172,10 @@ class PointCoder:
         ClassMapCoder(self.shape[2], COUNT_PRIOR).code(stream, counts, np.zeros_like(counts))
         several = np.nonzero(counts == SEVERAL)
         more = self.many.code(stream, np.zeros(len(several[0]), np.int64), wanted[several] - SEVERAL)
-        if int(more.sum()) > MOST_POINTS:
+        if int(more.sum()) > MAX_POINTS:
             raise ValueError("too many scatterers: the stream is damaged")
         counts[several] += more
         return counts
-
-    def _counts_by_rows(self, stream: BitStream, wanted: np.ndarray) -> np.ndarray:
-        frames, num_range, num_doppler = self.shape
-        counts = np.zeros(self.shape, np.int64)
-        for frame in range(frames):
-            before = (
-                self._predicted_counts(counts[frame - 1]) if frame else np.zeros((num_range, num_doppler), np.int64)
-            )
-            for row in range(num_range):
-                self._code_row(stream, wanted[frame, row], counts[frame], row, before)
-        return counts
-
-    def _predicted_counts(self, counts: np.ndarray) -> np.ndarray:
-        """Scatterer counts of the previous frame, moved by their velocity and smoothed over the neighbours."""
-        num_range, num_doppler = counts.shape
-        static = num_doppler // 2
-        out = np.zeros((num_range + 2, num_doppler + 2), np.int64)
-        r, d = np.nonzero(counts)
-        to = np.clip(r + ((d - static) * self.moves + 128) // 256, 0, num_range - 1)
-        np.add.at(out, (to + 1, d + 1), 2 * counts[r, d])
-        near = out.copy()
-        near[1:] += out[:-1] // 2
-        near[:-1] += out[1:] // 2
-        near[:, 1:] += out[:, :-1] // 2
-        near[:, :-1] += out[:, 1:] // 2
-        return near[1:-1, 1:-1]
-
-    def _code_row(self, stream, wanted, counts, row, before) -> None:
-        num_doppler = counts.shape[1]
-        padded = np.zeros((3, num_doppler + 2), np.int64)
-        if row:
-            padded[0, 1:-1] = counts[row - 1]
-        if row > 1:
-            padded[1, 1:-1] = counts[row - 2]
-        for first in (0, 1):
-            d = np.arange(first, num_doppler, 2)
-            around = 2 * padded[0, d + 1] + padded[0, d] + padded[0, d + 2] + padded[1, d + 1]
-            if first:
-                around = around + 2 * (padded[2, d] + padded[2, d + 2])
-            around = np.searchsorted(AROUND_BOUNDS, around, side="right")
-            earlier = np.searchsorted(AROUND_BOUNDS, before[row, d], side="right")
-            total = np.searchsorted(AROUND_BOUNDS, around + before[row, d], side="right")
-            contexts = [(around * NUM_AROUND + earlier) * 2 + first, total * NUM_AROUND + earlier, d]
-            value = np.zeros(len(d), np.int64)
-            active = np.arange(len(d))
-            step = 0
-            while len(active):
-                model = self.more[min(step, len(self.more) - 1)]
-                chosen = [context[active] for context in contexts]
-                more = model.code(stream, chosen, (wanted[d[active]] > step).astype(np.int64))
-                active = active[more > 0]
-                value[active] += 1
-                step += 1
-                if step > 10_000:
-                    raise ValueError("too many scatterers in one cell: the stream is damaged")
-            counts[row, d] = value
-            padded[2, d + 1] = value
 
     def _details(self, stream: BitStream, cells: np.ndarray, coded: CodedPoints | None) -> CodedPoints:
         num = cells.shape[1]
@@ -329,3 +258,41 @@ def _largest(parts: Integers) -> Integers:
 
 def _direction_parts(size: Integers, sixteenths: int) -> Integers:
     return np.maximum((2 * size * sixteenths + SIXTEENTHS - 1) // SIXTEENTHS, COARSE)
+
+
+def static_levels(static: torch.Tensor, window: FitWindow, beams: np.ndarray, step: float) -> np.ndarray:
+    """Levels (part, beam, 1, range, 1) of a static layer (range, antenna)."""
+    values = np.einsum("ra,ba->br", static.numpy(), beams) / _static_step(window, step)
+    parts = np.stack([values.real, values.imag])
+    levels = np.sign(parts) * np.floor(np.abs(parts) + STATIC_ROUNDING)
+    return levels.astype(np.int64)[:, :, None, :, None]
+
+
+def code_static(stream: BitStream, levels: np.ndarray) -> None:
+    """Encodes levels, or fills them in when decoding."""
+    every = np.ones(levels.shape[2:], np.int64)
+    LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
+
+
+def static_of(levels: np.ndarray, window: FitWindow, beams: np.ndarray, step: float) -> torch.Tensor:
+    """The static layer (range, antenna) of levels, as a decoder has it."""
+    values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(window, step)
+    return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
+
+
+def _static_step(window: FitWindow, step: float) -> float:
+    kernel = window.response.doppler_kernel(window.axes.doppler_bin)[0]
+    return step / math.sqrt(window.num_working_frames * float(kernel.double().square().sum()))
+
+
+def pack_gains(gains: torch.Tensor) -> bytes:
+    """Complex gains (antenna,) in two bytes each: log2 magnitude in 1/64, angle in 1/256 of a turn."""
+    parts = torch.stack([gains.abs().log2() * GAIN_STEPS, gains.angle() / (2 * math.pi) * 256])
+    parts[0] = parts[0].round().clamp(-128, 127)
+    return (parts.round().to(torch.int16) & 255).to(torch.uint8).numpy().tobytes()
+
+
+def unpack_gains(data: bytes) -> torch.Tensor:
+    """The gains (antenna,) of `pack_gains`."""
+    parts = torch.from_numpy(np.frombuffer(data, np.int8).astype(np.float32).reshape(2, -1))
+    return torch.polar(2 ** (parts[0] / GAIN_STEPS), parts[1] / 256 * 2 * math.pi)

@@ -1,16 +1,16 @@
 import numpy as np
 
-from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression.active_mask import active_mask
 from mmweaver.core.seeding import stream
 
 
-def test_active_cells_are_those_of_the_metrics():
+def test_active_mask_are_those_of_the_metrics():
     from mmweaver.metrics.cells import cells_of
     from tests.fields.echoes import crowd
 
     cube = crowd()
-    assert np.array_equal(active_cells(cube.values), cells_of(cube).is_active)
-    assert active_cells(np.ones((1, 2, 2, 3), np.complex64)).all()
+    assert np.array_equal(active_mask(cube.values), cells_of(cube).is_active)
+    assert active_mask(np.ones((1, 2, 2, 3), np.complex64)).all()
 
 
 def test_missing_bins_do_not_count():
@@ -18,4 +18,4 @@ def test_missing_bins_do_not_count():
     noise = stream(0, "noise").normal(size=(2, 8, 16, 4)).astype(np.complex64)
     noise[:, :, :12] = 0
     noise[1, 3, 14] = 100
-    assert np.argwhere(active_cells(noise)).tolist() == [[1, 3, 14]]
+    assert np.argwhere(active_mask(noise)).tolist() == [[1, 3, 14]]

@@ -5,15 +5,20 @@ import pytest
 import torch
 
 from mmweaver.compression.entropy import Decoder, Encoder
-from mmweaver.compression.point_coder import (
+from mmweaver.compression.scatterer_coder import (
     CodedPoints,
     PointCoder,
     PointSteps,
+    code_static,
     dequantize,
     nearness,
     quantize,
-    uniform_bits,
+    static_levels,
+    static_of,
 )
+from mmweaver.core.seeding import stream
+from mmweaver.fields.beams import beams_of
+from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import no_points
 from tests.fields.echoes import SMALL
 from tests.fields.scatterers.test_refinement import AXES, RESPONSE, random_points
@@ -30,8 +35,8 @@ def coded_at(step: float, num_points: int = 25) -> tuple[CodedPoints, PointSteps
 def test_quantized_points_round_trip(step: float):
     coded, steps = coded_at(step)
     writer = Encoder()
-    PointCoder(SHAPE, steps, 2, 300).code(writer, coded)
-    again = PointCoder(SHAPE, steps, 2, 300).code(Decoder(writer.to_bytes()), None)
+    PointCoder(SHAPE, steps, 2).code(writer, coded)
+    again = PointCoder(SHAPE, steps, 2).code(Decoder(writer.to_bytes()), None)
     for field in fields(CodedPoints):
         if field.name not in ("size", "phase", "range_part", "doppler_part", "direction"):
             assert np.array_equal(getattr(again, field.name), getattr(coded, field.name)), field.name
@@ -52,18 +57,6 @@ def test_every_parameter_follows_the_step():
         energy = float((RESPONSE.render(again, AXES) - truth).abs().square().sum())
         errors.append(np.sqrt(energy / 30) / step)  # a scatterer, in steps
     assert all(0.2 < error < 2.0 for error in errors)
-
-
-def test_what_is_not_uniform_hardly_depends_on_the_step():
-    """Bits of a scatterer besides those that are counted: where it is, and the octave of its amplitude."""
-    rest = []
-    for step in (0.05, 0.01, 1e-3):
-        coded, steps = coded_at(step)
-        writer = Encoder()
-        PointCoder(SHAPE, steps, 2, 300).code(writer, coded)
-        rest.append((8 * len(writer.to_bytes()) - uniform_bits(coded, steps, 2)) / len(coded))
-    assert max(rest) - min(rest) < 3
-    assert all(4 < bits < 16 for bits in rest)
 
 
 def test_weak_scatterers_are_dropped():
@@ -89,8 +82,26 @@ def test_an_array_without_directions_codes_none():
     for num_directions in (0, 1, 2):
         writer = Encoder()
         coded = quantize(random_points(25, num_frames=3), steps, AXES, num_directions, 1)
-        PointCoder(SHAPE, steps, num_directions, 0).code(writer, coded)
+        PointCoder(SHAPE, steps, num_directions).code(writer, coded)
         sizes.append(len(writer.to_bytes()))
     assert sizes[0] < sizes[1] < sizes[2]
     assert SMALL.num_antennas == 12
     assert torch.all(dequantize(coded, 3, steps, AXES, 0).direction == 0)
+
+
+def test_a_static_layer_is_known_to_less_than_a_step():
+    beams = beams_of(SMALL)
+    window = FitWindow.of(SMALL, 3, 0)
+    draw = stream(0, "static").normal(size=(2, SMALL.num_range_bins, SMALL.num_antennas))
+    static = torch.from_numpy((draw[0] + 1j * draw[1]).astype(np.complex64))
+    errors, sizes = [], []
+    for step in (1.0, 0.1):
+        levels, encoder = static_levels(static, window, beams, step), Encoder()
+        code_static(encoder, levels)
+        data, again = encoder.to_bytes(), np.zeros_like(levels)
+        code_static(Decoder(data), again)
+        assert np.array_equal(again, levels)
+        errors.append(float((static_of(again, window, beams, step) - static).abs().square().mean().sqrt()))
+        sizes.append(len(data))
+    assert 5 < errors[0] / errors[1] < 20
+    assert sizes[0] < sizes[1]

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.cell_sample import CellSample
-from mmweaver.compression.residual_stream import quantized
+from mmweaver.compression.quantised_cells import quantise
+from mmweaver.compression.rate_model import CellSample
 from mmweaver.core.seeding import stream
 
 
@@ -16,7 +16,7 @@ def test_the_errors_are_those_of_all_cells():
     sample = CellSample.of(coefficients, is_active, front_bytes=7)
     assert sample.weight.sum() == pytest.approx(is_active.size)
     for step, coarser in ((0.5, 4), (3.0, 1), (0.5, 0)):
-        cells = quantized(coefficients, step, coarser, is_active)
+        cells = quantise(coefficients, step, coarser, is_active)
         lost = np.sum(np.abs(coefficients - cells.values(step, coarser or 1)) ** 2, axis=0)
         found = sample.at(step, coarser)
         assert found.all_error == pytest.approx(lost.sum(), rel=0.1)

@@ -7,10 +7,18 @@ from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 ACTIVE_DB = 12.0  # above the noise floor, as in metrics.cells
 
 
-def active_cells(values: CubeValues, least_power: float | None = None) -> RangeDopplerMask:
-    """Cells whose antenna-averaged power exceeds `least_power`, or the median by 12 dB; all cells if there are none."""
+def active_mask(values: CubeValues, min_power: float | None = None) -> RangeDopplerMask:
+    """Marks the cells with signal.
+
+    Args:
+        values: (frame, range, doppler, antenna).
+        min_power: threshold on the power averaged over the antennas; by default 12 dB above its median.
+
+    Returns:
+        Mask (frame, range, doppler); all cells where none exceeds the threshold.
+    """
     power = cell_power(values)
-    is_active = power > (active_power(power) if least_power is None else least_power)
+    is_active = power > (active_power(power) if min_power is None else min_power)
     return is_active if is_active.any() else np.ones_like(is_active)
 
 
