@@ -117,6 +117,8 @@ class Optimiser:
         num = len(self.cube.values)
         longest = max(1, min(MAX_FRAMES, MAX_VALUES // math.prod(self.cube.values.shape[1:])))
         short, long = split(num, min(SHORT_CHUNK, longest)), split(num, longest)
+        if self._repeats():  # may be stored without loss, in as few chunks as possible
+            short = long
         self._cut(short)
         if len(long) < len(short):
             encoders = self._encoders
