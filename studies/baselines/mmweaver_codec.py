@@ -4,23 +4,23 @@ import tempfile
 from pathlib import Path
 
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
-from mmweaver.compression.rivals.codec_interface import Codec
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import Codec
 
 
 class Mmw(Codec):
     """Scatterers, static layer and residual in a .mmw file; with `keep_noise`, noise cells have the same weight as
     others."""
 
-    def __init__(self, *, keep_noise: bool = False, without: tuple[str, ...] = ()):
-        self.keep_noise, self.without = keep_noise, without
+    def __init__(self, *, keep_noise: bool = False, effort: str = "full"):
+        self.keep_noise, self.effort = keep_noise, effort
         self.name = "mmw_keep_noise" if keep_noise else "mmw"
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
         try:
-            return compress_cube(cube, num_bytes=num_bytes, keep_noise=self.keep_noise, without=self.without)
+            return compress_cube(cube, num_bytes=num_bytes, keep_noise=self.keep_noise, effort=self.effort)
         except InputError:
             return None
 

@@ -6,9 +6,9 @@ import zlib
 import numpy as np
 import torch
 
-from mmweaver.compression.rivals.codec_interface import Codec
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import Codec
 from studies.paper.paper_inr import InrField
 from studies.paper.single_signal import RECIPES, fit, inr_shape
 

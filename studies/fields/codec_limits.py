@@ -1,4 +1,4 @@
-"""What each mode of .mmw is worth, and where a bound for Gaussian fields lies.
+"""What the scatterers of .mmw are worth, and where a bound for Gaussian fields lies.
 
 python -m studies run codec_limits --data <recordings>
 """
@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice, choices_of
-from mmweaver.compression.mmw_codec import scale_of
-from mmweaver.compression.mode_choice import FREE_MODES
-from mmweaver.compression.segment import SHORT_CHUNK, chunk_encoder, some_frames, split
+from mmweaver.compression.chunk_encoder import ChunkEncoder, Scale, some_frames, split
+from mmweaver.compression.optimiser import SHORT_CHUNK
+from mmweaver.compression.transforms import ChunkTransform, TransformChoice, transform_choices
 from mmweaver.core.records import RadarCube
 from studies.baselines.mmweaver_codec import Mmw
 from studies.fields.codecs import codec_row
@@ -38,10 +37,10 @@ def gaussian_bound(cube: RadarCube, num_bytes: int) -> dict[str, float | None]:
     in the mean over neighbouring coefficients; the decoder knows them for nothing. Real fields are not Gaussian, and a
     codec may spend its bits on active cells, so that it may be better: it is an estimate, not a limit.
     """
-    scale, powers, masks, energy = scale_of(cube), [], [], np.zeros(2)
+    scale, powers, masks, energy = Scale.of(cube), [], [], np.zeros(2)
     for part in split(len(cube.values), SHORT_CHUNK):
-        encoder = chunk_encoder(some_frames(cube, part), scale)
-        time = choices_of(encoder.target.shape)[0].time
+        encoder = ChunkEncoder(some_frames(cube, part), scale)
+        time = transform_choices(encoder.target.shape)[0].time
         choice = TransformChoice(time=time, antenna_klt=encoder.target.shape[3] > 1)
         transform = ChunkTransform.of(choice, encoder.target, encoder.beams)
         power = np.abs(transform.forward(encoder.target)).astype(np.float64) ** 2
@@ -77,9 +76,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    """All of .mmw, .mmw without one mode each, and the bound; one file each."""
+    """.mmw with and without scatterers, and the bound; one file each."""
     signals = [(CUTS if name in CUTS else SIGNALS)[name](options.data) for name in options.signals]
-    methods = {"mmw": Mmw()} | {f"without {mode}": Mmw(without=(mode,)) for mode in FREE_MODES}
+    methods = {"mmw": Mmw(), "without scatterers": Mmw(effort="fast")}
     both = [(signal, size) for signal in signals for size in SIZES]
     rows: list[dict[str, Any]] = []
     for name, codec in methods.items():

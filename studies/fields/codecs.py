@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.rivals.codec_interface import Codec
-from mmweaver.compression.rivals.coefficient_codecs import KltContext, TopCells, TopCoefficients, Wavelets
-from mmweaver.compression.rivals.float_compressors import Blosc2, Sperr, Sz3, Zfp
-from mmweaver.compression.rivals.picture_codecs import Jpeg2000, JpegXl
-from mmweaver.compression.rivals.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS
+from studies.baselines.codec_interface import Codec
+from studies.baselines.coefficient_codecs import KltContext, TopCells, TopCoefficients, Wavelets
+from studies.baselines.float_compressors import Blosc2, Sperr, Sz3, Zfp
 from studies.baselines.mmweaver_codec import Mmw
 from studies.baselines.network_codecs import InrInBytes
+from studies.baselines.picture_codecs import Jpeg2000, JpegXl
+from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows, in_order, kept_rows

@@ -34,16 +34,15 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
 
 
-@pytest.mark.parametrize("words", [["-o", "a.mmw"], ["--compare"]], ids=["written", "compared"])
 def test_a_file_that_may_not_grow_is_named(
-    words: list[str], recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    recording: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     def refused(*_: object) -> int:
         raise OSError(errno.EFBIG, "File too large")
 
     monkeypatch.chdir(recording.parent)
     monkeypatch.setattr(Path, "write_bytes", refused)
-    assert main(["compress", str(recording), "--bytes", "3000", *words]) == 2
+    assert main(["compress", str(recording), "--bytes", "3000", "-o", "a.mmw"]) == 2
     assert re.search(r"cannot write \S+\.mmw: File too large", capsys.readouterr().err)
     assert not Path("a.mmw").exists()
 

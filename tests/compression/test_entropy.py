@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.entropy import BitModel, Decoder, Encoder, LadderModel, Mixture, NumberModel
+from mmweaver.compression.entropy import BitModel, Decoder, Encoder, Mixture, NumberModel
 from mmweaver.core.seeding import stream
 
 
@@ -48,28 +48,9 @@ def test_integers_of_any_size():
     assert np.array_equal(again, numbers)
 
 
-def test_a_ladder_codes_any_number_and_is_cheap_for_uniform_ones():
-    numbers = np.concatenate([np.arange(70), [1000, 70_000, 2**27]])
-    contexts = [numbers % 3, numbers % 2]
-    writer = Encoder()
-    LadderModel([3, 2]).code(writer, contexts, numbers)
-    again = LadderModel([3, 2]).code(Decoder(writer.to_bytes()), contexts, np.zeros_like(numbers))
-    assert np.array_equal(again, numbers)
-    rng = stream(3, "ladder")
-    writer, model, bits = Encoder(), LadderModel([1]), 0.0
-    for _ in range(40):
-        numbers = rng.geometric(0.02, 200) - 1
-        model.code(writer, [np.zeros(200, np.int64)], numbers)
-        bits -= float(np.sum(np.log2(0.02 * 0.98**numbers)))
-    assert 8 * len(writer.to_bytes()) < 1.05 * bits
-
-
 def test_a_damaged_stream_terminates():
     noise = stream(2, "damage").integers(0, 256, 400).astype(np.uint8).tobytes()
     reader = Decoder(noise)
     with pytest.raises((ValueError, AssertionError)):
         for _ in range(1000):
             NumberModel(1, 2, 0.99).code(reader, np.zeros(500, np.int64), np.zeros(500, np.int64))
-    with pytest.raises((ValueError, AssertionError)):
-        for _ in range(1000):
-            LadderModel([1], 0.99).code(reader, [np.zeros(500, np.int64)], np.zeros(500, np.int64))

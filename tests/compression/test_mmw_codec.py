@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.compression import segment
-from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression import optimiser
+from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube
 from mmweaver.compression.mmw_field import open_mmw
-from mmweaver.compression.rate_search import EXACT_DB
+from mmweaver.compression.optimiser import EXACT_DB
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
@@ -28,7 +28,7 @@ def long_cube() -> RadarCube:
 def long_file(long_cube: RadarCube) -> bytes:
     """In three chunks."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(segment, "MOST_FRAMES", 2)
+        patch.setattr(optimiser, "MAX_FRAMES", 2)
         return compress_cube(long_cube, num_bytes=8000, keep_noise=True, effort="fast")
 
 
@@ -75,43 +75,6 @@ def test_noise_is_kept_on_request(tmp_path: Path):
         (tmp_path / "a.mmw").write_bytes(data)
         left.append(error_db(read_cube(tmp_path / "a.mmw").values[noise], cube.values[noise]))
     assert left[1] < left[0] - 1
-
-
-def test_files_of_version_1_are_still_read():
-    """Written by the release that made that version."""
-    path = Path(__file__).parents[1] / "golden" / "version_1.mmw"
-    assert path.read_bytes()[4] == 1
-    assert error_db(read_cube(path).values, crowd().values) < -10
-    assert describe_mmw(path)["chunks"][0]["scatterers"] > 10
-
-
-@pytest.mark.parametrize(
-    ("version", "transform", "errors_db"),
-    [
-        (
-            3,
-            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins",
-            [-38.74, -22.65, -38.80, -49.50],
-        ),
-        (
-            4,
-            "KLT of antennas, DCT of all bins, KLT of Doppler bins|beams, DCT of static bins, DCT of ranges",
-            [-43.24, -18.98, -43.3, -43.31],
-        ),
-    ],
-)
-def test_files_of_older_versions_are_still_read(version: int, transform: str, errors_db: list[float]):
-    """Written by the last commit that made that version: four ways to code the same three frames."""
-    path = Path(__file__).parents[1] / "golden" / f"version_{version}.mmw"
-    facts = describe_mmw(path)
-    with_rank, alone = transform.split("|")
-    modes = ["scatterers + beams, DCT of static bins", f"low rank + {with_rank}"]
-    modes += ["scatterers + noise + beams, DCT of static bins", alone]
-    assert facts["version"] == version
-    assert [chunk["mode"] for chunk in facts["chunks"]] == modes
-    values = read_cube(path).values
-    errors = [error_db(values[first : first + 3], crowd().values) for first in range(0, 12, 3)]
-    assert errors == pytest.approx(errors_db, abs=0.01)
 
 
 def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
@@ -264,7 +227,7 @@ def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, 
 def test_cubes_of_any_shape_reach_their_quality(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=20.0))
-    active = active_cells(cube.values)
+    active = active_mask(cube.values)
     assert -20.3 < error_db(read_cube(tmp_path / "a.mmw").values[active], cube.values[active]) <= -20
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.compression import segment
+from mmweaver.compression import optimiser
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
 from mmweaver.compression.mmw_field import open_mmw
 from mmweaver.core.records import RadarCube
@@ -16,7 +16,7 @@ from tests.fields.echoes import crowd, error_db
 def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RadarCube]:
     path = tmp_path_factory.mktemp("mmw") / "a.mmw"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(segment, "MOST_FRAMES", 2)
+        patch.setattr(optimiser, "MAX_FRAMES", 2)
         path.write_bytes(compress_cube(crowd(), num_bytes=5000))
     return path, read_cube(path)
 

@@ -29,7 +29,7 @@ def test_the_transform_is_unitary_and_compacts_noise():
 def test_a_decoder_has_the_values_of_the_encoder():
     values = windowed_noise()
     layer = NoiseLayer.of(to_noise(values, BEAMS), 0.3, BEAMS)
-    again = NoiseLayer.unpack(layer.packed + b"more", values.shape, BEAMS)
+    again = NoiseLayer.unpack(layer.packed + b"more", values.shape, BEAMS, 5)
     assert np.array_equal(again.values, layer.values)
     assert again.packed == layer.packed
     error = np.mean(np.abs(layer.values - values) ** 2)
@@ -50,4 +50,4 @@ def test_cells_with_signal_continue_the_noise_around_them():
 @pytest.mark.parametrize("data", [b"", b"\0" * 9, b"\xff" * 40])
 def test_malformed_layers_are_refused(data: bytes):
     with pytest.raises(Exception, match=r"noise|buffer"):
-        NoiseLayer.unpack(data, (1, 4, 4, 2), BEAMS)
+        NoiseLayer.unpack(data, (1, 4, 4, 2), BEAMS, 5)

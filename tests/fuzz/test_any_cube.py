@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from hypothesis import strategies as st
 
-from mmweaver.compression.cell_choice import active_cells
-from mmweaver.compression.mmw_codec import MOST_PEAK, compress_cube, values_of_bytes
-from mmweaver.compression.rate_search import FLOAT32_DB, error_db
+from mmweaver.compression.active_mask import active_mask
+from mmweaver.compression.mmw_codec import FLOAT32_DB, MAX_PEAK, compress_cube, values_of_bytes
+from mmweaver.compression.optimiser import error_db
 from mmweaver.core.records import CubeGrid, RadarCube
 from tests.fields.echoes import SMALL
 from tests.fuzz.test_properties import deep, hold
@@ -73,7 +73,7 @@ class Drawn:
         )  # fmt: skip
         grid = CubeGrid.of(config, self.frames)
         values = CONTENTS[self.content](np.random.default_rng(self.seed), grid.shape) * self.scale
-        values *= min(1.0, 0.9 * MOST_PEAK / max(np.abs(values).max(), 1e-300))  # more is refused
+        values *= min(1.0, 0.9 * MAX_PEAK / max(np.abs(values).max(), 1e-300))  # more is refused
         return RadarCube(values=values.astype(np.complex64), grid=grid, config=config, scale=float("nan"))
 
 
@@ -104,7 +104,7 @@ def test_quality_is_met_and_exceeded_only_by_files_that_cannot_be_smaller(depth:
     def example(drawn: Drawn, quality_db: float, keep_noise: bool) -> None:
         cube = drawn.cube()
         data = compress_cube(cube, quality_db=quality_db, keep_noise=keep_noise)
-        found_db = -error_db(cube.values, values_of_bytes(data), active_cells(cube.values))
+        found_db = -error_db(cube.values, values_of_bytes(data), active_mask(cube.values))
         assert found_db >= quality_db
         if found_db > quality_db + 0.3 and len(data) > SMALL_FILE:
             worse = compress_cube(cube, quality_db=max(1.0, quality_db - 0.5), keep_noise=keep_noise)

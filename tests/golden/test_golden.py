@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.compression.mmw_codec import read_cube
+from mmweaver.compression.mmw_codec import describe_mmw, read_cube
 from mmweaver.core.checksums import SUMS_FILE
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.npz_files import read_points_npz, read_pose_npz, read_radar_npz
 from mmweaver.models.weights import load_into
 from mmweaver.verification import verify
+from tests.fields.echoes import crowd, error_db
 
 # of the first cube and the joints of the data set, and of the cube of the result folder; by the code that wrote them
 DIGESTS = {
@@ -67,3 +68,44 @@ def test_what_has_checksums_is_verified(golden: Path):
     assert found.is_sound
     assert (found.checked > 30) == has_sums
     assert bool(found.unchecked) != has_sums
+
+
+KLT = "KLT of antennas, DCT of all bins, KLT of Doppler bins"
+BEAMS = "beams, DCT of static bins"
+# of each chunk: its mode, and its error in dB against the cube that was coded; by the code that wrote the files
+MMW_CHUNKS = {
+    1: [("scatterers", -28.19)],
+    2: [("scatterers", -33.42), ("scatterers", -22.84), ("scatterers", -45.70)],
+    3: [
+        (f"scatterers + {BEAMS}", -38.74),
+        (f"low rank + {KLT}", -22.65),
+        (f"scatterers + noise + {BEAMS}", -38.80),
+        (BEAMS, -49.50),
+    ],
+    4: [
+        (f"scatterers + {BEAMS}", -43.24),
+        (f"low rank + {KLT}", -18.98),
+        (f"scatterers + noise + {BEAMS}", -43.30),
+        (f"{BEAMS}, DCT of ranges", -43.31),
+    ],
+    5: [
+        (f"scatterers + {BEAMS}", -33.46),
+        (f"low rank + {KLT}", -25.77),
+        (f"scatterers + noise + {BEAMS}", -33.46),
+        (f"{BEAMS}, DCT of ranges", -30.64),
+        (BEAMS, -34.55),
+        ("noise", -22.15),
+    ],
+}
+
+
+@pytest.mark.parametrize("version", MMW_CHUNKS)
+def test_every_way_to_code_a_chunk_is_read(version: int):
+    """Three frames a chunk, the same cube in all of them."""
+    path = Path(__file__).with_name(f"version_{version}.mmw")
+    facts = describe_mmw(path)
+    assert facts["version"] == version
+    assert [chunk["mode"] for chunk in facts["chunks"]] == [mode for mode, _ in MMW_CHUNKS[version]]
+    values = read_cube(path).values
+    errors = [error_db(values[first : first + 3], crowd().values) for first in range(0, len(values), 3)]
+    assert errors == pytest.approx([error for _, error in MMW_CHUNKS[version]], abs=0.01)

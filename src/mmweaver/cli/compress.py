@@ -23,7 +23,6 @@ EXAMPLES = """examples:
   mmweaver compress hour_2.bin --radar radar.json -o capture.mmw --quality 30 --append
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --lossless
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --max-error 2
-  mmweaver compress walk/radar.npz --compare --bytes 10000
   mmweaver compress HuPR/single_1/hori -o single_1.mmw --bytes 400000
   mmweaver compress radar_frames.npy --layout rf_genesis -o walk.mmw --quality 40
   mmweaver compress adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample -o capture.mmw --bytes 40072
@@ -67,9 +66,6 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     size.add_argument("--effort", choices=("full", "fast"), default="full", help="fast: without the fit of scatterers")
     output = parser.add_argument_group("output")
     output.add_argument("-o", "--out", type=Path, metavar="FILE", help="the .mmw or .mmwl file to write")
-    output.add_argument(
-        "--compare", action="store_true", help="print what other codecs make of it in --bytes; write nothing"
-    )
     output.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
     output.add_argument(
         "--append", action="store_true", help="add the frames to those of the .mmw file; --bytes are those added"
@@ -81,14 +77,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compresses and writes the file, or compares codecs. Raises InputError."""
+    """Compresses and writes the file. Raises InputError."""
     is_raw = arguments.lossless or arguments.max_error is not None
     if not is_raw and arguments.bytes is None and arguments.quality is None:
         raise InputError("say how small with --bytes, how good with --quality, or --lossless")
-    if arguments.compare:
-        if arguments.bytes is None:
-            raise InputError("codecs are compared at a size; give it with --bytes")
-        return _compare(arguments)
     if arguments.out is None:
         raise InputError("name the file to write with -o")
     from mmweaver.core.output_checks import check_output_file
@@ -138,8 +130,8 @@ def _compress_cube(arguments: argparse.Namespace) -> int:
 
 
 def _said(errors: dict[str, float], quality_db: float | None) -> str:
-    from mmweaver.compression.quality_search import MOST_OVER_DB
-    from mmweaver.compression.rate_search import EXACT_DB, FLOAT32_DB
+    from mmweaver.compression.mmw_codec import FLOAT32_DB
+    from mmweaver.compression.optimiser import EXACT_DB, QUALITY_WITHIN_DB
 
     signal_db, all_db = errors["signal_error_db"], errors["all_error_db"]
     if all_db <= EXACT_DB:
@@ -147,7 +139,7 @@ def _said(errors: dict[str, float], quality_db: float | None) -> str:
     said = f"error {signal_db:.1f} dB in cells with signal, {all_db:.1f} dB in all"
     if all_db <= FLOAT32_DB:
         return said + ", the last digits of float32: more bytes would change nothing"
-    if quality_db is not None and -signal_db > quality_db + MOST_OVER_DB:
+    if quality_db is not None and -signal_db > quality_db + QUALITY_WITHIN_DB:
         return said + "; better than asked for, as no smaller file was found"
     return said
 
@@ -209,35 +201,6 @@ def _compress_samples(arguments: argparse.Namespace) -> int:
             f" {summary['seconds']:.1f} s"
         )
     return 0
-
-
-def _compare(arguments: argparse.Namespace) -> int:
-    from mmweaver.cli.progress import StageBar
-    from mmweaver.compression.comparison import RIVALS, compared
-
-    with StageBar(len(RIVALS) + 2, quiet=arguments.quiet) as bar:
-        bar("read the recording")
-        rows = compared(_cube_of(arguments), arguments.bytes, bar)
-    if arguments.json:
-        print(json.dumps(rows, indent=2))
-        return 0
-    print("error over signal in dB, in the cells with signal and in all; less is better")
-    print(f"{'codec':14} {'bytes':>8} {'signal dB':>10} {'all dB':>8} {'encode CPU s':>13} {'decode CPU s':>13}")
-    for row in rows:
-        if row["bytes"] is None:
-            print(f"{row['codec']:14} {row.get('missing', 'cannot be so small')}")
-        else:
-            print(
-                f"{row['codec']:14} {row['bytes']:8,} {row['signal_error_db']:10.1f} {row['all_error_db']:8.1f}"
-                f" {row['encode_cpu_s']:13.2f} {row['decode_cpu_s']:13.2f}"
-            )
-    return 0
-
-
-def _cube_of(arguments: argparse.Namespace) -> Any:
-    from mmweaver.recordings.read_recording import read_recording
-
-    return read_recording(arguments.file, radar_of(arguments), **_how_read(arguments)).cube
 
 
 def _how_read(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -1,270 +1,358 @@
-"""Entropy coding of sparse integer levels (beam, frame, range, doppler), real and imaginary, in selected cells only.
+"""Entropy coding of cells (time, range, doppler): a class for each one, then the integer levels of the open ones.
 
-A significance map first tells which cells (frame, range, doppler) are open, for all beams, and how finely: open cells
-without signal are quantised COARSER times as coarsely. The levels of the open cells follow beam by beam. Cells of even
-row and even Doppler bin come first, then those between them along Doppler, then the odd rows in the same order, so that
-every later cell has known neighbours on both sides. The FFT windows correlate neighbouring cells, signs included, so a
-weighted sum of the neighbours predicts the level.
+Order: a coarse lattice first, then the cells in between, so that every cell but those of the first phase has known
+neighbours on both sides along at least one axis, whatever the shape. Levels are coded beam by beam, or a few beams at
+once where few cells are open. Contexts are the known neighbours, the preceding beams, the real part for the imaginary
+one, and the place. The FFT windows correlate neighbouring cells along range and Doppler, signs included, so a weighted
+sum of the neighbours predicts the level.
 """
 
+import operator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
+from itertools import product
 
 import numpy as np
-from jaxtyping import Int
 
-from mmweaver.compression.entropy import BitModel, BitStream, LadderModel, Mixture
-from mmweaver.compression.residual_coder import NUM_NEAR, NUM_SUMS, NUM_TRENDS, SUM_BOUNDS, TREND_BOUNDS, spread
+from mmweaver.compression.entropy import BitStream
+from mmweaver.compression.symbol_model import ALWAYS, Batches, MixedModel, SignedModel
 
-Levels = Int[np.ndarray, "2 beam frame range doppler"]
-Cells = Int[np.ndarray, "frame range doppler"]
-Integers = np.ndarray  # (n,) int64; called thousands of times a cube
+Integers = np.ndarray  # int64; called thousands of times a cube
+Classes = np.ndarray  # (time, range, doppler) int64
+Phase = tuple[int, int, int]
+
+# parity of (time, range, doppler)
+PHASES: tuple[Phase, ...] = (
+    (0, 0, 0), (0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 0), (1, 1, 1)
+)  # fmt: skip
+WEIGHTS = {1: 4, 2: 2, 3: 1}  # of a neighbour, by the number of axes along which it differs
 
 CLOSED, COARSE, FINE = 0, 1, 2
-COARSER = 4
-FAR = 160  # eighths of a level; from this predicted magnitude on, the deviation from the prediction is coded
-CAP = 4000
-MARGIN = 2
-CELLS_AT_ONCE = 512  # approximate number of map cells coded together
-BLOCK_ROWS = 16  # rows of levels coded together
-NUM_OPEN = 10
-OPEN_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 11, 14, 18])
+CLASS_STRIDES = (4, 2, 1)  # of the lattices, one after the other
+CLASS_MARGIN = 4
+OPEN_BOUNDS = np.array([1, 3, 6, 9, 13])  # sixteenths of the known neighbours
+FINE_BOUNDS = np.array([1, 6, 12])
+BYTE = 255
+SEEN = np.array([0, 1, 1 + (1 << 8)], np.int16)  # what a class adds to the sums of open and of fine neighbours
+NUM_OPEN, NUM_FINE, NUM_NEAR = len(OPEN_BOUNDS) + 2, len(FINE_BOUNDS) + 1, 4
+
+SIZE_BOUNDS = np.array([1, 2, 4, 6, 9, 13, 18, 26, 36, 50, 70, 100, 150, 230, 400, 800, 1600, 3200])  # eighths
+TREND_BOUNDS = np.array([1, 3, 6, 9])  # eighths of a level
+WIDE_BOUNDS = np.array([1, 3, 8, 24])
+CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
+FAR = 12  # eighths of a level; from this prediction on, the deviation from it is coded
+NUM_SIZES, NUM_TRENDS, NUM_WIDE = len(SIZE_BOUNDS) + 1, len(TREND_BOUNDS) + 2, len(WIDE_BOUNDS) + 1
+NUM_REAL = 4
+UNKNOWN = NUM_SIZES  # class of a size that is not known
+OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
+LARGER, LEAST_SCALE = 2.0, 0.3
+DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
+LARGE, MIDDLE = 20_000, 500  # open cells
+FEW_BEAMS = 3  # up to which all lattices pay
+# strides of the lattices, one after the other, by the number of open cells from which on they pay
+LATTICES = ((LARGE, (4, 2, 1)), (MIDDLE, (2, 1)), (0, (1,)))
+LATTICES_IN = {3: (1,), 4: (4, 2, 1)}
+VALUES_AT_ONCE = 20_000  # open cells times beams that are coded in the phases of one pass
 
 
-class MapCoder:
-    """Codes the map of open cells, frame by frame, with adaptive contexts."""
+@cache
+def _known_neighbours(phase: Phase) -> tuple[tuple[Phase, int], ...]:
+    """Offsets and weights of the neighbours that belong to earlier phases."""
+    rank = PHASES.index(phase)
+    found: list[tuple[Phase, int]] = []
+    steps = (-1, 0, 1)
+    for time, row, column in product(steps, steps, steps):
+        parity = (phase[0] ^ abs(time), phase[1] ^ abs(row), phase[2] ^ abs(column))
+        if PHASES.index(parity) < rank:
+            found.append(((time, row, column), WEIGHTS[abs(time) + abs(row) + abs(column)]))
+    return tuple(found)
 
-    def __init__(self, shape: tuple[int, int, int]):
-        self.shape = shape
-        n = NUM_OPEN
-        self.open = Mixture(
-            [
-                BitModel(4 * n * n, 0.05, 0.5),
-                BitModel(n * n * NUM_NEAR, 0.05, 0.5),
-                BitModel(NUM_NEAR * shape[2], 0.05, 0.5),
-                BitModel(n * shape[1], 0.05, 0.5),
-            ]
-        )
-        self.fine = Mixture([BitModel(n * n, 0.5, 0.5), BitModel(NUM_NEAR * shape[2], 0.5, 0.5)])
 
-    def code(self, stream: BitStream, classes: Cells, near: Cells) -> None:
-        """Encodes `classes` (CLOSED, COARSE or FINE), or fills them in when decoding. `near`: see `nearness`."""
-        frames, num_range, num_doppler = self.shape
-        padded = np.zeros((frames, num_range + 2, num_doppler + 2), np.int64)
-        earlier = np.zeros((2, num_range + 2, num_doppler + 2), np.int64)
-        block = max(2, CELLS_AT_ONCE * 4 // num_doppler // 2 * 2)
-        for frame in range(frames):
-            opened, fine = _smoothed_plane(earlier[0]), _smoothed_plane(earlier[1])
-            for row in range(0, num_range, block):
-                for phase in range(4):
-                    r = np.arange(row + phase // 2, min(row + block, num_range), 2)
-                    d = np.arange(phase % 2, num_doppler, 2)
-                    if len(r) and len(d):
-                        self._code_cells(stream, classes[frame], padded[frame], opened, fine, near[frame], r, d, phase)
-            earlier = np.stack([padded[frame] > 0, padded[frame] == FINE]).astype(np.int64)
+class ClassMapCoder:
+    """`code` encodes classes, or fills them in when decoding. `prior`: probabilities of the classes to begin with."""
 
-    def _code_cells(self, stream, classes, padded, opened, fine, near, r, d, phase) -> None:
-        at = np.ix_(r + 1, d + 1)
-        n = NUM_OPEN
-        around = _class_of(_neighbour_sum((padded > 0).astype(np.int64), r + 1, d + 1))
-        before = _class_of(opened[at])
-        both = _class_of((_neighbour_sum((padded > 0).astype(np.int64), r + 1, d + 1) + opened[at]) // 2)
-        by_near = np.minimum(near[np.ix_(r, d)], NUM_NEAR - 1)
-        at_bin = by_near * self.shape[2] + d
-        contexts = [
-            (phase * n + around) * n + before,
-            (both * n + before) * NUM_NEAR + by_near,
-            at_bin,
-            both * self.shape[1] + r[:, None],
-        ]
-        wanted = classes[np.ix_(r, d)].ravel()
-        contexts = [context.ravel() for context in contexts]
-        is_open = self.open.code(stream, contexts, (wanted > 0).astype(np.int64))
-        out = is_open.copy()
-        some = np.flatnonzero(is_open)
-        if len(some):
-            mine = _class_of(_neighbour_sum((padded == FINE).astype(np.int64), r + 1, d + 1)).ravel()
-            past = _class_of(fine[at]).ravel()
-            is_fine = self.fine.code(
-                stream, [(mine * n + past)[some], contexts[2][some]], (wanted[some] == FINE).astype(np.int64)
+    def __init__(self, num_doppler: int, prior: tuple[float, ...] = (0.94, 0.03, 0.03)):
+        contexts = (NUM_OPEN * NUM_FINE * len(CLASS_STRIDES), NUM_OPEN * NUM_FINE * NUM_NEAR, NUM_OPEN * num_doppler)
+        self.model = MixedModel([np.tile(prior, (num, 1)) for num in contexts])
+
+    def code(self, stream: BitStream, classes: Classes, near: Classes) -> None:
+        """`near` (time, range, doppler): strength of the nearest scatterer, 0 for none."""
+        batches = Batches(stream)
+        seen = np.zeros([size + 2 * CLASS_MARGIN for size in classes.shape], np.int16)
+        inside = seen[(slice(CLASS_MARGIN, -CLASS_MARGIN),) * 3]
+        for stride in CLASS_STRIDES:
+            for phase in PHASES if stride == CLASS_STRIDES[0] else PHASES[1:]:
+                own = tuple(slice(stride * odd, None, 2 * stride) for odd in phase)
+                if classes[own].size:
+                    contexts = self._contexts(seen, phase, stride, near[own])
+                    wanted = classes[own].ravel()
+                    parts = [
+                        self.model.code(stream, [context[batch] for context in contexts], wanted[batch])
+                        for batch in batches.of(len(wanted))
+                    ]
+                    values = np.concatenate(parts)
+                    classes[own] = values.reshape(classes[own].shape)
+                    inside[own] = SEEN.take(classes[own])
+
+    def _contexts(self, seen: np.ndarray, phase: Phase, stride: int, near: Classes) -> list[np.ndarray]:
+        found, total = np.zeros(near.shape, np.int16), 0  # sums of open cells, and of fine ones in the upper byte
+        for offset, weight in _known_neighbours(phase):
+            first = [CLASS_MARGIN + stride * (odd + step) for odd, step in zip(phase, offset, strict=True)]
+            at = tuple(
+                slice(start, start + 2 * stride * (num - 1) + 1, 2 * stride)
+                for start, num in zip(first, near.shape, strict=True)
             )
-            out[some] += is_fine
-        out = out.reshape(len(r), len(d))
-        padded[at] = out
-        classes[np.ix_(r, d)] = out
-
-
-def _neighbour_sum(flags: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarray:
-    """Weighted sum of the eight neighbours (row, bin); those along the axes count twice."""
-
-    def at(off_row: int, off_bin: int) -> np.ndarray:
-        return flags[(rows + off_row)[:, None], bins + off_bin]
-
-    straight = at(-1, 0) + at(1, 0) + at(0, -1) + at(0, 1)
-    return 2 * straight + at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1)
-
-
-def _smoothed_plane(flags: np.ndarray) -> np.ndarray:
-    """Weighted 3 x 3 sum over a padded plane of the previous frame."""
-    out = 3 * flags
-    rows = flags.copy()
-    rows[1:] += flags[:-1]
-    rows[:-1] += flags[1:]
-    around = rows.copy()
-    around[:, 1:] += rows[:, :-1]
-    around[:, :-1] += rows[:, 1:]
-    return 2 * out + around - flags
-
-
-def _class_of(count: np.ndarray) -> np.ndarray:
-    return np.searchsorted(OPEN_BOUNDS, count, side="right")
+            found += weight * seen[at]
+            total += weight
+        by_open = np.full(near.shape, NUM_OPEN - 1)
+        by_fine = np.zeros(near.shape, np.int64)
+        if total:
+            sums = np.arange(total + 1) * 16 // total
+            by_open = OPEN_BOUNDS.searchsorted(sums, "right").take(found & BYTE)
+            by_fine = FINE_BOUNDS.searchsorted(sums, "right").take(found >> 8)
+        both = by_open * NUM_FINE + by_fine
+        column = np.broadcast_to(phase[2] * stride + 2 * stride * np.arange(near.shape[2]), near.shape)
+        contexts = (
+            both * len(CLASS_STRIDES) + CLASS_STRIDES.index(stride),
+            both * NUM_NEAR + np.minimum(near, NUM_NEAR - 1),
+            column * NUM_OPEN + by_open,
+        )
+        return [context.ravel() for context in contexts]
 
 
 @dataclass(frozen=True, kw_only=True)
-class CellGroup:
-    """Open cells that are coded together: their places in the padded planes and their fixed contexts."""
+class PhaseGroup:
+    """Open cells of one phase (n,), as indices in the list of open cells; neighbours that are closed are its end."""
 
-    at: Integers  # flat index in a padded (frame, range, doppler)
-    phase: int
+    cells: Integers
+    column: Integers
     factor: Integers  # step of the cell in units of the fine step
-    by_near: Integers
-    row: Integers
-    doppler: Integers
+    around: list[tuple[int, Integers]]  # weights of the known neighbours, and where they are
+    rows: list[Integers]  # neighbours that predict the sign: along range, along Doppler, and diagonal ones
+    columns: list[Integers]
+    corners: list[Integers]
 
 
-class NumberCoder:
-    """Codes the levels of the open cells: `code` encodes them, or fills them in when decoding."""
+@dataclass(frozen=True, kw_only=True)
+class KnownSizes:
+    """Magnitudes around the values of a group in eighths of a level: same beam, preceding beams, their neighbours."""
 
-    def __init__(self, shape: tuple[int, int, int, int]):
-        self.shape = shape
-        beams, _, num_range, num_doppler = shape
-        n, t = NUM_SUMS, NUM_TRENDS
-        self.zero = Mixture(
-            [
-                BitModel(8 * t * n, 0.3, 0.5),
-                BitModel(n * NUM_NEAR * t, 0.3, 0.5),
-                BitModel(n * 3 * t, 0.3, 0.5),
-                BitModel(2 * beams * num_doppler, 0.3, 0.5),
-                BitModel(num_range * NUM_NEAR, 0.3, 0.5),
-            ]
-        )
-        self.sign = Mixture([BitModel(8 * t, 0.5, 4.0)])
-        self.size = LadderModel([n * t * 2, n * 3], 0.4)
-        self.deviation = LadderModel([n, n], 0.8)
+    own: Integers | None
+    other: Integers | None
+    wide: Integers
+    real: Integers | None = None  # magnitude of the real part, in levels
 
-    def code(self, stream: BitStream, levels: Levels, classes: Cells, near: Cells) -> None:
-        """Levels (part, beam, frame, range, doppler), changed in place when decoding."""
-        beams, frames, num_range, num_doppler = self.shape
-        wide = num_doppler + 2 * MARGIN
-        padded = np.zeros((2, beams, frames, num_range + 2 * MARGIN, wide), np.int64)
-        inside = slice(MARGIN, -MARGIN)
-        padded[:, :, :, inside, inside] = levels
-        wanted = padded.reshape(2, beams, -1).copy()
-        groups = _groups(classes, near, padded.shape[2:])
-        before = np.zeros(padded.shape[2:], np.int64)  # weighted magnitudes of the preceding beams
-        for beam in range(beams):
-            planes = np.zeros((2, wanted.shape[2]), np.int64)  # in fine steps
-            size = np.zeros(wanted.shape[2], np.int64)
-            other = spread(before).ravel()
+    def some(self, values: slice, real: Integers | None) -> "KnownSizes":
+        """Of some values, with the magnitude of the real part of all."""
+        own, other, real = (None if size is None else size[values] for size in (self.own, self.other, real))
+        return KnownSizes(own=own, other=other, wide=self.wide[values], real=real)
+
+
+class LevelCoder:
+    """Codes levels of open cells (beam, time, range, doppler).
+
+    `correlated`: whether neighbours along range, and along Doppler, predict the sign.
+    """
+
+    def __init__(self, shape: tuple[int, int, int, int], correlated: tuple[bool, bool] = (True, True)):
+        self.shape, self.correlated = shape, correlated
+        middle = np.append(SIZE_BOUNDS, 2 * SIZE_BOUNDS[-1]) / 8 * LARGER + LEAST_SCALE
+        known_or_not = np.append(middle, 1.0)
+        self.scales = [
+            np.repeat(middle, NUM_TRENDS),
+            np.repeat(known_or_not, NUM_REAL * NUM_TRENDS),
+            np.repeat(known_or_not, NUM_WIDE * NUM_TRENDS),
+            np.ones(shape[0] * shape[3] * NUM_TRENDS),
+        ]
+        self.levels = SignedModel(self.scales)
+
+    def code(self, stream: BitStream, levels: Integers, factor: Integers) -> None:
+        """Encodes `levels` (part, beam, cell) of the open cells, or fills them in when decoding.
+
+        `factor` (time, range, doppler): step of each cell in units of the finest, 0 where it is closed.
+        """
+        beams, num = levels.shape[1:]
+        if not num:
+            return
+        lattices = LATTICES_IN.get(stream.version) or _lattices_of(num, beams)
+        margins = [lattices[0] if size > 1 or stream.version == 3 else 0 for size in self.shape[1:]]
+        places = CellPlaces(factor, margins)
+        groups = list(self.groups(places, lattices, has_all=stream.version == 3))
+        neighbours = [places.of(places.at, offset) for offset in _neighbour_axes(margins)]
+        factors = factor[factor > 0][:, None]
+        batches, before, first = Batches(stream), np.zeros(num + 1, np.int64), 0
+        passes = range(1, beams + 1) if stream.version in LATTICES_IN else self.passes(beams, num)
+        for last in passes:
+            some = levels[:, first:last]
+            planes = np.zeros((2, num + 1, some.shape[1]), np.int64)
+            planes[:, :-1] = some.swapaxes(1, 2) * factors
+            size = np.zeros(planes.shape[1:], np.int64)
+            wide = sum((before[cells] for cells in neighbours), np.zeros(num, np.int64)) // 6
             for group in groups:
-                self._code_group(stream, group, wanted[:, beam], planes, size, other, beam, wide)
-            before = (before + 2 * size.reshape(before.shape)) // 2
-        levels[...] = wanted.reshape(padded.shape)[:, :, :, inside, inside]
+                known = self._known(group, size, before if first else None, wide)
+                self._code_group(stream, group, planes, known, first, batches)
+                size[group.cells] = np.abs(planes[:, group.cells]).sum(axis=0)
+            some[...] = (planes[:, :-1] // factors).swapaxes(1, 2)
+            for beam in size.T:
+                before = (beam + before) // 2 if first else beam
+                first += 1
 
-    def _code_group(self, stream, group: CellGroup, wanted, planes, size, other, beam: int, wide: int) -> None:
-        at, factor = group.at, group.factor
-        around = _around(size, at, wide) // factor
-        other_beams = other[at] // factor
-        by_around = np.searchsorted(SUM_BOUNDS, around, side="right")
-        by_other_beams = np.searchsorted(SUM_BOUNDS, other_beams, side="right")
-        by_total = np.searchsorted(SUM_BOUNDS, (around + other_beams + 1) // 2, side="right")
-        at_bin = beam * self.shape[3] + group.doppler
-        known = np.zeros(len(at), np.int64)
-        n, t = NUM_SUMS, NUM_TRENDS
-        for part in (0, 1):
-            trend = _trend(planes[part], at, wide, group.phase)
-            trend = np.sign(trend) * (np.abs(trend) // factor)
-            by_trend = np.searchsorted(TREND_BOUNDS, np.abs(trend), side="right")
-            by_known = np.minimum(known, 2)
-            contexts = [
-                ((part * 4 + group.phase) * n + by_around) * t + by_trend,
-                (by_other_beams * NUM_NEAR + group.by_near) * t + by_trend,
-                (by_total * 3 + by_known) * t + by_trend,
-                at_bin * 2 + (factor > 1),
-                group.row * NUM_NEAR + group.by_near,
+    @staticmethod
+    def passes(beams: int, num_open: int) -> Iterator[int]:
+        """The beams that are known after each pass."""
+        last = 0
+        while last < beams:
+            last = min(beams, last + min(max(last, 1), -(-VALUES_AT_ONCE // num_open)))
+            yield last
+
+    def groups(self, places: "CellPlaces", lattices: tuple[int, ...], *, has_all: bool) -> Iterator[PhaseGroup]:
+        """The phases of the lattices. `has_all`: with the neighbours along axes of one cell, which count as zeros."""
+        single = [num == 1 and not has_all for num in self.shape[1:]]
+        for stride in lattices:
+            for phase in PHASES if stride == lattices[0] else PHASES[1:]:
+                cells = places.of_phase(phase, stride)
+                if not len(cells):
+                    continue
+                at = places.at[cells]
+                around = [
+                    (weight, places.of(at, [stride * step for step in offset]))
+                    for offset, weight in _known_neighbours(phase)
+                    if not any(map(operator.and_, map(bool, offset), single))
+                ]
+                along = bool(phase[1]) and self.correlated[0] and stride == 1
+                across = bool(phase[2]) and self.correlated[1] and stride == 1
+                yield PhaseGroup(
+                    cells=cells, column=places.cell[2][cells], factor=places.factor[cells], around=around,
+                    rows=[places.of(at, (0, side, 0)) for side in (-1, 1) if along],
+                    columns=[places.of(at, (0, 0, side)) for side in (-1, 1) if across],
+                    corners=[places.of(at, (0, *side)) for side in CORNERS if along and across],
+                )  # fmt: skip
+
+    def _known(self, group: PhaseGroup, size: Integers, before: Integers | None, wide: Integers) -> KnownSizes:
+        cells, factor, beams = group.cells, group.factor, size.shape[1]
+        around, total = np.zeros((len(cells), beams), np.int64), 0
+        for weight, places in group.around:
+            around += weight * size[places]
+            total += weight
+        return KnownSizes(
+            own=(4 * around // (total * factor[:, None])).ravel() if total else None,
+            other=None if before is None else np.repeat(4 * before[cells] // factor, beams),
+            wide=np.repeat(4 * wide[cells] // factor, beams),
+        )
+
+    def _code_group(self, stream, group: PhaseGroup, planes, known: KnownSizes, first: int, batches) -> None:
+        cells, factor = group.cells, group.factor[:, None]
+        place = ((first + np.arange(planes.shape[2])) * self.shape[3] + group.column[:, None]).ravel()
+        real: Integers | None = None
+        for plane in planes:
+            trend = _trend_of(plane, group)
+            trend = None if trend is None else (trend // factor).ravel()
+            wanted = plane[cells] // factor
+            values = [
+                self._numbers(
+                    stream,
+                    known.some(batch, real),
+                    None if trend is None else trend[batch],
+                    place[batch],
+                    wanted.ravel()[batch],
+                )
+                for batch in batches.of(wanted.size)
             ]
-            sizes = [(by_total * t + by_trend) * 2, by_other_beams * 3 + by_known]
-            signs = (part * 4 + group.phase) * t + by_trend
-            values = self._numbers(stream, contexts, signs, sizes, by_around, trend, wanted[part][at])
-            wanted[part][at] = values
-            planes[part][at] = values * factor
-            known = np.abs(values) + known
-        size[at] = np.minimum(known * factor, CAP)
+            joined = np.concatenate(values)
+            plane[cells] = joined.reshape(wanted.shape) * factor
+            real = np.abs(joined)
 
-    def _numbers(self, stream, contexts, signs, sizes, by_around, trend, wanted) -> Integers:
-        is_far = np.abs(trend) >= FAR
-        if not is_far.any():
-            return self._near(stream, contexts, signs, sizes, trend, wanted)
-        values = np.zeros(len(wanted), np.int64)
-        far, near = np.flatnonzero(is_far), np.flatnonzero(~is_far)
-        values[far] = self._far(stream, [sizes[1][far] // 3, by_around[far]], trend[far], wanted[far])
-        contexts, sizes = [context[near] for context in contexts], [size[near] for size in sizes]
-        values[near] = self._near(stream, contexts, signs[near], sizes, trend[near], wanted[near])
-        return values
+    def _numbers(
+        self, stream, known: KnownSizes, trend: Integers | None, place: Integers, wanted: Integers
+    ) -> Integers:
+        expected = _expected(known, len(wanted))
+        shift, scaled = self._shifts(stream, expected)
+        by_real = NUM_REAL - 1 if known.real is None else np.minimum(known.real >> scaled, NUM_REAL - 2)
+        contexts = [
+            SIZE_BOUNDS.searchsorted(expected >> scaled, "right"),
+            _class_of(known.own, scaled, len(wanted)) * NUM_REAL + by_real,
+            _class_of(known.other, scaled, len(wanted)) * NUM_WIDE
+            + WIDE_BOUNDS.searchsorted(known.wide >> scaled, "right"),
+            place,
+        ]
+        if trend is None:
+            contexts = [context * NUM_TRENDS for context in contexts]
+            return self.levels.code(stream, contexts, shift, wanted, ALWAYS)
+        towards = np.abs(trend)
+        is_far = towards >= FAR
+        by_trend = np.where(is_far, NUM_TRENDS - 1, TREND_BOUNDS.searchsorted(towards, "right"))
+        contexts = [context * NUM_TRENDS + by_trend for context in contexts]
+        up = np.where(trend < 0, -1, 1)
+        offset = np.where(is_far, (towards + 4) // 8, 0)
+        return (self.levels.code(stream, contexts, shift, wanted * up - offset, by_trend == 0) + offset) * up
 
-    def _far(self, stream, contexts, trend, wanted) -> Integers:
-        expected = (trend + 4) // 8
-        deviation = wanted - expected
-        size = self.deviation.code(stream, contexts, np.abs(deviation))
-        some = np.flatnonzero(size)
-        size[some] *= 1 - 2 * stream.bits(np.full(len(some), 0.5), (deviation[some] < 0).astype(np.int64))
-        return expected + size
-
-    def _near(self, stream, contexts, signs, sizes, trend, wanted) -> Integers:
-        values = np.zeros(len(wanted), np.int64)
-        some = np.flatnonzero(self.zero.code(stream, contexts, (wanted != 0).astype(np.int64)))
-        if len(some):
-            up = np.where(trend[some] < 0, -1, 1)
-            against = self.sign.code(stream, [signs[some]], (wanted[some] * up < 0).astype(np.int64))
-            size = 1 + self.size.code(stream, [sizes[0][some] + against, sizes[1][some]], np.abs(wanted[some]) - 1)
-            values[some] = size * up * (1 - 2 * against)
-        return values
-
-
-def _groups(classes: Cells, near: Cells, padded_shape: tuple[int, ...]) -> list[CellGroup]:
-    """Groups open cells by block of rows and interleaving phase."""
-    frame, r, d = np.nonzero(classes)
-    phase = 2 * (r % 2) + d % 2
-    key = r // BLOCK_ROWS * 4 + phase
-    _, rows, bins = padded_shape
-    at = (frame * rows + r + MARGIN) * bins + d + MARGIN
-    factor = np.where(classes[frame, r, d] == FINE, 1, COARSER)
-    by_near = np.minimum(near[frame, r, d], NUM_NEAR - 1)
-    groups = []
-    for value in np.unique(key):
-        own = np.flatnonzero(key == value)
-        groups.append(
-            CellGroup(
-                at=at[own], phase=int(value % 4), factor=factor[own], by_near=by_near[own], row=r[own],
-                doppler=d[own],
-            )
-        )  # fmt: skip
-    return groups
+    def _shifts(self, stream: BitStream, expected: Integers) -> tuple[Integers | None, Integers | int]:
+        """Low bits of levels that are uniform, None where there are none, and by how much contexts are scaled."""
+        most = DIGITS_IN_3 if stream.version == 3 else DIGITS
+        if int(expected.max()) >> 3 < 1 << most:
+            return None, 0
+        digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
+        shift = np.maximum(digits - most, 0)
+        return shift, 0 if stream.version == 3 else shift
 
 
-def _around(size: Integers, at: Integers, wide: int) -> Integers:
-    """Weighted magnitudes of the known neighbours; cells not decoded yet are zero."""
-    out = size[at - 1] + size[at + 1] + size[at - wide] + size[at + wide]
-    out = 2 * out + size[at - wide - 1] + size[at - wide + 1] + size[at + wide - 1] + size[at + wide + 1]
-    return out + size[at - 2] + size[at + 2] + size[at - 2 * wide] + size[at + 2 * wide]
+class CellPlaces:
+    """Open cells (cell,) of an array (time, range, doppler), and how they are found from their neighbours."""
+
+    def __init__(self, factor: Integers, margins: Sequence[int]):
+        self.cell = np.nonzero(factor)
+        self.factor = factor[self.cell]
+        sizes = [num + 2 * margin for num, margin in zip(factor.shape, margins, strict=True)]
+        self.strides = (sizes[1] * sizes[2], sizes[2], 1)
+        self.at = self._flat([index + margin for index, margin in zip(self.cell, margins, strict=True)])
+        self._index = np.full(sizes[0] * self.strides[0], len(self.at))
+        self._index[self.at] = np.arange(len(self.at))
+
+    def of(self, at: Integers, offset: Sequence[int]) -> Integers:
+        """Indices of the cells that are `offset` away; the number of cells where there is none."""
+        return self._index[at + self._flat(offset)]
+
+    def of_phase(self, phase: Phase, stride: int) -> Integers:
+        """Indices of the cells of a phase of a lattice."""
+        own = [index % (2 * stride) == stride * odd for index, odd in zip(self.cell, phase, strict=True)]
+        return np.flatnonzero(own[0] & own[1] & own[2])
+
+    def _flat(self, index: Sequence):
+        return index[0] * self.strides[0] + index[1] * self.strides[1] + index[2] * self.strides[2]
 
 
-def _trend(plane: Integers, at: Integers, wide: int, phase: int) -> Integers:
-    """Level predicted from the neighbours by the windows' correlation, in eighths of a level."""
-    if phase == 0:
-        return 6 * plane[at - wide] - 2 * plane[at - 2 * wide]
-    across = plane[at - 1] + plane[at + 1]
-    along = plane[at - wide] + plane[at + wide]
-    if phase == 3:
-        corners = plane[at - wide - 1] + plane[at - wide + 1] + plane[at + wide - 1] + plane[at + wide + 1]
-        return 4 * (across + along) - 2 * corners
-    return 5 * (across if phase == 1 else along)
+def _trend_of(plane: Integers, group: PhaseGroup) -> Integers | None:
+    """Level (cell, beam) predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
+    near = [plane[cells] for cells in (*group.rows, *group.columns)]
+    if not near:
+        return None
+    if not group.corners:
+        return 5 * sum(near)
+    return 4 * sum(near) - 2 * sum(plane[cells] for cells in group.corners)
+
+
+def _lattices_of(num_open: int, num_beams: int) -> tuple[int, ...]:
+    return next(strides for least, strides in LATTICES if num_open >= least or num_beams <= FEW_BEAMS)
+
+
+def _neighbour_axes(margins: Sequence[int]) -> list[tuple[int, ...]]:
+    """Offsets to both sides along the axes of several cells."""
+    axes = [axis for axis, margin in enumerate(margins) if margin]
+    return [tuple(side * (axis == other) for other in range(3)) for axis in axes for side in (-1, 1)]
+
+
+def _expected(known: KnownSizes, num: int) -> Integers:
+    """Weighted mean of what is known about the size, in eighths of a level."""
+    total, weight = np.zeros(num, np.int64), 0
+    wide = None if known.other is None else known.wide
+    real = None if known.real is None else 8 * known.real
+    for size, share in ((known.own, OWN), (known.other, OTHER), (wide, WIDE), (real, REAL)):
+        if size is not None:
+            total += share * size
+            weight += share
+    return total // weight if weight else total + 5
+
+
+def _class_of(size: Integers | None, shift: Integers | int, num: int) -> Integers:
+    return np.full(num, UNKNOWN) if size is None else SIZE_BOUNDS.searchsorted(size >> shift, "right")

@@ -15,11 +15,8 @@ Probability = np.ndarray  # (n,) float64
 
 VERSION = 5  # of the .mmw format that is written
 MIN_PROBABILITY = 2.0**-14
-MOST_OCTAVES = 30
+MAX_OCTAVES = 30
 LARGEST_UNIFORM = 2**23
-LAST_SINGLE = 3
-RUNGS = np.array([0, 1, 2, 3, *(2**octave * half // 2 for octave in range(2, 30) for half in (2, 3))])
-MOST_RUNGS = len(RUNGS) - 2
 
 
 class BitStream(ABC):
@@ -189,7 +186,7 @@ class NumberModel:
     def __init__(self, num_contexts: int, steps: int, probability: float = 0.4):
         self.steps = steps
         self.models = [Mixture([BitModel(num_contexts, probability, 2.0)]) for _ in range(steps)]
-        self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MOST_OCTAVES)]
+        self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MAX_OCTAVES)]
 
     def code(self, stream: BitStream, context: Integers, values: Integers) -> Integers:
         out = _unary(stream, self.models, context, values)
@@ -198,7 +195,7 @@ class NumberModel:
             more = values[rest] - self.steps + 1
             wanted = np.frexp(np.maximum(more, 1).astype(np.float64))[1].astype(np.int64) - 1
             octave = _unary(stream, self.octaves, context[rest], wanted)
-            if octave.max() >= MOST_OCTAVES:
+            if octave.max() >= MAX_OCTAVES:
                 raise ValueError("a number too large: the stream is damaged")
             size = 2**octave
             out[rest] += size - 1 + stream.uniform(size, more - size)
@@ -216,34 +213,3 @@ def _unary(stream: BitStream, models: list[Mixture], context: Integers, values: 
         active = active[more > 0]
         out[active] = step + 1
     return out
-
-
-class LadderModel:
-    """Non-negative integers with mixed contexts: an adaptive bit for each rung of a ladder, then uniform bits.
-
-    Rungs are 0, 1, 2, 3, then two to an octave: 4-5, 6-7, 8-11, 12-15, 16-23, ...
-    """
-
-    def __init__(self, num_contexts: list[int], probability: float = 0.4):
-        self.rungs = [Mixture([BitModel(num, probability, 2.0) for num in num_contexts]) for _ in range(MOST_RUNGS)]
-
-    def code(self, stream: BitStream, contexts: list[Integers], values: Integers) -> Integers:
-        """Codes numbers given one context per model and number."""
-        wanted = np.searchsorted(RUNGS, values, side="right") - 1
-        rung = np.zeros(len(values), np.int64)
-        active = np.arange(len(values))
-        for step, model in enumerate(self.rungs):
-            if not len(active):
-                break
-            more = model.code(
-                stream, [context[active] for context in contexts], (wanted[active] > step).astype(np.int64)
-            )
-            active = active[more > 0]
-            rung[active] = step + 1
-        if len(active):
-            raise ValueError("a number too large: the stream is damaged")
-        out = RUNGS[rung]
-        wide = np.flatnonzero(rung > LAST_SINGLE)
-        if len(wide):
-            out[wide] += stream.uniform(RUNGS[rung[wide] + 1] - out[wide], values[wide] - out[wide])
-        return out

@@ -7,14 +7,14 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.chunk import decode_chunk
-from mmweaver.compression.chunk_transform import choices_of
-from mmweaver.compression.mmw_codec import LEAST_BYTES, check_request, check_writable, scale_of
+from mmweaver.compression.chunk_encoder import ChunkEncoder, ChunkMode, Scale, some_frames, split
+from mmweaver.compression.mmw_codec import MIN_BYTES, check_request, check_writable
 from mmweaver.compression.mmw_container import MAX_RATIO
 from mmweaver.compression.mmw_writer import MmwWriter
-from mmweaver.compression.rate_search import Progress, ratio_db
-from mmweaver.compression.segment import COARSER, SHORT_CHUNK, chunk_encoder, some_frames, split
+from mmweaver.compression.optimiser import COARSER, SHORT_CHUNK, Progress, ratio_db
+from mmweaver.compression.transforms import transform_choices
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
@@ -49,7 +49,7 @@ class ErrorSums:
 
     def add(self, truth: np.ndarray, decoded: np.ndarray) -> None:
         """Adds a piece."""
-        is_active = active_cells(truth)
+        is_active = active_mask(truth)
         signal = np.sum(np.square(np.abs(truth), dtype=np.float64), axis=-1)
         error = np.sum(np.square(np.abs(truth - decoded), dtype=np.float64), axis=-1)
         self.active_signal += float(signal[is_active].sum())
@@ -128,9 +128,7 @@ def _shares(recording: LongRecording, parts: list[range], num_bytes: int, progre
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
         low, high = (middle, high) if sum(curve(middle) for curve in curves) > num_bytes else (low, middle)
-    least = np.array(
-        [max(LEAST_BYTES, 8 * len(part) * recording.num_values_a_frame // MAX_RATIO + 1) for part in parts]
-    )
+    least = np.array([max(MIN_BYTES, 8 * len(part) * recording.num_values_a_frame // MAX_RATIO + 1) for part in parts])
     more = np.array([curve(high) for curve in curves])
     return [int(size) for size in np.floor(least + more * max(0, num_bytes - least.sum()) / more.sum())]
 
@@ -138,11 +136,11 @@ def _shares(recording: LongRecording, parts: list[range], num_bytes: int, progre
 def _size_curve(cube: RadarCube) -> Callable[[float], float]:
     """Estimated bytes over the logarithm of the step in the units of the cube."""
     check_writable(cube)
-    scale = scale_of(cube)
+    scale = Scale.of(cube)
     samples = []
     for part in split(len(cube.values), SHORT_CHUNK):
-        encoder = chunk_encoder(some_frames(cube, part), scale)
-        samples.append(encoder.sample(choices_of(encoder.target.shape)[0]))
+        encoder = ChunkEncoder(some_frames(cube, part), scale)
+        samples.append(encoder.sample(ChunkMode(transform=transform_choices(encoder.target.shape)[0]), 1.0))
     sizes = [sum(sample.at(step, COARSER).num_bytes for sample in samples) for step in CURVE_STEPS]
     steps = np.log(CURVE_STEPS) + np.log(scale.peak)
     return lambda log_step: float(np.interp(log_step, steps, sizes))

@@ -35,9 +35,9 @@ CHECK = struct.Struct("<I")
 BLOCK = struct.Struct("<IH")
 HEAD_CHECK = struct.Struct("<H")
 BLOCK_BYTES = 2**21  # of raw samples, about
-MOST_FRAMES = 4096
-MOST_ERROR = 1000
-MOST_TEXT = 2**20
+MAX_FRAMES = 4096
+MAX_ERROR = 1000
+MAX_TEXT = 2**20
 PACKETS = (".pcap", ".pcapng")
 
 Progress = Callable[[str], None]
@@ -80,12 +80,12 @@ def compress_bin(
     `config`: the radar, for the order of the words; a wrong one costs bytes, not correctness. With `max_error` every
     word may change by so many counts. Raises InputError where the file cannot be read or written.
     """
-    if not 0 <= max_error <= MOST_ERROR:
-        raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MOST_ERROR}")
+    if not 0 <= max_error <= MAX_ERROR:
+        raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MAX_ERROR}")
     if not config.complex_samples or config.num_samples % 2:
         raise InputError("a DCA1000 records complex samples, an even number per chirp; give the radar that recorded it")
     frame = bytes_of_frame(config)
-    frames_a_block = max(1, min(MOST_FRAMES, BLOCK_BYTES // frame))
+    frames_a_block = max(1, min(MAX_FRAMES, BLOCK_BYTES // frame))
     header = LosslessHeader(config=config, frames_a_block=frames_a_block, max_error=max_error)
     with _samples_of(Path(path)) as (source, size), atomic_file(Path(out)) as temporary, temporary.open("wb") as target:
         target.write(_packed_header(header))
@@ -208,7 +208,7 @@ class LosslessFile:
         if len(check) < CHECK.size or CHECK.unpack(check)[0] != zlib.crc32(front + body):
             raise self._damaged("its header fails its checksum")
         try:
-            text = zlib.decompressobj().decompress(body, MOST_TEXT)
+            text = zlib.decompressobj().decompress(body, MAX_TEXT)
             values: dict[str, Any] = parse_json(text, f"the header of {self.path}")
             header = LosslessHeader(
                 config=RadarConfig.from_values(values["radar"]), frames_a_block=int(values["frames_a_block"]),
@@ -218,7 +218,7 @@ class LosslessFile:
             raise self._damaged(str(error)) from None
         except (zlib.error, ValueError, KeyError, TypeError, OverflowError) as error:
             raise self._damaged(f"its header is malformed ({error})") from None
-        if not 0 < header.frames_a_block <= MOST_FRAMES:
+        if not 0 < header.frames_a_block <= MAX_FRAMES:
             raise self._damaged("its header is malformed (frames in a block)")
         return header
 

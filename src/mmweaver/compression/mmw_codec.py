@@ -8,22 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.compression.cell_choice import active_cells, active_power, cell_power
+from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.chunk import DecodedChunk, decode_chunk
-from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, MmwHeader, header_for, pack_mmw
-from mmweaver.compression.mode_choice import EFFORTS
-from mmweaver.compression.old_chunk import decode_old_chunk
-from mmweaver.compression.quality_search import within_error
-from mmweaver.compression.rate_search import Progress, error_db, within_bytes
-from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
+from mmweaver.compression.legacy_chunk import decode_legacy_chunk
+from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, header_for, pack_mmw
+from mmweaver.compression.optimiser import Optimiser, Progress, error_db
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
 
-LEAST_BYTES = 256
-MOST_PEAK = 1e37  # sums over a window of values close to the largest float32 would not be finite
+EFFORTS = "full", "fast"
+MIN_BYTES = 256
+FLOAT32_DB = -115.0  # where the finest step is reached: what is left is the last digits of float32
+MAX_PEAK = 1e37  # sums over a window of values close to the largest float32 would not be finite
 
 
 @single_precision()
@@ -35,60 +34,57 @@ def compress_cube(
     keep_noise: bool = False,
     effort: str = "full",
     progress: Progress = lambda _: None,
-    without: tuple[str, ...] = (),
 ) -> bytes:
-    """The bytes of a .mmw file: at most `num_bytes`, or with a signal-to-error ratio of `quality_db` in active cells.
+    """Compresses a cube; where everything fits into the bytes, without loss.
 
-    Cells without signal (less than 12 dB above the median power) may have 12 dB more error, and stay empty where they
-    hold less than that; with `keep_noise` all cells have the same error. Where everything fits, the cube is stored
-    without loss. `effort`: "full", or "fast" without a fit of scatterers. `without`: modes that are not tried, see
-    `mode_choice`. Raises InputError where the cube cannot be stored (values that are not finite, other axes than its
-    radar's) or the request cannot be met.
+    Args:
+        cube: what is stored.
+        num_bytes: of the file at most.
+        quality_db: signal-to-error ratio in active cells; either this or `num_bytes`.
+        keep_noise: the same error in all cells; by default, cells without signal (less than 12 dB above the median
+            power) may have 12 dB more, and stay empty where they hold less than that.
+        effort: "full", or "fast" without a fit of scatterers.
+        progress: called with the name of each step.
+
+    Returns:
+        The bytes of a .mmw file.
+
+    Raises:
+        InputError: where the cube cannot be stored (values that are not finite, other axes than its radar's) or the
+            request cannot be met.
     """
     check_request(num_bytes, quality_db)
-    without = (*without, *modes_without(effort))
+    check_writable(cube)
+    optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=has_points(effort))
+    header, time_s = header_for(cube.config, cube.scale, cube.grid.frame_time_s), cube.grid.frame_time_s
+    parts = optimiser.divide(num_bytes=num_bytes, quality_db=quality_db)
+    times = [time_s[part.start : part.stop] for part in parts]
     if num_bytes is not None:
         check_ratio(cube, num_bytes)
-    check_writable(cube)
-    scale = scale_of(cube)
-    segment = SegmentEncoder(cube, scale, coarser=1 if keep_noise else COARSER, without=without)
-    header = header_for(cube.config, cube.scale, cube.grid.frame_time_s)
-    progress("choosing modes")
-    framing = len(_packed(header, segment, [b""] * len(segment.plan_for(num_bytes))))
-    budget = None if num_bytes is None else num_bytes - framing
-    chunks = encoded_chunks(segment, num_bytes=budget, quality_db=quality_db, progress=progress)
+        chunks = optimiser.within_bytes(num_bytes - len(pack_mmw(header, [b""] * len(parts), times)), progress)
+    else:
+        chunks = optimiser.within_error(float(quality_db or 0), progress)
     missing = cube.values.nbytes // MAX_RATIO + 1 - sum(map(len, chunks))
     # readers distrust files that promise more; decoders ignore words of four bytes that follow
     chunks[-1] += bytes(4 * max(0, -(-missing // 4)))
-    return _packed(header, segment, chunks)
-
-
-def encoded_chunks(
-    segment: SegmentEncoder, *, num_bytes: int | None, quality_db: float | None, progress: Progress = lambda _: None
-) -> list[bytes]:
-    """The chunks of a stretch of frames, of `num_bytes` together, or to a quality in active cells."""
-    if not segment.parts:
-        segment.plan_for(num_bytes)
-    if num_bytes is not None:
-        return within_bytes(segment, num_bytes, progress)
-    return within_error(segment, float(quality_db or 0), progress)
+    return pack_mmw(header, chunks, times)
 
 
 def check_request(num_bytes: int | None, quality_db: float | None) -> None:
     """Raises InputError for a size or quality that cannot be met by any file."""
     if (num_bytes is None) == (quality_db is None):
         raise InputError("give either a number of bytes or a quality, not both")
-    if num_bytes is not None and num_bytes < LEAST_BYTES:
-        raise InputError(f"{num_bytes} bytes are too few; a .mmw file needs at least {LEAST_BYTES}")
+    if num_bytes is not None and num_bytes < MIN_BYTES:
+        raise InputError(f"{num_bytes} bytes are too few; a .mmw file needs at least {MIN_BYTES}")
     if quality_db is not None and not 1 <= quality_db <= 90:
         raise InputError(f"a quality of {quality_db:g} dB is not possible; choose 1 to 90")
 
 
-def modes_without(effort: str) -> tuple[str, ...]:
-    """Modes that an effort leaves out. Raises InputError for an unknown effort."""
+def has_points(effort: str) -> bool:
+    """Whether an effort fits scatterers. Raises InputError for an unknown effort."""
     if effort not in EFFORTS:
         raise InputError(f"unknown effort {effort!r}; choose {' or '.join(EFFORTS)}")
-    return EFFORTS[effort]
+    return effort == "full"
 
 
 def check_ratio(cube: RadarCube, num_bytes: int) -> None:
@@ -96,12 +92,6 @@ def check_ratio(cube: RadarCube, num_bytes: int) -> None:
     if num_bytes * MAX_RATIO < cube.values.nbytes:
         least = -(-cube.values.nbytes // MAX_RATIO)
         raise InputError(f"{num_bytes} bytes are too few; {len(cube.values)} frames need at least {least}")
-
-
-def scale_of(cube: RadarCube) -> Scale:
-    """Peak and active power of a cube; a cube of zeros has peak 1."""
-    power = active_power(cell_power(cube.values))
-    return Scale(peak=float(np.abs(cube.values).max()) or 1.0, active_power=power)
 
 
 @single_precision()
@@ -137,7 +127,7 @@ def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
 
 def decoded_errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
     """As `errors_db`, of values that were read again."""
-    is_active = active_cells(cube.values)
+    is_active = active_mask(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
         "all_error_db": round(error_db(cube.values, again, np.ones_like(is_active)), 2),
@@ -157,7 +147,7 @@ def values_of_bytes(data: bytes) -> CubeValues:
 
 def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> DecodedChunk:
     """Decodes one chunk of a file. Raises InputError where it is damaged."""
-    decode = decode_old_chunk if file.version in LISTED else decode_chunk
+    decode = decode_legacy_chunk if file.version in LISTED else decode_chunk
     chunk = decode(file.chunk(index), file.header.config, with_residual=with_residual)
     if chunk.frames.num_frames != file.records[index].num_frames:
         raise InputError(f"{file.path} is damaged: chunk {index} has a wrong number of frames; compress it again")
@@ -229,10 +219,5 @@ def check_writable(cube: RadarCube) -> None:
             )
     if not np.isfinite(cube.values).all():
         raise InputError("the cube holds values that are not finite; repair the recording")
-    if np.abs(cube.values).max() > MOST_PEAK:
-        raise InputError(f"the cube holds values above {MOST_PEAK:g}, where float32 ends; scale them down")
-
-
-def _packed(header: MmwHeader, segment: SegmentEncoder, chunks: list[bytes]) -> bytes:
-    time_s = segment.cube.grid.frame_time_s
-    return pack_mmw(header, chunks, [time_s[part.start : part.stop] for part in segment.parts])
+    if np.abs(cube.values).max() > MAX_PEAK:
+        raise InputError(f"the cube holds values above {MAX_PEAK:g}, where float32 ends; scale them down")

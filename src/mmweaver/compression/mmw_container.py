@@ -43,7 +43,7 @@ FOLLOWING, FROM_FIRST, ALL_TIMES = 0, 1, 2  # frame times: a period on from the 
 TIME = struct.Struct("<d")
 HEAD_CHECK = struct.Struct("<H")  # tells a damaged length from a file that was cut short
 SAME_TIME_S = 1e-9
-MOST_HEADER, MOST_TEXT = 0xFFFF, 1 << 24
+MAX_HEADER, MAX_TEXT = 0xFFFF, 1 << 24
 # Deflate dictionary of header text; part of the format, so it must never change.
 WORDS = (
     b'{"chunks":[[20,],"frame_period_s":,"frame_start_s":,"frame_time_s":,"radar":{"schema_version":1,"name":"",'
@@ -89,7 +89,7 @@ def pack_header(header: MmwHeader) -> bytes:
     text = json.dumps(values, separators=(",", ":"), allow_nan=False).encode()
     packer = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zlib.Z_DEFAULT_STRATEGY, WORDS)
     body = packer.compress(text) + packer.flush()
-    if len(body) > MOST_HEADER:
+    if len(body) > MAX_HEADER:
         raise InputError("the radar's description is too long for a .mmw file; shorten its name")
     front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
     return front + CHECK.pack(zlib.crc32(front))
@@ -316,7 +316,7 @@ def _radar_of(values: dict[str, Any]) -> RadarConfig:
 
 def _inflated(body: bytes) -> bytes:
     unpacker = zlib.decompressobj(-15, WORDS)
-    return unpacker.decompress(body, MOST_TEXT)
+    return unpacker.decompress(body, MAX_TEXT)
 
 
 def _header_of(values: dict[str, Any]) -> MmwHeader:

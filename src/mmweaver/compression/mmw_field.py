@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Complex
 
-from mmweaver.compression.chunk import DecodedChunk
-from mmweaver.compression.chunk_frames import ChunkFrames
+from mmweaver.compression.chunk import ChunkFrames, DecodedChunk
 from mmweaver.compression.mmw_codec import grid_of_file, read_chunk
 from mmweaver.compression.mmw_container import MmwFile
 from mmweaver.core.records import CubeGrid

@@ -11,12 +11,10 @@ from mmweaver.compression.mmw_codec import (
     check_ratio,
     check_request,
     check_writable,
-    encoded_chunks,
-    modes_without,
-    scale_of,
+    has_points,
 )
 from mmweaver.compression.mmw_container import LISTED, MmwFile, MmwHeader, header_for, pack_header, pack_record
-from mmweaver.compression.segment import COARSER, SegmentEncoder
+from mmweaver.compression.optimiser import Optimiser
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
@@ -84,14 +82,15 @@ class MmwWriter:
             raise InputError(
                 f"{self.path} holds frames of another radar or scale; write these into a file of their own"
             )
-        without = modes_without(effort)
-        segment = SegmentEncoder(cube, scale_of(cube), coarser=1 if keep_noise else COARSER, without=without)
-        parts = segment.plan_for(num_bytes)
+        optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=has_points(effort))
+        parts = optimiser.divide(num_bytes=num_bytes, quality_db=quality_db)
         if num_bytes is not None:
-            num_bytes -= self._framing(cube.grid.frame_time_s, parts)
-        chunks = self.last_chunks = encoded_chunks(segment, num_bytes=num_bytes, quality_db=quality_db)
+            chunks = optimiser.within_bytes(num_bytes - self._framing(cube.grid.frame_time_s, parts), lambda _: None)
+        else:
+            chunks = optimiser.within_error(float(quality_db or 0), lambda _: None)
+        self.last_chunks = chunks
         before = self._end
-        for chunk, part in zip(chunks, segment.parts, strict=True):
+        for chunk, part in zip(chunks, parts, strict=True):
             time_s = cube.grid.frame_time_s[part.start : part.stop]
             self._write(pack_record(chunk, time_s, self._header, self._last_s))
             self._last_s = float(time_s[-1])

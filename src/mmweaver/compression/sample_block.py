@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Int
 
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
-from mmweaver.compression.symbol_model import MOST_BITS, MixedModel
+from mmweaver.compression.symbol_model import MAX_BITS, MixedModel
 
 Array = np.ndarray
 Samples = Int[np.ndarray, "loop antenna sample part"]
@@ -26,7 +26,7 @@ INPUTS = (
 BEFORE, AFTER = 4, 1  # margins around loops and samples
 SKEW = 2  # diagonals: a loop is so many samples behind the loop before it
 FRACTION = 14  # bits of a weight after the point
-MOST_WEIGHT = 2**15 - 1
+MAX_WEIGHT = 2**15 - 1
 OWN_WEIGHTS = 16384  # samples of an antenna from which on it has weights of its own
 FITTED_ROWS = 6000
 RIDGE = 1e-4
@@ -39,8 +39,8 @@ SCALED = 256  # sizes are integers in this fraction of a count
 FORGET = 8  # groups over which sizes are averaged
 SUDDEN = 4  # a size that falls by this factor is believed at once
 LARGEST = 2**15
-MOST_SAMPLES = 2**27
-SMALL_SAMPLES, MOST_SAMPLES_A_BYTE = 2**23, 10_000  # what a block may unpack to, whatever it says
+MAX_SAMPLES = 2**27
+SMALL_SAMPLES, MAX_SAMPLES_A_BYTE = 2**23, 10_000  # what a block may unpack to, whatever it says
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,9 +74,9 @@ def decode_block(data: bytes, expected: BlockShape) -> Samples:
     """The samples of a block of the expected shape, int16. Raises ValueError for what no encoder writes."""
     loops, antennas, samples, parts, max_error, sets = HEADER.unpack_from(data)
     shape = BlockShape(loops=loops, antennas=antennas, samples=samples, parts=parts)
-    if shape != expected or shape.size > MOST_SAMPLES:
+    if shape != expected or shape.size > MAX_SAMPLES:
         raise ValueError("a block of another shape")
-    if shape.size > max(SMALL_SAMPLES, MOST_SAMPLES_A_BYTE * len(data)):
+    if shape.size > max(SMALL_SAMPLES, MAX_SAMPLES_A_BYTE * len(data)):
         raise ValueError("more samples than its bytes can hold")
     if sets not in (1, antennas):
         raise ValueError("impossible weights")
@@ -172,7 +172,7 @@ def _least_squares(table: Array, parts: int) -> Array:
         normal = columns.T @ columns
         ridge = RIDGE * np.trace(normal) / len(normal) * len(columns) ** -0.5 + 1e-9
         solved = np.linalg.solve(normal + ridge * np.eye(len(normal)), columns.T @ table[:, width + part])
-        out[part, : width + part] = np.clip(np.rint(solved * 2**FRACTION), -MOST_WEIGHT, MOST_WEIGHT)
+        out[part, : width + part] = np.clip(np.rint(solved * 2**FRACTION), -MAX_WEIGHT, MAX_WEIGHT)
     return out
 
 
@@ -181,7 +181,7 @@ def _code_residual(stream: BitStream, residual: Array) -> None:
     loops = len(residual)
     together = max(1, GROUP // residual[0].size)
     symbols = _symbol_models()
-    escapes = MixedModel([np.ones((1, MOST_BITS))])
+    escapes = MixedModel([np.ones((1, MAX_BITS))])
     size = np.full(residual.shape[1:], 8 * SCALED, np.int64)
     first = count = 0
     while first < loops:
@@ -250,7 +250,7 @@ def _code_numbers(stream: BitStream, counts: Array, escapes: MixedModel, by_clas
 def _code_far(stream: BitStream, escapes: MixedModel, values: Array) -> Array:
     size = np.abs(values) + 1
     bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
-    bits = escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MOST_BITS - 1))
+    bits = escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
     top = np.int64(1) << bits
     size = top + stream.uniform(top, size - top)
     negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))

@@ -17,7 +17,7 @@ PRIOR = 3.0  # symbols that the initial distribution counts for
 HALF = 12  # signed numbers from -HALF to HALF have a symbol each; others escape
 ESCAPE = 2 * HALF + 1
 SIZE = ESCAPE + 1
-MOST_BITS = 30
+MAX_BITS = 30
 FIRST_BATCH = 16
 ALWAYS = np.ones(1, bool)  # all numbers of a batch are as likely as their negatives
 
@@ -120,7 +120,7 @@ class SignedModel:
     def __init__(self, scales: list[np.ndarray]):
         """`scales` (context,) of each table: the magnitude to expect."""
         self.symbols = MixedModel([prior_of(scale) for scale in scales])
-        self.escapes = MixedModel([np.ones((1, MOST_BITS))])
+        self.escapes = MixedModel([np.ones((1, MAX_BITS))])
 
     def code(
         self, stream: BitStream, contexts: list[Integers], shift: Integers | None, values: Integers, mirrored
@@ -133,7 +133,7 @@ class SignedModel:
             if len(far):
                 out[far] = self._far(stream, values[far])
             return out
-        if shift.max(initial=0) > MOST_BITS:
+        if shift.max(initial=0) > MAX_BITS:
             raise ValueError("a number too large: the stream is damaged")
         half = (1 << shift) >> 1
         high = (values + half) >> shift
@@ -153,7 +153,7 @@ class SignedModel:
     def _far(self, stream: BitStream, values: Integers) -> Integers:
         size = np.abs(values) + 1
         bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
-        bits = self.escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MOST_BITS - 1))
+        bits = self.escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
         top = 1 << bits
         size = top + stream.uniform(top, size - top)
         negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))
@@ -167,17 +167,3 @@ def prior_of(scale: np.ndarray) -> np.ndarray:
     prior = 1.0 / (relative * relative * relative)
     prior[:, ESCAPE] = 0.003
     return prior
-
-
-def adaptive_bits(counts: np.ndarray, prior: np.ndarray) -> float:
-    """Length of the adaptive codes of so many symbols (context, symbol) with initial distributions.
-
-    It depends on the counts alone, not on the order of the symbols.
-    """
-    from scipy.special import gammaln
-
-    seen = counts.any(axis=1)
-    counts, start = counts[seen], prior[seen]
-    start = PRIOR * start / start.sum(axis=1, keepdims=True)
-    total = gammaln(counts.sum(axis=1) + PRIOR) - gammaln(PRIOR)
-    return float((total.sum() - (gammaln(counts + start) - gammaln(start)).sum()) / np.log(2))

@@ -1,16 +1,164 @@
-"""Unitary transforms of a residual: antennas to beams, and a DCT over frames at zero Doppler."""
+"""Unitary transforms of a chunk that compact its energy, and the choice among them.
+
+Antennas: beams of the array, or the principal directions (KLT) of this chunk. Time: nothing, a DCT over the frames in
+the static Doppler bins, or in all. Doppler, where there are few bins: nothing, or their KLT, for short windows make
+them linearly dependent (two loops under a Hann window are one). Range: nothing, or a DCT, which collects what FFT
+windows spread over neighbouring cells, noise too, and pays where most cells have levels.
+"""
+
+import math
+import struct
+from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float
-
-from mmweaver.fields.beams import beams_of as beams_of
+from jaxtyping import Complex
 
 Array = np.ndarray
 STATIC_BINS = 1  # Doppler bins on either side of zero that static clutter fills
+NO_DCT, STATIC_DCT, FULL_DCT = 0, 1, 2
+MAX_DOPPLER = 16  # bins up to which their KLT is worth its bytes
+WORD = 2**15 - 1
+ANTENNA_WORD = 127
+CORRELATED = 0.3  # correlation of neighbouring cells from which they predict each other's sign
+MAX_MATRIX = 64  # numbers up to which a product with a matrix is faster than a fast transform
+HEADER = struct.Struct("<B")
 
 
-def dct_matrix(num: int) -> Float[Array, "num num"]:
-    """The orthonormal DCT-II.
+@dataclass(frozen=True, kw_only=True)
+class TransformChoice:
+    """Which transforms a chunk uses."""
+
+    time: int = STATIC_DCT
+    antenna_klt: bool = False
+    doppler_klt: bool = False
+    range_dct: bool = False
+
+    def name(self) -> str:
+        """For people: "beams, DCT of static bins"."""
+        parts = ["KLT of antennas" if self.antenna_klt else "beams"]
+        parts += [("", "DCT of static bins", "DCT of all bins")[self.time]] if self.time else []
+        parts += ["KLT of Doppler bins"] * self.doppler_klt + ["DCT of ranges"] * self.range_dct
+        return ", ".join(parts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkTransform:
+    """Matrices of a choice, as the decoder has them.
+
+    `signs`: whether neighbouring values along range and along Doppler have like ones.
+    """
+
+    choice: TransformChoice
+    antennas: Complex[Array, "beam antenna"]
+    doppler: Complex[Array, "index doppler"] | None
+    signs: tuple[bool, bool]
+    words: bytes  # of the KLTs
+
+    @classmethod
+    def of(
+        cls,
+        choice: TransformChoice,
+        values: Complex[Array, "frame range doppler antenna"],
+        beams: Complex[Array, "beam antenna"],
+    ) -> "ChunkTransform":
+        """The transform of a choice that suits these values."""
+        antennas, words, doppler = beams, b"", None
+        if choice.antenna_klt:
+            flat = values.reshape(-1, values.shape[3])
+            antennas, words = _klt(flat.T @ flat.conj(), ANTENNA_WORD)
+        if choice.doppler_klt:
+            flat = np.moveaxis(values, 2, 3).reshape(-1, values.shape[2])
+            doppler, more = _klt(flat.T @ flat.conj(), WORD)
+            words += more
+        signs = _is_correlated(values, 1), _is_correlated(values, 2)
+        return cls(choice=choice, antennas=antennas, doppler=doppler, signs=signs, words=words)
+
+    @property
+    def correlated(self) -> tuple[bool, bool]:
+        """Whether neighbouring coefficients along range and along Doppler predict each other's sign."""
+        return self.signs[0] and not self.choice.range_dct, self.signs[1] and self.doppler is None
+
+    @property
+    def packed(self) -> bytes:
+        """Header and the words of the KLTs."""
+        choice, (rows, columns) = self.choice, self.correlated
+        header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * rows + 32 * columns
+        return bytes([header + 64 * choice.range_dct]) + self.words
+
+    @classmethod
+    def unpack(cls, data: bytes, beams: Complex[Array, "beam antenna"], num_doppler: int) -> "ChunkTransform":
+        """The transform of a stream that begins with `packed`. Raises ValueError for what no encoder writes."""
+        (header,) = HEADER.unpack_from(data)
+        choice = TransformChoice(
+            time=header & 3, antenna_klt=bool(header & 4), doppler_klt=bool(header & 8), range_dct=bool(header & 64)
+        )
+        if header >= 128 or choice.time > FULL_DCT or (choice.doppler_klt and num_doppler > MAX_DOPPLER):
+            raise ValueError("impossible transform")
+        at, antennas, doppler = HEADER.size, beams, None
+        if choice.antenna_klt:
+            antennas, at = _unpack_klt(data, at, len(beams), ANTENNA_WORD)
+        if choice.doppler_klt:
+            doppler, at = _unpack_klt(data, at, num_doppler, WORD)
+        return cls(
+            choice=choice, antennas=antennas, doppler=doppler, signs=(bool(header & 16), bool(header & 32)),
+            words=data[HEADER.size : at],
+        )  # fmt: skip
+
+    def forward(self, values: Complex[Array, "frame range doppler antenna"]) -> Complex[Array, "beam time range index"]:
+        """Coefficients of values."""
+        out = np.tensordot(self.antennas.astype(values.dtype), values, axes=(1, 3))
+        if self.doppler is not None:
+            out = out @ self.doppler.T.astype(values.dtype)
+        out = self._over_time(out, inverse=False)
+        return _dct(out, 2, inverse=False) if self.choice.range_dct else out
+
+    def inverse(self, values: Complex[Array, "beam time range index"]) -> Complex[Array, "frame range doppler antenna"]:
+        """Values of coefficients."""
+        out = _dct(values, 2, inverse=True) if self.choice.range_dct else values
+        out = self._over_time(out, inverse=True)
+        if self.doppler is not None:
+            out = out @ self.doppler.conj().astype(values.dtype)
+        return np.moveaxis(np.tensordot(self.antennas.conj().astype(values.dtype), out, axes=(0, 0)), 0, 3)
+
+    def _over_time(self, values: Array, *, inverse: bool) -> Array:
+        if self.choice.time == NO_DCT or values.shape[1] == 1:
+            return values
+        chosen = slice(None) if self._is_full else static_bins(values.shape[3])
+        out = values.copy()
+        out[..., chosen] = _dct(values[..., chosen], 1, inverse=inverse)
+        return out
+
+    @property
+    def _is_full(self) -> bool:
+        return self.choice.time == FULL_DCT or self.doppler is not None
+
+    def spread(self, mask: Array) -> Array:
+        """Mask of cells (frame, range, doppler) -> mask of coefficients that hold some of them."""
+        out = mask.copy()
+        if self.doppler is not None:
+            out[...] = mask.any(axis=2, keepdims=True)
+        if self.choice.time != NO_DCT:
+            chosen = slice(None) if self._is_full else static_bins(mask.shape[2])
+            out[:, :, chosen] = out[:, :, chosen].any(axis=0)
+        if self.choice.range_dct:
+            out[...] = out.any(axis=1, keepdims=True)
+        return out
+
+
+def transform_choices(shape: tuple[int, ...]) -> list[TransformChoice]:
+    """The transforms that can pay for a chunk (frame, range, doppler, antenna), the usual one first."""
+    frames, _, doppler, antennas = shape
+    times = [NO_DCT] if frames == 1 else [STATIC_DCT, FULL_DCT] if doppler > 3 else [FULL_DCT]
+    found = [TransformChoice(time=time) for time in times]
+    if antennas > 1:
+        found += [TransformChoice(time=time, antenna_klt=True) for time in times]
+    if 1 < doppler <= MAX_DOPPLER:
+        found += [TransformChoice(time=times[-1], antenna_klt=klt, doppler_klt=True) for klt in {False, antennas > 1}]
+    return found
+
+
+def dct_matrix(num: int) -> Array:
+    """The orthonormal DCT-II (num, num).
 
     >>> bool(np.allclose(dct_matrix(5) @ dct_matrix(5).T, np.eye(5)))
     True
@@ -21,29 +169,60 @@ def dct_matrix(num: int) -> Float[Array, "num num"]:
     return matrix
 
 
-def to_coefficients(
-    residual: Complex[Array, "frame range doppler antenna"], beams: Complex[Array, "beam antenna"]
-) -> Complex[Array, "beam frame range doppler"]:
-    """Transforms antennas to beams and, in the static Doppler bins, frames to DCT coefficients."""
-    values = np.tensordot(beams, residual, axes=(1, 3))
-    return _transform_static(values, dct_matrix(values.shape[1]))
-
-
-def from_coefficients(
-    values: Complex[Array, "beam frame range doppler"], beams: Complex[Array, "beam antenna"]
-) -> Complex[Array, "frame range doppler antenna"]:
-    """The inverse of `to_coefficients`."""
-    values = _transform_static(values.copy(), dct_matrix(values.shape[1]).T)
-    return np.moveaxis(np.tensordot(beams.conj(), values, axes=(0, 0)), 0, 3)
-
-
 def static_bins(num_doppler: int) -> slice:
     """Doppler cells that static clutter fills."""
     middle = num_doppler // 2
     return slice(max(0, middle - STATIC_BINS), middle + STATIC_BINS + 1)
 
 
-def _transform_static(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    static = static_bins(values.shape[3])
-    values[..., static] = np.einsum("ts,bsrd->btrd", matrix, values[..., static], optimize=True)
-    return values
+def _dct(values: Array, axis: int, *, inverse: bool) -> Array:
+    """Orthonormal DCT over an axis; complex64 stays complex64."""
+    from scipy import fft
+
+    num, after = values.shape[axis], math.prod(values.shape[axis + 1 :])
+    if num <= MAX_MATRIX and values.dtype == np.complex64:
+        matrix = dct_matrix(num).astype(np.float32)
+        flat = np.ascontiguousarray(values).view(np.float32).reshape(-1, num, 2 * after)
+        return ((matrix.T if inverse else matrix) @ flat).view(np.complex64).reshape(values.shape)
+
+    transform = fft.idct if inverse else fft.dct
+    real, imaginary = (transform(part, axis=axis, norm="ortho") for part in (np.real(values), np.imag(values)))
+    return real + values.dtype.type(1j) * imaginary
+
+
+def _klt(covariance: Array, word: int) -> tuple[Array, bytes]:
+    """Principal directions, strongest first, as the decoder gets them, and their bytes."""
+    _, vectors = np.linalg.eigh(covariance.astype(np.complex128))
+    rows = vectors[:, ::-1].T.conj()
+    words = np.rint(np.stack([np.real(rows), np.imag(rows)]) * word).astype(_word_type(word))
+    return _orthonormal(words, word), words.tobytes()
+
+
+def _unpack_klt(data: bytes, at: int, num: int, word: int) -> tuple[Array, int]:
+    words = np.frombuffer(data, _word_type(word), 2 * num * num, at).reshape(2, num, num)
+    return _orthonormal(words, word), at + words.nbytes
+
+
+def _word_type(word: int) -> str:
+    return "<i1" if word == ANTENNA_WORD else "<i2"
+
+
+def _orthonormal(words: Array, word: int) -> Array:
+    """The unitary matrix nearest to rounded directions."""
+    left, _, right = np.linalg.svd((words[0] + 1j * words[1]) / word)
+    return left @ right
+
+
+def _is_correlated(values: Array, axis: int) -> bool:
+    """Whether neighbours along an axis have the same sign, as the FFT windows make them in centred phase."""
+    if values.shape[axis] < 2:
+        return False
+    before, num = math.prod(values.shape[:axis]), values.shape[axis]
+    flat = np.ascontiguousarray(values)
+    flat = flat.view(flat.real.dtype).reshape(before, num, -1)
+    first, second = flat[:, :-1], flat[:, 1:]
+    # einsum copies nothing, vdot both sides
+    product, energy, other = (
+        float(np.einsum("nik,nik->", *pair)) for pair in ((first, second), (first, first), (second, second))
+    )
+    return bool(product > CORRELATED * math.sqrt(energy * other))

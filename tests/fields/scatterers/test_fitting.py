@@ -30,15 +30,6 @@ def test_many_scatterers_are_fitted_down_to_the_noise():
     assert counts.sum() <= 90
 
 
-def test_replacing_the_weakest_does_no_harm():
-    cube = crowd()
-    fit_window = FitWindow.of(SMALL, 3, 0)
-    working = fit_window.working(cube.values)
-    plain, _ = left_db(working, fit_window, FitRecipe(num_points=30, stages=5))
-    swapped, _ = left_db(working, fit_window, FitRecipe(num_points=30, stages=5, swaps=2))
-    assert swapped < plain + 0.5
-
-
 def test_frames_of_noise_get_no_scatterers():
     parts = torch.randn(2, 2, 24, 16, 12, generator=torch.Generator().manual_seed(0))
     noise = torch.complex(parts[0], parts[1])

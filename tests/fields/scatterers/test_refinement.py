@@ -82,22 +82,33 @@ def test_a_step_equals_that_of_the_explicit_jacobian():
 
     Ours leaves out the slow turns (TDM, migration, squint), so it is near, not equal.
     """
-    from mmweaver.fields.scatterers.layout_vector import ScattererLayout
+
+    def packed(points: Points) -> torch.Tensor:
+        """Scatterers (frame, point) as vectors of their parameters; bins in tens, so that all are of order 1."""
+        bins = [points.range_bin / 10, points.doppler_bin / 10]
+        parts = [*bins, *points.direction.unbind(-1), points.amplitude.real, points.amplitude.imag]
+        return torch.stack(parts, dim=-1).flatten(-2)
+
+    def points_of(row: torch.Tensor) -> Points:
+        parts = row.unflatten(-1, (3, 6))
+        return Points(
+            range_bin=10 * parts[..., 0], doppler_bin=10 * parts[..., 1], direction=parts[..., 2:4],
+            amplitude=torch.complex(parts[..., 4], parts[..., 5]),
+        )  # fmt: skip
 
     truth = random_points(3, num_frames=1)
-    layout = ScattererLayout.over(AXES, 3)
-    start = layout.packed(truth).double()[0] + 0.002
+    start = packed(truth).double()[0] + 0.002
     target = RESPONSE.render(truth, AXES)[0]
 
     def left(row: torch.Tensor) -> torch.Tensor:
-        return torch.view_as_real(target - RESPONSE.render(layout.points(row.float()), AXES)).flatten().double()
+        return torch.view_as_real(target - RESPONSE.render(points_of(row.float()), AXES)).flatten().double()
 
     step = 1e-3
     columns = [(left(start + step * unit) - left(start - step * unit)) / (2 * step) for unit in torch.eye(18).double()]
     exact = start - torch.linalg.lstsq(torch.stack(columns, 1), left(start)).solution
     damping = Damping.fresh(1)
     damping.value = torch.full((1,), 1e-5)
-    rows = layout.points(start[None].float())
+    rows = points_of(start[None].float())
     ours, _ = refined(rows, target[None], RESPONSE, AXES, damping, steps=1, largest=50)
-    moved = layout.packed(ours)[0].double() - start
+    moved = packed(ours)[0].double() - start
     assert torch.linalg.norm(moved - (exact - start)) < 0.3 * torch.linalg.norm(exact - start)

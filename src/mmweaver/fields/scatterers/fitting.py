@@ -31,6 +31,7 @@ LEAST_SHARE = (
 )
 CALIBRATED_EVERY = 4  # stages: gains change slowly
 NOISE_CELLS = 10_000  # of which the median tells the power of the noise
+LARGEST_GROUP = 160  # scatterers that are solved for together
 WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
@@ -50,11 +51,7 @@ class FitRecipe:
     with_calibration: bool = False
     stages: int = 30
     growth: float = 1.0  # points after a share of the stages are that share of all to this power
-    steps_a_stage: int = 1
     last_steps: int = 8
-    swaps: int = 0  # rounds in which the weakest points are replaced
-    swapped_share: float = 0.15
-    largest_group: int = 160
     least_gain: float = 8.0
     most_noise: float | None = None  # noise power of a cell, where it is known; the residual may show less
 
@@ -90,12 +87,7 @@ class _Fit:
                 self.active_beams = self._worthwhile_beams()
                 self._update_static()
             self._fill(round(self._most_points() * ((stage + 1) / recipe.stages) ** recipe.growth))
-            self._refine(recipe.steps_a_stage)
-        for _ in range(recipe.swaps):
-            self._keep(round(self._most_points() * (1 - recipe.swapped_share)))
             self._refine(1)
-            self._add(self._most_points())
-            self._refine(max(2, recipe.steps_a_stage))
         self._refine(recipe.last_steps)
         return Layers(
             points=compact(self.points.points()), static=torch.from_numpy(self.static),
@@ -137,7 +129,7 @@ class _Fit:
             return
         self.points = refined_factors(
             self.points, _as_matrices(self.received), _as_matrices(self.residual), self.damping,
-            steps=steps, largest=self.recipe.largest_group,
+            steps=steps, largest=LARGEST_GROUP,
         )  # fmt: skip
         self.refinements += 1
         if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
