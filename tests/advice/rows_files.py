@@ -175,11 +175,6 @@ ROWS = (
             add("--quality", "30"),
         ),
     ),
-    Row(
-        "codecs are compared at a size",
-        "compress {walk}/radar.npz --compare --quality 30",
-        (both(instead("at a size", "--quality 30"), add("--bytes", "4000")),),
-    ),
     Row("--append adds to a .mmw file", f"{COMPRESS} --append --quality 30 --overwrite", (drop("--overwrite"),)),
     Row(
         "a cube has --quality, and is stored exactly",
