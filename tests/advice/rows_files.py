@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.advice.harness import Row, add, both, drop, edit, first, flag, instead, plus
+from tests.advice.harness import Row, add, drop, edit, first, flag, instead, plus
 
 PROCESS = "process {iq} --radar {radar} --no-pictures --no-analysis --out out"
 COMPRESS = "compress {walk}/radar.npz -o out.mmw"
