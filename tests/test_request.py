@@ -89,8 +89,8 @@ def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
         parsed.append(text)
         return parse(text)
 
-    parse = module.parse
-    monkeypatch.setattr(module, "parse", counting)
+    parse = module.parse_sentence
+    monkeypatch.setattr(module, "parse_sentence", counting)
     parse_request(AWR1843, [TEXT, "a person waves"])
     assert parsed == [TEXT, "a person waves"]
 

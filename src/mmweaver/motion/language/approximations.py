@@ -10,14 +10,8 @@ from functools import cache
 from pathlib import Path
 
 from mmweaver.core.safe_files.safe_text import read_toml
+from mmweaver.motion.language.rewrite_rules import with_parts
 
-_PARTS = {  # of patterns
-    "<own>": r"(?:(?:his|her|its|their|the|both|a|an|some|one|my|own) )*",
-    "<whose>": r"(?:(?:his|her|its|their|the|both|a|an|one|each) )*",
-    "<side>": r"(?:left|right)",
-    "<thing>": r"(?: +(?!and\b|then\b|while\b|with\b|before\b|after\b|,)[a-z'-]+){0,4}",
-    "<end>": r"(?=$|[,.;]| and\b| then\b| while\b| before\b)",
-}
 _ALWAYS, _IN_PART = ("instead_of_another", "always"), ("in_part",)
 MARK = "approx_"
 _IN_TURN = "in turn"  # the fourth column of a row
@@ -36,27 +30,20 @@ class Approximation:
     in_turn: bool = False  # two movements for one, shown one after the other
 
 
-def _read() -> tuple[Approximation, ...]:
-    table = read_toml(Path(__file__).with_suffix(".toml"))
-    return tuple(
-        Approximation(
-            _whole(pattern), instead, how, always=group in _ALWAYS, in_part=group in _IN_PART, in_turn=_IN_TURN in more
-        )
-        for group, rows in table.items()
-        for pattern, instead, how, *more in rows
-    )
-
-
-def _whole(pattern: str) -> str:
-    for name, part in _PARTS.items():
-        pattern = pattern.replace(name, part)
-    return pattern
-
-
-APPROXIMATIONS = _read()
-_pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
+_TABLE = read_toml(Path(__file__).with_suffix(".toml"))
+APPROXIMATIONS = tuple(
+    Approximation(pattern, instead, how, always=group in _ALWAYS, in_part=group in _IN_PART, in_turn=_IN_TURN in more)
+    for group, rows in _TABLE["rows"].items()
+    for pattern, instead, how, *more in rows
+)
 _LINK = re.compile(r"[,.;]|\b(?:and|then|while|before|after)\b")
 _HELD = re.compile(r"<(\d+)>(?: +for (\d+(?:\.\d+)?) seconds\b)?")
+
+
+@cache
+def _pattern(number: int) -> re.Pattern[str]:
+    """Compiled when first tried: most sentences need few of them, and all take 0.1 CPU-s."""
+    return re.compile(with_parts(APPROXIMATIONS[number].pattern, _TABLE["parts"]))
 
 
 def _is_adjective(found: re.Match[str]) -> bool:
@@ -92,7 +79,7 @@ def with_approximations(
             held.append(f"{at_once}{_filled(found, one.instead)} {MARK}{words}_{number}")
             return f" <{len(held) - 1}> "
 
-        folded = _pattern(one.pattern).sub(hold, folded)
+        folded = _pattern(number).sub(hold, folded)
     return " ".join(_HELD.sub(lambda found: _in_turn(held[int(found[1])], found[2]), folded).split()) if held else text
 
 

@@ -16,7 +16,7 @@ from mmweaver.motion.language.words import word_of
 _LOST = re.compile(r"((?:'[^']+'(?: and |, )?)+) (?:is|are) not shown")
 _NOT_SHOWN = re.compile(r"((?:the|what|which|how|where) [^';,]*(?:'[^']*')?) is not shown")
 _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
-_ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `rough_readings`
+_ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `fallback_parsing`
 _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
     "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",

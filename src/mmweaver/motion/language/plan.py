@@ -99,7 +99,7 @@ class ClauseRecord:
     clause: str
     status: str = DONE  # done | approximated | not done
     how: str = ""
-    shown: str = ""  # all that its steps show, in their order (`named_steps`); "" where it has none
+    shown: str = ""  # all that its steps show, in their order (`step_names`); "" where it has none
 
     @property
     def sentence(self) -> str:

@@ -267,6 +267,7 @@ def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
 def _once_more(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
     on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
+    on_the_spot |= last.lower in ("leap", "crawl", "limp", "stagger")  # of the walks `_goes_elsewhere` says more
     on_the_spot |= last.upper in AIMED and last.facing == OPPOSITE.get(parsed.about.direction)
     sides = (last.direction, last.facing if last.upper in AIMED else "")
     other_side = parsed.link == "and" and OPPOSITE.get(parsed.about.direction) in sides
