@@ -9,14 +9,15 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
-from mmweaver.recognition.feature_matching import FAR, MOST_FAR, MOST_OUTSIDE, feature_distances, outside_per_feature
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.recogniser import Recogniser
+from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
 from mmweaver.recognition.scoring import Evaluation, report
 from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
 from mmweaver.recognition.window_features import moving_points
 
 LISTED = 10  # features that differ most
+FAR = 0.5  # Kolmogorov-Smirnov distance above which a feature lies elsewhere
+MOST_FAR, MOST_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is due
 MISTAKEN = 0.3  # of generated windows of a label, that are taken for another label
 
 
@@ -86,20 +87,30 @@ def hardly_distinct(model: Recogniser) -> list[str]:
     return found
 
 
-def distance(model: Recogniser, features: np.ndarray) -> dict[str, Any]:
-    """How far features of recorded windows (window, feature), before matching, lie from those of generated ones."""
+def distance(model: Recogniser, features: Features) -> dict[str, Any]:
+    """How far features of recorded windows (window, feature) lie from those of generated ones."""
     far = feature_distances(features, model.generated, model.names)
     values = np.array(list(far.values()) or [0.0])
-    outside = dict(zip(model.names, map(float, outside_per_feature(features, model.generated)), strict=True))
-    order = sorted(far, key=lambda name: -far[name])
     return {
         "features": len(far), "mean": round(float(values.mean()), 4),
         "features_far": round(float((values > FAR).mean()), 4),
-        "is_matched": model.matching is not None,
-        "per_feature": {name: round(far[name], 4) for name in order},
-        "outside_per_feature": {name: round(outside[name], 4) for name in order},
-        "largest": order[:LISTED],
+        "largest": sorted(far, key=lambda name: -far[name])[:LISTED],
     }  # fmt: skip
+
+
+def feature_distances(features: Features, generated: Quantiles, names: tuple[str, ...]) -> dict[str, float]:
+    """Kolmogorov-Smirnov distance of each feature between recorded and generated windows, at the stored quantiles."""
+    found: dict[str, float] = {}
+    for column, name in enumerate(names):
+        values, edges = features[:, column], generated[:, column]
+        values = values[np.isfinite(values)]
+        if len(values) < FEWEST or np.isnan(edges).any():
+            continue
+        below = np.searchsorted(np.sort(values), edges, side="right") / len(values)
+        under = np.searchsorted(np.sort(values), edges, side="left") / len(values)
+        # where a value is frequent, any share between the two agrees
+        found[name] = float(np.maximum(np.maximum(under - QUANTILES, QUANTILES - below), 0.0).max())
+    return found
 
 
 def warning(found: dict[str, Any]) -> str | None:

@@ -26,7 +26,7 @@ def self_trained(
 ) -> tuple[TreeEnsemble, dict[str, Any]]:  # fmt: skip
     """The trees to use, and what was done: the same trees where the guard refuses.
 
-    `features` (window, feature) of unlabelled windows, matched. `follows`, as `following` gives it: where people go on
+    `features` (window, feature) of unlabelled windows. `follows`, as `following` gives it: where people go on
     with what they do, windows before and after vote along for a label. The guard asks that no label all but vanishes,
     and that most labels stay as they were.
     """

@@ -15,7 +15,6 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
 from mmweaver.recognition.busy_places import NO_CELLS, Cells, busy_cells
 from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
-from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
 from mmweaver.recognition.performance_variation import varied
@@ -25,6 +24,8 @@ from mmweaver.recognition.recogniser import (
     MODEL_FILES,
     Recogniser,
     feature_names,
+    outside_share,
+    quantiles_of,
     recognition_features,
     save_recogniser,
     window_row,
@@ -32,7 +33,6 @@ from mmweaver.recognition.recogniser import (
 from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.self_training import following, self_trained
-from mmweaver.recognition.sensitivity import sensitivity_weights
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
 from mmweaver.recognition.training_windows import (
@@ -219,16 +219,9 @@ def fitted(
     }  # fmt: skip
     seen = [made.points(window) for window in unlabelled]
     features = recognition_features(seen, made.names) if unlabelled else None
-    if features is not None and options.sensitivity:
-        made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
-    matching = None
-    if features is not None and options.matching:
-        matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
-        features = matching.apply(features)
     own = None
     if labelled:
         known = recognition_features([made.points(window) for window in labelled], made.names)
-        known = known if matching is None else matching.apply(known)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         fewest = fewest_recordings(labelled, task.recordings.labels)
         own, options = own_trees(made, known, labels, fewest, options)
@@ -242,7 +235,7 @@ def fitted(
             trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
-        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, points=made.points,
+        outside_above=float(np.quantile(shares, INSIDE_SHARE)), points=made.points,
         meta=meta,
     )  # fmt: skip
 

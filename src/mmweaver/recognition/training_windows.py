@@ -26,8 +26,6 @@ class TrainingOptions:
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
-    sensitivity: bool = False  # of the board weighed, where there are unlabelled recordings
-    matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
     labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
 
@@ -47,7 +45,7 @@ class TrainingWindows:
     person: Int[np.ndarray, " window"]
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
-    importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
+    importance: Float[np.ndarray, " window"] | None = None  # None: all the same
     points: WindowFilter = field(default_factory=WindowFilter)  # which of them count
 
     @property
