@@ -28,7 +28,6 @@ def test_the_wheel_holds_what_it_needs_and_no_study():
     names = {path.relative_to(PACKAGE).as_posix() for path in packaged_files()}
     needed = {
         "py.typed", "weights/weaver.safetensors", "weights/segmenter.safetensors", "sample/rgb.webp",
-        "recognition/frozen/development.npz",
     }  # fmt: skip
     assert needed <= names
     assert not any("motiongpt_small" in name for name in names)

@@ -4,7 +4,8 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import feature_matrix, window_features
+from mmweaver.recognition.recogniser import feature_names, recognition_features, window_row
+from mmweaver.recognition.window_features import window_features
 
 RATE_HZ, FRAMES = 30.0, 60
 
@@ -52,7 +53,9 @@ def test_an_empty_window_has_the_same_features_without_values():
         snr_db=np.zeros(0),
     )  # fmt: skip
     empty = PointRecording(name="none", cloud=nothing, num_frames=FRAMES, frame_rate_hz=RATE_HZ)
-    matrix, names = feature_matrix([empty, swinging()])
+    names = feature_names(window_row(swinging()))
+    matrix = recognition_features([empty, swinging()], names)
+    assert set(feature_names(window_row(empty))) == set(names)
     assert matrix.shape == (2, len(names))
     assert matrix[0, names.index("rate")] == 0
     assert np.isnan(matrix[0, names.index("momentum_top_hz")])

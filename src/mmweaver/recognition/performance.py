@@ -19,17 +19,13 @@ from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
 from mmweaver.motion.people import MOST_SUBJECTS, person_of
-from mmweaver.recognition.generated_windows import (
-    SLOWEST_MPS,
-    pelvis_speed_mps,
-    scaled_excursion,
-    sway_m,
-    time_warped,
-)
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.task_file import Mount
 from mmweaver.recognition.variation import Span, Variation, VariationSample, hung_high, sample_variation
 
+SLOWEST_MPS = 0.06  # below this speed, locomotion has ended
+ROAM_HZ = (0.1, 0.6)  # frequencies of the sway of stationary people
+HURRY_HZ = (0.1, 0.5)  # frequencies of tempo changes along a path
 LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
 NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
 ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
@@ -209,6 +205,38 @@ def lasting(plan: MotionPlan) -> MotionPlan:
 def happens_once(plan: MotionPlan) -> bool:
     """Whether a plan ends by itself and cannot be repeated, as its end does not lead to its beginning."""
     return repeated(plan, LONGEST_S) is plan and not all(is_elastic(step) for step in plan.steps)
+
+
+def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
+    """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
+    omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
+    slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
+    reached = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
+    return reached - np.interp(0.0, time_s, reached)
+
+
+def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
+    """Mean horizontal speed of the pelvis in m/s."""
+    inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
+    path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
+    return float(path_m / (end_s - start_s))
+
+
+def scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
+    """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
+    root = joints_m[:, :1].copy()
+    root[..., 2] = 0.0
+    local = joints_m - root
+    mean = local.mean(axis=0, keepdims=True)
+    return root + mean + vigour * (local - mean)
+
+
+def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
+    """Slow displacement (time, 1, 3) in metres of a stationary person, at this rms speed."""
+    frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
+    omega = 2 * np.pi * frequency_hz
+    shift_m = (np.sin(omega * time_s + phase) / omega).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
+    return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
 
 
 def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:

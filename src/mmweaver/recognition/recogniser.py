@@ -30,7 +30,7 @@ from mmweaver.recognition.side_features import side_features
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.timeline_features import timeline_features
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, read_trees, write_trees
+from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
 from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
 from mmweaver.recognition.window_filter import WindowFilter
 
@@ -40,7 +40,6 @@ KIND, VERSION = "mmweaver recogniser", 1
 QUANTILES = np.concatenate([[0.005, 0.02], np.linspace(0.05, 0.95, 19), [0.98, 0.995]])
 FEWEST = 20  # known values for a distribution
 
-Features = Float[np.ndarray, "window feature"]
 Quantiles = Float[np.ndarray, "quantile feature"]
 
 

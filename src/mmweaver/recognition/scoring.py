@@ -6,11 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.activity_classifier import ActivityClassifier
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import feature_matrix
 
 RESAMPLINGS = 2000
 LONG_WINDOWS = 3  # windows that are averaged: 6 s
@@ -44,22 +40,6 @@ class Evaluation:
             classes=self.classes, votes=votes, truth=self.truth[first], recording=self.recording[first],
             names=self.names,
         )  # fmt: skip
-
-
-def evaluate_recogniser(model: ActivityClassifier, recordings: list[PointRecording], window_s: float) -> Evaluation:
-    """Evaluates on all consecutive windows. Raises InputError where no recording is long enough."""
-    cut = [recording.windows(window_s) for recording in recordings]
-    windows = [window for windows in cut for window in windows]
-    if not windows:
-        raise InputError(f"no recording lasts {window_s:g} s, which is one window; give longer ones")
-    features, _ = feature_matrix(windows, model.names)
-    return Evaluation(
-        classes=model.classes,
-        votes=model.probabilities(features),
-        truth=np.array([model.classes.index(window.label) for window in windows]),
-        recording=np.repeat(np.arange(len(cut)), [len(windows) for windows in cut]),
-        names=tuple(recording.name for recording in recordings),
-    )
 
 
 def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]) -> float:

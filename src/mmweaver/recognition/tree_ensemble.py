@@ -12,9 +12,9 @@ from jaxtyping import Float, Int
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_arrays import read_npz
-from mmweaver.recognition.activity_classifier import Features
 
 MOST_NODES = 50_000_000
+Features = Float[np.ndarray, "window feature"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.body_features import BANDS_HZ, Row, band_shares, body_features
+from mmweaver.recognition.body_features import BANDS_HZ, Row, band_shares
 from mmweaver.recognition.point_recording import PointRecording, is_moving
 
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
@@ -32,19 +32,6 @@ def window_features(window: PointRecording) -> Row:
     row.update(_couplings(points))
     row.update(_rhythm(points))
     return row
-
-
-def feature_matrix(
-    windows: list[PointRecording], names: tuple[str, ...] | None = None
-) -> tuple[Float[np.ndarray, "window feature"], tuple[str, ...]]:
-    """Features of windows, float32, and their names; by default all except those a simulation cannot predict.
-
-    These are heights (from the phase between two antenna rows, biased by a tilted or uncalibrated board), and the
-    unevenness of points over time, which depends on the elevation beam.
-    """
-    rows = [{**window_features(window), **body_features(window)} for window in windows]
-    chosen = names or tuple(name for name in rows[0] if not UNPREDICTABLE & set(name.split("_")))
-    return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 
 def moving_points(window: PointRecording) -> float:

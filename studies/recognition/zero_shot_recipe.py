@@ -1,18 +1,23 @@
-"""Sentences -> labelled point-cloud recordings of random people in random rooms, as one radar reports them."""
+"""The recipe of the older recogniser of RadHAR's activities: sentences and habits -> generated windows.
+
+A task file (docs/recognise.md) replaced it. It makes what the studies zero_shot_* train on.
+"""
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
-from mmweaver.core.firmware_settings import FirmwareSettings
+from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
+from mmweaver.core.presets import IWR1443_RADHAR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
@@ -21,24 +26,51 @@ from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
 from mmweaver.recognition.observed_points import PointRadar, observed_cloud
 from mmweaver.recognition.open_room import open_room
+from mmweaver.recognition.performance import SLOWEST_MPS, pelvis_speed_mps, scaled_excursion, sway_m, time_warped
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
 
 LEAD_S = 0.75  # least start of a window in the motion's own time: recordings do not begin at rest
-SLOWEST_MPS = 0.06  # below this speed, locomotion has ended
 TRIES, UNSEEN_TRIES = 20, 3
 WITHIN_M = (0.55, 3.1)  # slant ranges of stationary people
 BODY_REACH_M, SEEN_SHARE = 0.6, 0.5
-ROAM_HZ = (0.1, 0.6)  # frequencies of the sway of stationary people
-HURRY_HZ = (0.1, 0.5)  # frequencies of tempo changes along a path
+
+ACTIVITIES = {
+    "boxing": (
+        "a person punches", "a person punches quickly", "a person punches with the right hand",
+        "a person punches with the left hand",
+    ),
+    "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
+    "jump": (
+        "a person hops", "a person hops quickly", "a person hops slowly", "a person hops on the spot",
+        "a person hops", "a person jumps",
+    ),
+    "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
+    "walk": (
+        "a person walks slowly back and forth", "a person walks back and forth", "a person walks slowly back and forth",
+        "a person walks slowly towards the radar, turns around, walks slowly away, turns around and walks slowly"
+        " towards the radar",
+        "a person walks towards the radar, turns around, walks away, turns around and walks towards the radar",
+        "a person walks slowly away, turns around and walks slowly towards the radar, turns around and walks slowly"
+        " away",
+        "a person walks away, turns around and walks towards the radar",
+        "a person walks slowly away, stands, turns around and walks slowly towards the radar",
+        "a person walks slowly away", "a person walks slowly towards the radar",
+    ),
+}  # fmt: skip
+
+# How people moved in the inspected recordings, where the motion library differs.
+HABITS = {
+    "boxing": {"roam_mps": (0.0, 0.35), "vigour": (0.8, 1.5), "tempo": (0.8, 1.6)},  # they step to and fro
+    "jack": {"vigour": (0.75, 1.3)},
+    "jump": {"vigour": (0.65, 1.3), "roam_mps": (0.0, 0.1)},  # hops do not end where they began
+    "squats": {"vigour": (0.4, 0.95), "tempo": (0.65, 1.4)},  # slow, and seldom deep
+}
 
 
 @dataclass(frozen=True, kw_only=True)
 class GenerationRecipe:
-    """Everything that determines the generated data: sentences per activity, radar and firmware, and variation.
-
-    Raises InputError where a sentence is not understood or an activity has none.
-    """
+    """Everything that determines the generated data: sentences per activity, radar and firmware, and variation."""
 
     activities: Mapping[str, tuple[str, ...]]
     radar: RadarConfig
@@ -48,22 +80,6 @@ class GenerationRecipe:
         default_factory=dict
     )  # ranges of single activities that override the variation, by name
     window_s: float = 2.0
-
-    def __post_init__(self) -> None:
-        if len(self.activities) < 2:
-            raise InputError("a recogniser needs at least two activities, each with sentences that describe it")
-        for name, sentences in self.activities.items():
-            if not sentences:
-                raise InputError(f"activity {name!r} has no sentence; say how it is done")
-            for sentence in sentences:
-                parse(sentence)
-        known = {one.name for one in fields(Variation)}
-        for name, spans in self.habits.items():
-            if name not in self.activities or not set(spans) <= known:
-                raise InputError(
-                    f"habits of {name!r} ({', '.join(spans)}) fit no activity or no span; activities:"
-                    f" {', '.join(self.activities)}; spans: {', '.join(sorted(known))}"
-                )
 
     @property
     def frames(self) -> int:
@@ -77,6 +93,13 @@ class GenerationRecipe:
     def as_json(self) -> str:
         """All settings as JSON text; equal recipes give equal text."""
         return json.dumps(asdict(self), sort_keys=True)
+
+
+def radhar_recipe() -> GenerationRecipe:
+    """The IWR1443 at 30 frames per second and its five activities."""
+    return GenerationRecipe(
+        activities=ACTIVITIES, radar=IWR1443_RADHAR, firmware=FIRMWARE["iwr1443_radhar"], habits=HABITS
+    )
 
 
 def generate_window(recipe: GenerationRecipe, label: str, index: int, seed: int) -> PointRecording:
@@ -101,34 +124,6 @@ def generate_window(recipe: GenerationRecipe, label: str, index: int, seed: int)
     if unseen:
         return unseen[-1]
     raise refused or InputError(f"no window of {label!r} could be generated")
-
-
-def generate_windows(
-    recipe: GenerationRecipe,
-    *,
-    each: int,
-    seed: int,
-    cache: Path | None = None,
-    report: Callable[[int, int], object] | None = None,
-) -> list[PointRecording]:
-    """Generates `each` windows of every activity, in turn; windows in the cache folder are read instead.
-
-    `report` is called with the number of windows done and the total.
-    """
-    windows: list[PointRecording] = []
-    total = each * len(recipe.activities)
-    for index in range(each):
-        for label in recipe.activities:
-            path = None if cache is None else cache / f"{label}_{seed}_{index}.npz"
-            if path is not None and path.exists():
-                windows.append(read_window(path, label, recipe))
-            else:
-                windows.append(generate_window(recipe, label, index, seed))
-                if path is not None:
-                    write_window(path, windows[-1])
-            if report is not None:
-                report(len(windows), total)
-    return windows
 
 
 def _is_seen(window: PointRecording, pose: PoseSequence) -> bool:
@@ -173,38 +168,6 @@ def _pose(
     return replace(pose, time_s=time_s, joints_m=joints_m, subject=person % 1000)
 
 
-def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
-    """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
-    omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
-    slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
-    reached = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
-    return reached - np.interp(0.0, time_s, reached)
-
-
-def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
-    """Mean horizontal speed of the pelvis in m/s."""
-    inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
-    path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
-    return float(path_m / (end_s - start_s))
-
-
-def scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
-    """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
-    root = joints_m[:, :1].copy()
-    root[..., 2] = 0.0
-    local = joints_m - root
-    mean = local.mean(axis=0, keepdims=True)
-    return root + mean + vigour * (local - mean)
-
-
-def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
-    """Slow displacement (time, 1, 3) in metres of a stationary person, at this rms speed."""
-    frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
-    omega = 2 * np.pi * frequency_hz
-    shift_m = (np.sin(omega * time_s + phase) / omega).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
-    return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
-
-
 def _rotated(joints_m: np.ndarray, angle_rad: float) -> np.ndarray:
     """Joints (time, 22, 3) rotated about the vertical through the mean position of the pelvis."""
     axis = joints_m[:, joint("pelvis")].mean(axis=0) * np.array([1.0, 1.0, 0.0])
@@ -244,3 +207,13 @@ def read_window(path: Path, label: str, recipe: GenerationRecipe) -> PointRecord
         name=path.stem, cloud=cloud, num_frames=recipe.frames, frame_rate_hz=1 / recipe.radar.frame_period_s,
         label=label,
     )  # fmt: skip
+
+
+def check_cache(cache: Path, recipe: GenerationRecipe) -> None:
+    """Writes the recipe into a cache, or checks the existing one. Raises InputError for another recipe."""
+    note = cache / "recipe.json"
+    text = recipe.as_json()
+    if note.exists() and read_text(note) != text:
+        raise InputError(f"{cache} holds windows of another recipe; choose another folder or empty it")
+    with atomic_file(note) as temporary:
+        temporary.write_text(text, encoding="utf-8")

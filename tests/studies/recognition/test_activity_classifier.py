@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
+from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 
 SMALL = ClassifierSettings(num_trees=30, boosting_rounds=20)
 
