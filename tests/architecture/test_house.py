@@ -21,17 +21,6 @@ ELSEWHERE = [path for folder in ("tests", "tools", "benchmarks", "examples") for
 VAGUE = {"utils", "util", "helpers", "misc", "common", "base"}
 
 
-def test_every_test_file_mirrors_a_source_file():
-    """tests/dsp/test_cfar.py stands for src/mmweaver/dsp/cfar.py, tests/studies/x for studies/x."""
-    without_source = {"physics", "architecture", "real", "faults", "golden", "browser", "fuzz"}
-    for test in sorted((ROOT / "tests").rglob("test_*.py")):
-        place = test.relative_to(ROOT / "tests")
-        if place.parts[0] in without_source:
-            continue
-        root = ROOT if place.parts[0] == "studies" else ROOT / "src" / "mmweaver"
-        assert (root / place.parent / place.name.removeprefix("test_")).is_file(), f"{place} mirrors no source file"
-
-
 def test_no_file_is_too_long():
     for path in [*SOURCES, *ELSEWHERE]:
         assert len(path.read_text(encoding="utf-8").splitlines()) <= 500, f"split {path}"

@@ -15,7 +15,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser, outside_share, quantiles_of, save_recogniser
 from mmweaver.recognition.score_recogniser import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
@@ -125,7 +125,7 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
     assert len(model.points.busy) == len(again.points.busy) == 9
-    assert again.points.facts == RadarFacts.of(read_task(task_file))
+    assert again.points.radar == Quantisation.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [_in_front(one, fan) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]

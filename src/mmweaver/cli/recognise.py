@@ -96,7 +96,7 @@ def _score(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import score_lines
     from mmweaver.recognition.confusion_picture import confusion_picture
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.score_recogniser import score_recordings, without_constant_movers
+    from mmweaver.recognition.score_recogniser import score_recordings, without_persistent_motion
     from mmweaver.recognition.task_recordings import read_task_recordings
     from mmweaver.recognition.train_recogniser import SEQUENCE_FOLDER
 
@@ -109,7 +109,7 @@ def _score(arguments: argparse.Namespace) -> int:
     recordings = read_task_recordings(arguments.recordings, model.settings)
     scores = score_recordings(model, recordings)
     if picture is not None:
-        shown, _ = without_constant_movers(model, recordings)
+        shown, _ = without_persistent_motion(model, recordings)
         confusion_picture(shown, arguments.place / SEQUENCE_FOLDER, recordings, picture)
     print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(score_lines(scores)))
     return 0

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recording import PointRecording, index_runs, is_moving
 
 BRISK_STEPS = 1.0  # velocities above so many steps of the radar are those of limbs
 FEWEST = 10  # brisk points of a motion that may be seen in part
@@ -59,10 +59,7 @@ def varied(
 
 def _frames(cloud: PointCloud, wanted: np.ndarray) -> PointCloud:
     """The points of these frames (frame,), which do not fall, as frames 0, 1, ..."""
-    begin, end = np.searchsorted(cloud.frame, wanted), np.searchsorted(cloud.frame, wanted, side="right")
-    count = end - begin
-    frame = np.repeat(np.arange(len(wanted)), count)
-    place = np.arange(len(frame)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(begin, count)
+    frame, place = index_runs(np.searchsorted(cloud.frame, wanted), np.searchsorted(cloud.frame, wanted, side="right"))
     names = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
     return PointCloud(frame=frame, **{name: getattr(cloud, name)[place] for name in names})
 

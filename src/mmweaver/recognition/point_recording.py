@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import PointCloud
 
@@ -46,3 +46,12 @@ class PointRecording:
             first_frame=self.first_frame + first,
             joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
         )  # fmt: skip
+
+
+def index_runs(
+    begin: Int[np.ndarray, " run"], end: Int[np.ndarray, " run"]
+) -> tuple[Int[np.ndarray, " index"], Int[np.ndarray, " index"]]:
+    """All indices from `begin` to `end` - 1 of each run, one run after the other, with the number of their run."""
+    count = end - begin
+    run = np.repeat(np.arange(len(count)), count)
+    return run, np.arange(len(run)) - np.repeat(np.cumsum(count) - count - begin, count)

@@ -19,11 +19,11 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.recognition.background_mask import NO_CELLS
 from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.busy_places import NO_CELLS
 from mmweaver.recognition.course_features import course_features
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recorded_columns import RecordedColumns
 from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.side_features import side_features
@@ -78,7 +78,7 @@ class Recogniser:
 
     def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
         """What recordings show that cannot be if the task is right; models of before know too little to say."""
-        return [] if self.points.facts is None else contradictions(recordings, self.points.facts)
+        return [] if self.points.radar is None else contradictions(recordings, self.points.radar)
 
     def features(self, windows: Sequence[PointRecording]) -> Features:
         """Features of windows (window, feature), float32, nan = unknown."""
@@ -199,7 +199,7 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     return Recogniser(
         settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
         generated=generated, outside_above=outside_above,
-        points=WindowFilter(busy=busy, facts=RadarFacts.read(meta.get("radar_facts"))),
+        points=WindowFilter(busy=busy, radar=Quantisation.read(meta.get("radar_facts"))),
         meta={name: value for name, value in meta.items() if name not in known},
     )  # fmt: skip
 

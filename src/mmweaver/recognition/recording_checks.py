@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mmweaver.recognition.point_recording import STILL_MPS, PointRecording, is_moving
-from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.timeline_features import of_the_body
 
 LAG_S = 0.5  # over which ways are compared with velocities
@@ -25,7 +25,7 @@ APART_M, OFTEN = 1.2, 0.25  # between two that move; share of the frames in whic
 NAME_IT, NAME_COLUMNS = "name the .cfg that the board was sent", "check the directions of `columns`"
 
 
-def contradictions(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[str]:
+def contradictions(recordings: Sequence[PointRecording], radar: Quantisation) -> list[str]:
     """What recordings show that cannot be if the task is right, and what to do about it; empty: nothing."""
     clouds = [recording.cloud for recording in recordings]
     x, y, velocity = (
@@ -35,8 +35,8 @@ def contradictions(recordings: Sequence[PointRecording], facts: RadarFacts) -> l
     if len(x) < FEWEST:
         return []
     return [
-        *_of_places(x, y), *_of_velocities(np.abs(velocity), facts), *_of_ways(recordings, facts),
-        *_of_neighbours(recordings, facts), *_of_others(recordings, facts),
+        *_of_places(x, y), *_of_velocities(np.abs(velocity), radar), *_of_ways(recordings, radar),
+        *_of_neighbours(recordings, radar), *_of_others(recordings, radar),
     ]  # fmt: skip
 
 
@@ -49,16 +49,16 @@ def _of_places(x_m: np.ndarray, y_m: np.ndarray) -> list[str]:
     return []
 
 
-def _of_velocities(speed_mps: np.ndarray, facts: RadarFacts) -> list[str]:
+def _of_velocities(speed_mps: np.ndarray, radar: Quantisation) -> list[str]:
     moving = speed_mps[speed_mps > STILL_MPS]
     still, found = 1 - len(moving) / len(speed_mps), []
-    if not facts.removes_static and still < HARDLY:
+    if not radar.removes_static and still < HARDLY:
         found.append(f"{still:.0%} of the points are at rest, but `radar` keeps static clutter; {NAME_IT}")
-    if facts.removes_static and still > MOSTLY:
+    if radar.removes_static and still > MOSTLY:
         found.append(f"{still:.0%} of the points are at rest, but `radar` removes static clutter; {NAME_IT}")
     if len(moving) < FEWEST:
         return found
-    highest, step = facts.max_velocity_mps * 1.01, facts.velocity_step_mps
+    highest, step = radar.max_velocity_mps * 1.01, radar.velocity_step_mps
     if (beyond := float((moving > highest).mean())) > TOO_FAST:
         found.append(f"{beyond:.1%} of the moving points are faster than {highest:.1f} m/s, the most that `radar` can"
                      f" measure; {NAME_IT}")  # fmt: skip
@@ -69,8 +69,8 @@ def _of_velocities(speed_mps: np.ndarray, facts: RadarFacts) -> list[str]:
     return found
 
 
-def _of_ways(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[str]:
-    went_m, said_m = _ways(recordings, facts.max_velocity_mps / 2)
+def _of_ways(recordings: Sequence[PointRecording], radar: Quantisation) -> list[str]:
+    went_m, said_m = _ways(recordings, radar.max_velocity_mps / 2)
     if len(went_m) < FEWEST / 10 or np.sqrt(np.mean(went_m**2)) < LEAST_WAY_M or not said_m.any():
         return []
     related = float(went_m @ said_m / np.sqrt((went_m @ went_m) * (said_m @ said_m)))
@@ -107,11 +107,11 @@ def _ways(recordings: Sequence[PointRecording], fastest_mps: float) -> tuple[np.
     return np.concatenate(went), np.concatenate(said)
 
 
-def _of_neighbours(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[str]:
+def _of_neighbours(recordings: Sequence[PointRecording], radar: Quantisation) -> list[str]:
     found: list[str] = []
-    in_range, in_velocity = neighbour_shares(recordings, facts)
+    in_range, in_velocity = neighbour_shares(recordings, radar)
     for share, grouped, word in (
-        (in_range, facts.groups_range, "range"), (in_velocity, facts.groups_velocity, "velocity"),
+        (in_range, radar.groups_range, "range"), (in_velocity, radar.groups_velocity, "velocity"),
     ):  # fmt: skip
         if grouped and share > UNGROUPED:
             found.append(f"{share:.0%} of the points have a neighbour in {word}, but `radar` groups these; {NAME_IT}")
@@ -121,14 +121,14 @@ def _of_neighbours(recordings: Sequence[PointRecording], facts: RadarFacts) -> l
     return found
 
 
-def neighbour_shares(recordings: Sequence[PointRecording], facts: RadarFacts) -> tuple[float, float]:
+def neighbour_shares(recordings: Sequence[PointRecording], radar: Quantisation) -> tuple[float, float]:
     """Shares of the points with another one a range step, and a velocity step, farther on in the same frame."""
     shares, cells = [], []
     for recording in recordings:
         cloud = recording.cloud
         range_m = cloud.range_m
-        step = np.round(cloud.radial_velocity_mps / facts.velocity_step_mps)
-        cells.append(np.unique(np.stack([cloud.frame, np.round(range_m / facts.range_step_m), step], axis=1), axis=0))
+        step = np.round(cloud.radial_velocity_mps / radar.velocity_step_mps)
+        cells.append(np.unique(np.stack([cloud.frame, np.round(range_m / radar.range_step_m), step], axis=1), axis=0))
     for column in (1, 2):
         pairs = total = 0
         for own in cells:
@@ -141,7 +141,7 @@ def neighbour_shares(recordings: Sequence[PointRecording], facts: RadarFacts) ->
     return shares[0], shares[1]
 
 
-def _of_others(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[str]:
+def _of_others(recordings: Sequence[PointRecording], radar: Quantisation) -> list[str]:
     """Who moves cannot be in two places."""
     apart = moving = 0
     for recording in recordings:
@@ -152,7 +152,7 @@ def _of_others(recordings: Sequence[PointRecording], facts: RadarFacts) -> list[
                 np.maximum.reduceat(axis, first) - np.minimum.reduceat(axis, first) for axis in (cloud.x_m, cloud.y_m)
             ]
             apart, moving = apart + int((np.hypot(*spans) > APART_M).sum()), moving + len(frames)
-    if facts.knows_place or moving < FEWEST / 10 or apart < OFTEN * moving:
+    if radar.knows_place or moving < FEWEST / 10 or apart < OFTEN * moving:
         return []
     share = (
         f"in {apart / moving:.0%} of the frames with motion something moves {APART_M:g} m or more from something else"

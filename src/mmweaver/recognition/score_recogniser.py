@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
+from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
 from mmweaver.recognition.scoring import Evaluation, report
@@ -39,7 +39,7 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     windows = [window for own in cut for window in own]
     if not windows:
         raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
-    model, left_out = without_constant_movers(model, recordings)
+    model, left_out = without_persistent_motion(model, recordings)
     features = model.features(windows)
     votes, outside = model.votes(features), model.is_outside(features)
     evaluation = Evaluation(
@@ -63,13 +63,13 @@ def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dic
     }  # fmt: skip
 
 
-def without_constant_movers(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
+def without_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
     """The recogniser without what moves all the time in one place of these recordings, and what to say of it."""
-    cells = constant_movers(recordings, model.points.facts)
+    cells = persistent_motion_cells(recordings, model.points.radar)
     points = model.points.without(cells)
     if len(points.busy) == len(model.points.busy):
         return model, []
-    return replace(model, points=points), [left_out_line(place) for place in places_m(cells)]
+    return replace(model, points=points), left_out_lines(cells)
 
 
 def hardly_distinct(model: Recogniser) -> list[str]:

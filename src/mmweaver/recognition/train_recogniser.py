@@ -13,13 +13,18 @@ from mmweaver.core.output_checks import check_output_folder
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
-from mmweaver.recognition.busy_places import NO_CELLS, Cells, busy_cells
-from mmweaver.recognition.constant_movers import constant_movers, left_out_line, places_m
+from mmweaver.recognition.background_mask import (
+    NO_CELLS,
+    Cells,
+    background_cells,
+    left_out_lines,
+    persistent_motion_cells,
+)
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
 from mmweaver.recognition.performance_variation import varied
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
     Recogniser,
@@ -75,7 +80,7 @@ def train_recogniser(
     tell = listener or (lambda *_: None)
     background = [] if task.background is None else [read_task_recording(task.background, task.recordings)]
     unlabelled = unlabelled_recordings(task)
-    constant = constant_movers(unlabelled, RadarFacts.of(task))
+    constant = persistent_motion_cells(unlabelled, Quantisation.of(task))
     taught = [] if labelled is None else labelled_windows(labelled, task)
     sequences = generate_sequences(
         recipe, options.sequences, out / SEQUENCE_FOLDER, lambda done, of: tell("sequences", done, of)
@@ -86,10 +91,10 @@ def train_recogniser(
     model = fitted(made, seen, task, options, taught)
     note = {
         "mmweaver": __version__, "task_file": Path(task_file).name, "options": asdict(options),
-        "task": task_values(task), "radar_facts": RadarFacts.of(task).values(),
+        "task": task_values(task), "radar_facts": asdict(Quantisation.of(task)),
         "moving_points_a_frame": moving_points_of(sequences),
-        "contradictions": contradictions([*unlabelled, *taught, *background], RadarFacts.of(task)),
-        "left_out": [left_out_line(place) for place in places_m(constant)],
+        "contradictions": contradictions([*unlabelled, *taught, *background], Quantisation.of(task)),
+        "left_out": left_out_lines(constant),
         "cpu_seconds": round(time.process_time() - began_s, 1),
     }  # fmt: skip
     model = replace(model, meta={**note, **model.meta})
@@ -172,7 +177,7 @@ def generated_windows(
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
-    points = WindowFilter(busy=busy_cells(background), facts=RadarFacts.of(task)).without(constant)
+    points = WindowFilter(busy=background_cells(background), radar=Quantisation.of(task)).without(constant)
     everything = [points(window) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(
