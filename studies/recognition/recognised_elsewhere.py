@@ -20,7 +20,7 @@ from typing import Any
 
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.score_recogniser import score_recordings

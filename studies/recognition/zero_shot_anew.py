@@ -11,7 +11,7 @@ import argparse
 import time
 from pathlib import Path
 
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_recipe import radhar_recipe
 from studies.recognition.zero_shot_scores import in_first_half, read_cache, result_row

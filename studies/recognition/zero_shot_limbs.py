@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import report
 from mmweaver.recognition.variation import VariationSample
 from studies.manifest import StudyRun

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.window_features import window_features
 from studies.manifest import StudyRun
@@ -89,7 +89,7 @@ def measure(caches: list[Path], recordings: Path, run: StudyRun) -> Path:
     read = [read_cache(cache) for cache in caches]
     windows = [window for one, _ in read for window in one]
     people = radhar_recordings(recordings)
-    real = [window for one in people for window in one.windows(windows[0].duration_s)]
+    real = [window for one in people for window in one.windows(windows[0].num_frames / windows[0].frame_rate_hz)]
     first = np.array([in_first_half(window.name) for window in real])
     truth = np.array([window.label for window in real])
     found = guesses(windows, real)

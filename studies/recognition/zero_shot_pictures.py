@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_recipe import generate_window, radhar_recipe
 from studies.recognition.zero_shot_training import radhar_recordings

@@ -27,7 +27,7 @@ from mmweaver.motion.people import Person
 from mmweaver.recognition.observed_points import PointRadar, observed_cloud
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.performance import SLOWEST_MPS, pelvis_speed_mps, scaled_excursion, sway_m, time_warped
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
 
 LEAD_S = 0.75  # least start of a window in the motion's own time: recordings do not begin at rest

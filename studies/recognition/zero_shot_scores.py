@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import Evaluation, report
 from mmweaver.recognition.variation import VariationSample, sample_variation
 from studies.manifest import StudyRun

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 
 def recording_of(

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.task_file import RecordingSettings, read_task
 from mmweaver.recognition.train_recogniser import fitted, generated_windows

@@ -10,7 +10,7 @@ from mmweaver.recognition.background_mask import (
     persistent_motion_cells,
     without_motion_in,
 )
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from tests.recognition.clouds import in_all_frames, recording_of
 
 FRAMES = 100

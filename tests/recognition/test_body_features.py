@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import BANDS_HZ, body_features, body_points
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 RATE_HZ, FRAMES = 30.0, 60
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.course_features import course_features
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 
 def raised_arm(before: int, after: int, *, back: bool = False) -> PointRecording:

@@ -7,7 +7,7 @@ pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.labelled_training import fewest_recordings, generated_worth, own_trees
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
 from mmweaver.recognition.tree_ensemble import joined_trees, read_trees, write_trees
 

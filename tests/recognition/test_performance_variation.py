@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.performance_variation import PerformanceVariation, varied
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 STEP_MPS, LARGEST_MPS, FRAMES = 0.25, 2.0, 40
 AS_IT_WAS = PerformanceVariation(

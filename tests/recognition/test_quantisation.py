@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 from tests.recognition.clouds import recording_of
 

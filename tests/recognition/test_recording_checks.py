@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
 from tests.recognition.clouds import in_all_frames, recording_of

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.self_training import following, self_trained, with_neighbours
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.timeline_features import timeline_features
 
 

@@ -14,7 +14,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser, outside_share, quantiles_of, save_recogniser
 from mmweaver.recognition.score_recogniser import feature_distances, score_recordings

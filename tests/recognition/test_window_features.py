@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import feature_names, recognition_features, window_row
 from mmweaver.recognition.window_features import window_features
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.recognition.background_mask import background_cells
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.window_filter import WindowFilter, without_multipath
 from tests.recognition.clouds import in_all_frames, recording_of

@@ -95,9 +95,9 @@ def _train(arguments: argparse.Namespace) -> int:
 def _score(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import score_lines
     from mmweaver.recognition.confusion_picture import confusion_picture
+    from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import load_recogniser
     from mmweaver.recognition.score_recogniser import score_recordings, without_persistent_motion
-    from mmweaver.recognition.task_recordings import read_task_recordings
     from mmweaver.recognition.train_recogniser import SEQUENCE_FOLDER
 
     picture = arguments.picture
@@ -118,8 +118,8 @@ def _score(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import contradiction_lines
     from mmweaver.recognition.live_recogniser import recognise_stream
+    from mmweaver.recognition.point_recordings import read_task_recording
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.task_recordings import read_task_recording
 
     model = load_recogniser(arguments.place)
     if str(arguments.points) == STDIN:

@@ -13,7 +13,7 @@ from jaxtyping import Bool, Int
 from scipy.ndimage import find_objects, label
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 
 CELL_M = 0.25

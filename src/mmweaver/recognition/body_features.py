@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 
 CELL_M = 0.05
 FARTHEST_M = 6.0

@@ -14,9 +14,8 @@ from jaxtyping import Int
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.recognition.generated_sequences import stored_sequences
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving, windows_of
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.recognition.task_recordings import windows_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

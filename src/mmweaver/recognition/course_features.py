@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.recognition.body_features import Row
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.timeline_features import FEWEST, of_the_body
 
 SEGMENTS = 6

@@ -28,7 +28,7 @@ from mmweaver.recognition.performance import (
     performer,
     task_variation,
 )
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
 from mmweaver.recognition.variation import Variation
 

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, weighed_trees_of
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, joined_trees

@@ -16,7 +16,7 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.dsp.firmware import FirmwareCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 FRAME_S = 0.1
 # The published clouds end sharply here (validate: 868 points in the highest 10 cm below 1 m, none above): whoever made

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording, index_runs, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, index_runs, is_moving
 
 BRISK_STEPS = 1.0  # velocities above so many steps of the radar are those of limbs
 FEWEST = 10  # brisk points of a motion that may be seen in part

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.dsp.firmware import range_step_m
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask
 
 SLOWER = 0.05  # of two that are equal, what is at rest is the echo and what moves a step is its flank

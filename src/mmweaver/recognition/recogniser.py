@@ -22,13 +22,11 @@ from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.background_mask import NO_CELLS
 from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.course_features import course_features
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
-from mmweaver.recognition.recorded_columns import RecordedColumns
 from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.side_features import side_features
-from mmweaver.recognition.task_file import RecordingSettings
-from mmweaver.recognition.task_recordings import windows_of
+from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 from mmweaver.recognition.timeline_features import timeline_features
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
 from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
@@ -93,7 +91,7 @@ class Recogniser:
         return outside_share(features, self.generated) > self.outside_above
 
     def recognise(self, recording: PointRecording) -> list[Recognition]:
-        """The label of each window of a recording; windows are those of `task_recordings.windows_of`."""
+        """The label of each window of a recording; windows are those of `windows_of`."""
         return self.recognise_windows(windows_of(recording, self.settings))
 
     def recognise_windows(self, windows: Sequence[PointRecording]) -> list[Recognition]:

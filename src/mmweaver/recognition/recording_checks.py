@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mmweaver.recognition.point_recording import STILL_MPS, PointRecording, is_moving
+from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, is_moving
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.timeline_features import of_the_body
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording, read_task_recordings, windows_of
 from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
 from mmweaver.recognition.scoring import Evaluation, report
-from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
 from mmweaver.recognition.window_features import moving_points
 
 LISTED = 10  # features that differ most

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
 from mmweaver.recognition.tree_ensemble import TreeEnsemble
 

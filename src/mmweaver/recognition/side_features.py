@@ -7,7 +7,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import Row
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.timeline_features import FEWEST, of_the_body
 
 QUARTERS = ("left_high", "right_high", "left_low", "right_low")

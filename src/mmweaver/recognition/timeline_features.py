@@ -10,7 +10,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import Row
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 
 SEGMENTS = 6
 FEWEST = 6  # moving points for any order

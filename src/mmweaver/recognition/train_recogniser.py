@@ -23,7 +23,12 @@ from mmweaver.recognition.background_mask import (
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
 from mmweaver.recognition.performance_variation import varied
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import (
+    PointRecording,
+    read_task_recording,
+    read_task_recordings,
+    windows_of,
+)
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
@@ -39,7 +44,6 @@ from mmweaver.recognition.recording_checks import contradictions
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.self_training import following, self_trained
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
 from mmweaver.recognition.training_windows import (
     SEQUENCES,
     TrainingOptions,

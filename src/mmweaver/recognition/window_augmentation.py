@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import STILL_MPS, PointRecording
+from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording
 from mmweaver.recognition.window_features import SPEED_EDGES_MPS
 
 FARTHEST_M, ASIDE_RAD = 9.0, 1.1  # of static cells in a furnished room

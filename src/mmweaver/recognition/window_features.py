@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.body_features import BANDS_HZ, Row, band_shares
-from mmweaver.recognition.point_recording import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 SEGMENTS = 4

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mmweaver.recognition.background_mask import NO_CELLS, Cells, without_motion_in
-from mmweaver.recognition.point_recording import PointRecording, index_runs, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, index_runs, is_moving
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 
 AT_ONCE_S = 0.15

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from studies.manifest import StudyRun
 from studies.recognition import zero_shot_anew
 from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings

@@ -8,7 +8,7 @@ import pytest
 
 from mmweaver.core.firmware_settings import FIRMWARE
 from mmweaver.core.presets import IWR1443_RADHAR
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.variation import Variation
 from studies.recognition.zero_shot_recipe import GenerationRecipe, generate_window
 

@@ -7,23 +7,23 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PointCloud
 from mmweaver.formats.npz_files import write_points_npz
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.recorded_columns import RecordedColumns
-from mmweaver.recognition.task_file import RecordingSettings
-from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, samples_of, windows_of
+from mmweaver.recognition.point_recordings import (
+    PointRecording,
+    read_task_recording,
+    read_task_recordings,
+    samples_of,
+    windows_of,
+)
+from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
+from tests.recognition.clouds import recording_of
 
 COLUMNS = RecordedColumns.of(["x_ahead", "y_left", "z_up", "range", "velocity_towards", "snr"], "here")
 SETTINGS = RecordingSettings(labels=("up", "walk"), window_s=1.0, frame_rate_hz=10.0, columns=COLUMNS)
 
 
 def recording(*frames: int, num_frames: int = 40) -> PointRecording:
-    zeros = np.zeros(len(frames))
-    cloud = PointCloud(
-        frame=np.array(frames, int), x_m=zeros, y_m=zeros, z_m=zeros, radial_velocity_mps=zeros, snr_db=zeros
-    )
-    return PointRecording(name="a", cloud=cloud, num_frames=num_frames, frame_rate_hz=10.0)
+    return recording_of(frames, snr_db=0.0, num_frames=num_frames, name="a")
 
 
 def test_columns_are_what_their_names_say(tmp_path: Path):
@@ -135,3 +135,13 @@ def test_points_that_name_their_own_columns_are_read_as_they_say(tmp_path: Path)
     assert (one.label, one.num_frames) == ("walk", 5)
     assert one.cloud.y_m.tolist() == [2.0, 3.0]
     assert one.cloud.radial_velocity_mps.tolist() == [0.5, -0.5]
+
+
+def test_windows_are_consecutive_or_overlap_and_are_renumbered():
+    one = recording_of([0, 3, 3, 4, 9], x_m=np.arange(5.0), num_frames=10, rate_hz=2.0, label="walk")
+    windows = one.windows(2.0)
+    assert [window.cloud.frame.tolist() for window in windows] == [[0, 3, 3], [0]]
+    assert [window.cloud.x_m.tolist() for window in windows] == [[0.0, 1.0, 2.0], [3.0]]
+    assert all(window.num_frames == 4 and window.label == "walk" for window in windows)
+    assert len(one.windows(2.0, step_s=1.0)) == 4
+    assert one.part(0, 3).windows(2.0) == []  # shorter than a window
