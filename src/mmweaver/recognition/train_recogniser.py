@@ -22,7 +22,6 @@ from mmweaver.recognition.background_mask import (
 )
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.labelled_training import fewest_recordings, own_trees
-from mmweaver.recognition.performance_variation import varied
 from mmweaver.recognition.point_recordings import (
     PointRecording,
     read_task_recording,
@@ -52,7 +51,7 @@ from mmweaver.recognition.training_windows import (
     with_recorded,
 )
 from mmweaver.recognition.tree_ensemble import joined_trees
-from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
+from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented, varied
 from mmweaver.recognition.window_features import moving_points
 from mmweaver.recognition.window_filter import WindowFilter
 
@@ -160,7 +159,7 @@ def generated_windows(
         crowded_share=CROWDED_SHARE if shows_room else 0.0,
         reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
-    step_s, radar = task.recordings.window_s / OVERLAP, task.radar
+    step_s, radar = task.recordings.window_s / OVERLAP, Quantisation.of(task)
     pairs = [(one, window) for one in sequences for window in windows_of(one, task.recordings, step_s)]
     windows = [window for _, window in pairs]
     found = {window.label for window in windows}
@@ -173,15 +172,15 @@ def generated_windows(
         for number, (sequence, window) in enumerate(pairs):
             rng = stream(options.seed, "disturbed", window.name, number, copy)
             another = varied(
-                sequence, window.first_frame, window.num_frames, rng, radar.velocity_resolution_mps,
-                radar.max_velocity_mps, options.variation, once=task.recordings.has_single_performances,
+                sequence, window.first_frame, window.num_frames, rng, radar, options.variation,
+                once=task.recordings.has_single_performances,
             )  # fmt: skip
             copies.append(_before(augmented(another, rng, how), background, rng))
     everything = [
         _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
     ]
     everything += copies
-    points = WindowFilter(busy=background_cells(background), radar=Quantisation.of(task)).without(constant)
+    points = WindowFilter(busy=background_cells(background), radar=radar).without(constant)
     everything = [points(window) for window in everything]
     names = feature_names_of(everything[0])
     return TrainingWindows(

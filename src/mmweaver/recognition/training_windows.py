@@ -7,8 +7,8 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.errors import InputError
 from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.performance_variation import PerformanceVariation
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
+from mmweaver.recognition.window_augmentation import PerformanceVariation
 from mmweaver.recognition.window_filter import WindowFilter
 
 SEQUENCES = 40  # people an activity
