@@ -15,10 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.window_features import window_features
+from mmweaver.recognition.window_features import body_features, window_features
 from studies.manifest import StudyRun
 from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from studies.recognition.zero_shot_scores import digest, in_first_half, read_cache

@@ -16,12 +16,11 @@ from mmweaver.core.repository_files import WEIGHTS
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.point_recordings import PointRecording, read_task_recordings
 from mmweaver.recognition.scoring import Evaluation
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.window_augmentation import augmented
-from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
+from mmweaver.recognition.window_features import UNPREDICTABLE, body_features, window_features
 from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 
 COPIES = 3

@@ -20,16 +20,13 @@ from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.background_mask import NO_CELLS
-from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.course_features import course_features
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
-from mmweaver.recognition.side_features import side_features
+from mmweaver.recognition.spatiotemporal_features import spatiotemporal_features
 from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
-from mmweaver.recognition.timeline_features import timeline_features
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
-from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
+from mmweaver.recognition.window_features import UNPREDICTABLE, Row, body_features, window_features
 from mmweaver.recognition.window_filter import WindowFilter
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
@@ -134,28 +131,20 @@ def outside_share(features: Features, generated: Quantiles) -> Float[np.ndarray,
 
 
 def recognition_features(windows: Sequence[PointRecording], names: tuple[str, ...] | None = None) -> Features:
-    """Features (window, feature) of windows, float32, nan = unknown; by default those of `feature_names`."""
+    """Features (window, feature) of windows, float32, nan = unknown; by default all of `window_row`."""
     rows = [window_row(window) for window in windows]
-    chosen = names or feature_names(rows[0])
+    chosen = names or tuple(rows[0])
     return np.array([[row[name] for name in chosen] for row in rows], np.float32).reshape(len(rows), len(chosen))
 
 
-def feature_names(row: dict[str, float]) -> tuple[str, ...]:
-    """The features that a simulation can predict: heights count from the body, unevenness depends on the beam."""
-    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns", "side_", "course_"))]
-    kept = {name for name in old if not UNPREDICTABLE & set(name.split("_"))} | (set(row) - set(old))
-    return tuple(name for name in row if name in kept)
+def window_row(window: PointRecording) -> Row:
+    """All features of a window by name that a simulation can predict.
 
-
-def window_row(window: PointRecording) -> dict[str, float]:
-    """All features of a window by name."""
-    return {
-        **window_features(window),
-        **body_features(window),
-        **timeline_features(window),
-        **side_features(window),
-        **course_features(window),
-    }
+    Heights count from the body, and unevenness depends on the beam.
+    """
+    row = {**window_features(window), **body_features(window)}
+    kept = {name: value for name, value in row.items() if not UNPREDICTABLE & set(name.split("_"))}
+    return kept | spatiotemporal_features(window)
 
 
 # files --------------------------------------------------------------------------------------------------------------

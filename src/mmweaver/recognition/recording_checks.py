@@ -10,7 +10,7 @@ import numpy as np
 
 from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, is_moving
 from mmweaver.recognition.quantisation import Quantisation
-from mmweaver.recognition.timeline_features import of_the_body
+from mmweaver.recognition.spatiotemporal_features import near_median
 
 LAG_S = 0.5  # over which ways are compared with velocities
 LEAST_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which nobody goes anywhere; beyond, it is another echo
@@ -88,7 +88,7 @@ def _ways(recordings: Sequence[PointRecording], fastest_mps: float) -> tuple[np.
     """Changes of the mean range of moving points within LAG_S, and those that their velocities say, (way,)."""
     went, said = [np.zeros(0)], [np.zeros(0)]
     for recording in recordings:
-        cloud, frames = of_the_body(recording.cloud), recording.num_frames
+        cloud, frames = near_median(recording.cloud), recording.num_frames
         lag = max(round(LAG_S * recording.frame_rate_hz), 1)
         if frames <= lag:
             continue

@@ -32,7 +32,6 @@ from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import (
     MODEL_FILES,
     Recogniser,
-    feature_names,
     outside_share,
     quantiles_of,
     recognition_features,
@@ -182,18 +181,13 @@ def generated_windows(
     everything += copies
     points = WindowFilter(busy=background_cells(background), radar=radar).without(constant)
     everything = [points(window) for window in everything]
-    names = feature_names_of(everything[0])
+    names = tuple(window_row(everything[0]))
     return TrainingWindows(
         features=recognition_features(everything, names),
         label=np.array([task.recordings.labels.index(window.label) for window in everything]),
         person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
         is_copy=np.arange(len(everything)) >= len(windows), names=names, points=points,
     )  # fmt: skip
-
-
-def feature_names_of(window: PointRecording) -> tuple[str, ...]:
-    """The names of the features that a recogniser uses."""
-    return feature_names(window_row(window))
 
 
 def _before(window: PointRecording, background: Sequence[PointRecording], rng: np.random.Generator) -> PointRecording:
