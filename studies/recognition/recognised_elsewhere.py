@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.performance import PerformancePrior
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.recognition.score_recogniser import score_recordings
+from mmweaver.recognition.scoring import score_recordings
+from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.train_recogniser import fitted, generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions
+from mmweaver.recognition.train_recogniser import fitted
+from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import TASKS, result_row
 from studies.recognition.other_boards import CONDITIONS, empty_place

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import VariationSample
 from mmweaver.recognition.scoring import report
-from mmweaver.recognition.variation import VariationSample
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_recipe import radhar_recipe
 from studies.recognition.zero_shot_scores import digest, first_draws, read_cache

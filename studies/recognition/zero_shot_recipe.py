@@ -24,11 +24,16 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
-from mmweaver.recognition.observed_points import PointRadar, observed_cloud
-from mmweaver.recognition.open_room import open_room
-from mmweaver.recognition.performance import SLOWEST_MPS, pelvis_speed_mps, scaled_excursion, sway_m, time_warped
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
+from mmweaver.recognition.random_scene import Span, Variation, VariationSample, random_scene, sample_variation
+from mmweaver.recognition.sensor_model import PointRadar, observed_cloud
+from mmweaver.recognition.subject_simulation import (
+    SLOWEST_MPS,
+    pelvis_speed_mps,
+    scaled_excursion,
+    sway_m,
+    time_warped,
+)
 
 LEAD_S = 0.75  # least start of a window in the motion's own time: recordings do not begin at rest
 TRIES, UNSEEN_TRIES = 20, 3
@@ -150,7 +155,7 @@ def _pose(
     if moves:  # any part of the path
         lead_s = float(rng.uniform(LEAD_S, max(now.way_s - lasts_s, 2 * LEAD_S)))
     whole_s = max(now.way_s if moves else 0.0, lead_s + lasts_s + 0.5)
-    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
+    scene = random_scene(floor_z_m=-now.radar_height_m, wall_y_m=None)
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
         schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,

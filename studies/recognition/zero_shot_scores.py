@@ -17,8 +17,8 @@ import numpy as np
 
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import VariationSample, sample_variation
 from mmweaver.recognition.scoring import Evaluation, report
-from mmweaver.recognition.variation import VariationSample, sample_variation
 from studies.manifest import StudyRun
 from studies.provenance import provenance
 from studies.recognition.zero_shot_recipe import (

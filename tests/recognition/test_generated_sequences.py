@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.recognition import generated_sequences
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequence, generate_sequences
-from mmweaver.recognition.performance import PerformancePrior, perform, performer
+from mmweaver.recognition.subject_simulation import PerformancePrior, perform, performer
 from mmweaver.recognition.task_file import read_task
 
 TASK = """radar = "iwr1443_mars"

@@ -17,7 +17,7 @@ from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_strea
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser, outside_share, quantiles_of, save_recogniser
-from mmweaver.recognition.score_recogniser import feature_distances, score_recordings
+from mmweaver.recognition.scoring import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
 from mmweaver.recognition.window_filter import WindowFilter

@@ -54,8 +54,9 @@ def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
     if arguments.split is not None:
         raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
     from mmweaver.core.repository_files import repository_file
+    from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import META_FILE, load_recogniser
-    from mmweaver.recognition.score_recogniser import score_recogniser
+    from mmweaver.recognition.scoring import score_recordings
 
     folder = arguments.model or repository_file(
         f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
@@ -63,7 +64,7 @@ def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
     ).parent  # fmt: skip
     model = load_recogniser(folder)
     made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
-    scores = score_recogniser(model, arguments.recordings)
+    scores = score_recordings(model, read_task_recordings(arguments.recordings, model.settings))
     return {"task": arguments.task, "model": folder.name, **made, **scores}
 
 

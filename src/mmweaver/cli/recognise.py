@@ -97,7 +97,7 @@ def _score(arguments: argparse.Namespace) -> int:
     from mmweaver.recognition.confusion_picture import confusion_picture
     from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.score_recogniser import score_recordings, without_persistent_motion
+    from mmweaver.recognition.scoring import score_recordings, without_persistent_motion
     from mmweaver.recognition.train_recogniser import SEQUENCE_FOLDER
 
     picture = arguments.picture

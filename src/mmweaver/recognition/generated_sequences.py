@@ -19,8 +19,10 @@ from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
 from mmweaver.motion.empty_place import NOBODY
-from mmweaver.recognition.observed_points import PointRadar, observed_cloud
-from mmweaver.recognition.performance import (
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import Variation
+from mmweaver.recognition.sensor_model import PointRadar, observed_cloud
+from mmweaver.recognition.subject_simulation import (
     PerformancePrior,
     Performer,
     pelvis_distance_m,
@@ -28,9 +30,7 @@ from mmweaver.recognition.performance import (
     performer,
     task_variation,
 )
-from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
-from mmweaver.recognition.variation import Variation
 
 WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2

@@ -3,7 +3,7 @@
 Reference: Geurts, Ernst and Wehenkel, "Extremely randomized trees", Machine Learning 63, 2006.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -91,13 +91,8 @@ def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
     if other is None:
         return one
     start = len(one.left)
-    return TreeEnsemble(
-        root=np.concatenate([one.root, other.root + start]), left=np.concatenate([one.left, other.left + start]),
-        right=np.concatenate([one.right, other.right + start]), feature=np.concatenate([one.feature, other.feature]),
-        threshold=np.concatenate([one.threshold, other.threshold]),
-        unknown_left=np.concatenate([one.unknown_left, other.unknown_left]),
-        votes=np.concatenate([one.votes, other.votes]),
-    )  # fmt: skip
+    moved = replace(other, root=other.root + start, left=other.left + start, right=other.right + start)
+    return TreeEnsemble(**{name: np.concatenate([array, vars(moved)[name]]) for name, array in vars(one).items()})
 
 
 def write_trees(file: Path, ensemble: TreeEnsemble) -> None:

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.recognition.task_file import read_task
-from mmweaver.recognition.train_recogniser import generated_windows
+from mmweaver.recognition.training_windows import generated_windows
 from studies.recognition import blind_recognition
 from studies.recognition.blind_recognition import TASKS, recordings_of, result_row, scored
 from studies.schema import _row_violations

@@ -9,7 +9,7 @@ import pytest
 from mmweaver.core.firmware_settings import FIRMWARE
 from mmweaver.core.presets import IWR1443_RADHAR
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.variation import Variation
+from mmweaver.recognition.random_scene import Variation
 from studies.recognition.zero_shot_recipe import GenerationRecipe, generate_window
 
 QUIET = Variation(turn_deg=0.0, noise_db=(-3.0, 0.0), wall_share=0.0, most_panels=0, skin_exponents=(20.0,))

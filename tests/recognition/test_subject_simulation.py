@@ -7,7 +7,8 @@ import pytest
 
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.recognition.performance import (
+from mmweaver.recognition.subject_simulation import (
+    Performance,
     PerformancePrior,
     lingering,
     perform,
@@ -22,12 +23,16 @@ from mmweaver.recognition.train_pose import POSE_PRIOR
 PRIOR = PerformancePrior()
 
 
+def performance(sentence: str, index: int, seconds: float, *, once: bool = False) -> Performance:
+    who = performer(PRIOR, task_variation(Mount()), index, 0)
+    return perform(who, PRIOR, sentence, seconds=seconds, once=once, rng=stream(0, "performance", index))
+
+
 def speeds_mps(sentence: str, part: str, *, once: bool) -> list[float]:
     """Greatest horizontal speed of a joint of some people."""
     found = []
     for index in range(8):
-        who = performer(PRIOR, task_variation(Mount()), index, 0)
-        did = perform(who, PRIOR, sentence, seconds=4.0, once=once, rng=stream(0, "performance", index))
+        did = performance(sentence, index, 4.0, once=once)
         place_m, time_s = did.pose.joints_m[:, joint(part), :2], did.pose.time_s
         inside = (time_s >= 0) & (time_s <= did.lasts_s)
         found.append(float(np.linalg.norm(np.gradient(place_m[inside], time_s[inside], axis=0), axis=1).max()))
@@ -52,8 +57,7 @@ def test_who_holds_still_sways_little(sentence: str, once: bool, between_mps: tu
 def test_what_happens_once_is_in_every_sequence(sentence: str):
     """Whoever falls stands first and lies at the end, in people of any tempo."""
     for index in range(6):
-        who = performer(PRIOR, task_variation(Mount()), index, 0)
-        did = perform(who, PRIOR, sentence, seconds=6.0, once=False, rng=stream(0, "performance", index))
+        did = performance(sentence, index, 6.0)
         assert did.lasts_s == 6.0
         assert did.pose.time_s[-1] > 6.0
         height_m = np.interp([0.0, 0.1, 6.0], did.pose.time_s, did.pose.joints_m[:, joint("pelvis"), 2])
@@ -64,10 +68,7 @@ def test_what_happens_once_is_in_every_sequence(sentence: str):
 def test_what_is_counted_goes_on():
     """Three jumps are not all of it: people who "jump repeatedly" jump in the last second, too."""
     for index in range(6):
-        who = performer(PRIOR, task_variation(Mount()), index, 0)
-        did = perform(
-            who, PRIOR, "a person jumps repeatedly", seconds=4.0, once=False, rng=stream(0, "performance", index)
-        )
+        did = performance("a person jumps repeatedly", index, 4.0)
         last = (did.pose.time_s > 2.3) & (did.pose.time_s <= 4.0)
         assert np.ptp(did.pose.joints_m[last, joint("pelvis"), 2]) > 0.05
 

@@ -1,13 +1,26 @@
-"""Domain randomisation: people, rooms and radars, sampled anew for each generated recording."""
+"""Random scenes for recordings: people, open rooms and radars, sampled anew for each (domain randomisation)."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.open_room import Panel
+from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
 
 Span = tuple[float, float]
 CHEST_M, TOWARDS = 1.1, (0.2, 1.1)  # height of a chest; tilt of a high radar relative to the angle down to it
+HALF_M, TALL_M, CELL_M = 5.0, 2.4, 0.1  # of the room; of a cell of its free floor
+CORNERS = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])[:, :, None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """A flat upright object that roughly faces the radar."""
+
+    centre_m: tuple[float, float, float]
+    half_size_m: tuple[float, float]
+    turn_rad: float  # about the vertical; 0 = square to the radar's axis
+    material: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,34 +105,18 @@ class VariationSample:
 def sample_variation(variation: Variation, rng: np.random.Generator) -> VariationSample:
     """Samples the conditions of one recording."""
 
-    def of(span: Span) -> float:
-        return float(rng.uniform(*span))
+    def uniform(*names: str) -> dict[str, float]:
+        return {name: float(rng.uniform(*getattr(variation, name))) for name in names}
 
-    return VariationSample(
-        tempo=float(np.exp(rng.uniform(*np.log(variation.tempo)))),
-        vigour=of(variation.vigour),
-        turn_deg=float(rng.normal(0, variation.turn_deg)),
-        roam_mps=of(variation.roam_mps),
-        distance_m=of(variation.distance_m),
-        azimuth_deg=of(variation.azimuth_deg),
-        height_m=of(variation.height_m),
-        radar_height_m=of(variation.radar_height_m),
-        tilt_deg=of(variation.tilt_deg),
-        elevation_beamwidth_deg=of(variation.elevation_beamwidth_deg),
-        noise_db=of(variation.noise_db),
-        clutter_db=of(variation.clutter_db),
-        threshold_db=of(variation.threshold_db),
-        gain_db=of(variation.gain_db),
-        albedo_db=of(variation.albedo_db),
-        skin_exponent=float(rng.choice(variation.skin_exponents)),
-        arms_db=of(variation.arms_db),
-        legs_db=of(variation.legs_db),
-        wall_m=of(variation.wall_m) if rng.random() < variation.wall_share else None,
-        panels=tuple(_panel(rng) for _ in range(int(rng.integers(variation.most_panels + 1)))),
-        reach_m=(of(variation.near_m), of(variation.far_m)),
-        way_s=of(variation.way_s),
-        hurry=of(variation.hurry),
-    )
+    found: dict[str, Any] = {"tempo": float(np.exp(rng.uniform(*np.log(variation.tempo))))}
+    found |= uniform("vigour") | {"turn_deg": float(rng.normal(0, variation.turn_deg))}
+    found |= uniform("roam_mps", "distance_m", "azimuth_deg", "height_m", "radar_height_m", "tilt_deg")
+    found |= uniform("elevation_beamwidth_deg", "noise_db", "clutter_db", "threshold_db", "gain_db", "albedo_db")
+    found |= {"skin_exponent": float(rng.choice(variation.skin_exponents))} | uniform("arms_db", "legs_db")
+    found |= uniform("wall_m") if rng.random() < variation.wall_share else {"wall_m": None}
+    found["panels"] = tuple(_panel(rng) for _ in range(int(rng.integers(variation.most_panels + 1))))
+    found["reach_m"] = tuple(uniform("near_m", "far_m").values())
+    return VariationSample(**found, **uniform("way_s", "hurry"))
 
 
 def hung_high(now: VariationSample, variation: Variation, rng: np.random.Generator) -> VariationSample:
@@ -141,3 +138,53 @@ def _panel(rng: np.random.Generator) -> Panel:
         turn_rad=float(rng.normal(np.arctan2(-aside, 3.0), 0.4)),
         material=str(rng.choice(["metal", "wood", "chipboard", "plasterboard"])),
     )
+
+
+def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Panel, ...] = ()) -> Scene:
+    """A concrete floor `floor_z_m` below the radar (negative), perhaps a wall ahead, and panels; all floor is free.
+
+    Panels reflect and occlude, but motion planning ignores them: place them where nobody walks.
+    """
+    planes = [_plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete", (HALF_M, HALF_M))]
+    if wall_y_m is not None:
+        middle = (0.0, wall_y_m, floor_z_m + TALL_M / 2)
+        planes.append(_plane("wall", middle, (0, -1, 0), (1, 0, 0), "plasterboard", (HALF_M, TALL_M / 2)))
+    flat = list(planes)
+    for panel in panels:
+        cos, sin = np.cos(panel.turn_rad), np.sin(panel.turn_rad)
+        flat.append(_plane("panel", panel.centre_m, (sin, -cos, 0), (cos, sin, 0), panel.material, panel.half_size_m))
+    vertices_m = [
+        plane.centre_m + CORNERS[:, 0] * plane.half_size_m[0] * plane.axis_u
+        + CORNERS[:, 1] * plane.half_size_m[1] * plane.axis_v
+        for plane in flat
+    ]  # fmt: skip
+    faces = 4 * np.arange(len(flat))[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])
+    x_m, y_m = np.arange(-HALF_M, HALF_M, CELL_M), np.arange(0.0, 2 * HALF_M, CELL_M)
+    free = np.ones((len(y_m), len(x_m)), bool)
+    if wall_y_m is not None:
+        free &= y_m[:, None] < wall_y_m
+    return Scene(
+        photo=RgbdPhoto(  # that sees everything ahead, for motion planning asks what is in the picture
+            rgb=np.zeros((2, 2, 3), np.uint8),
+            depth_m=np.full((2, 2), np.nan),
+            intrinsics=CameraIntrinsics(fx=0.05, fy=0.05, cx=1.0, cy=1.0, width=2, height=2),
+        ),
+        radar_from_camera=np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]),
+        vertices_m=np.concatenate(vertices_m).astype(np.float32),
+        faces=faces.reshape(-1, 3).astype(np.int32),
+        face_material=np.repeat(np.arange(len(flat)), 2).astype(np.int32),
+        material_names=tuple(plane.material for plane in flat),
+        planes=tuple(planes),
+        floor_z_m=float(floor_z_m),
+        free_space=FreeSpace(x_m=x_m, y_m=y_m, is_free=free, is_seen=free),
+        seats=(),
+        assumptions=("the room is sampled at random",),
+    )
+
+
+def _plane(kind: str, centre: tuple, normal: tuple, u: tuple, material: str, half: tuple[float, float]) -> Plane:
+    n, axis = np.asarray(normal, float), np.asarray(u, float)
+    return Plane(
+        kind=kind, centre_m=np.asarray(centre, float), normal=n, axis_u=axis, axis_v=np.cross(n, axis),
+        half_size_m=half, material=material,
+    )  # fmt: skip

@@ -19,9 +19,15 @@ from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
 from mmweaver.motion.people import MOST_SUBJECTS, person_of
-from mmweaver.recognition.open_room import open_room
+from mmweaver.recognition.random_scene import (
+    Span,
+    Variation,
+    VariationSample,
+    hung_high,
+    random_scene,
+    sample_variation,
+)
 from mmweaver.recognition.task_file import Mount
-from mmweaver.recognition.variation import Span, Variation, VariationSample, hung_high, sample_variation
 
 SLOWEST_MPS = 0.06  # below this speed, locomotion has ended
 ROAM_HZ = (0.1, 0.6)  # frequencies of the sway of stationary people
@@ -96,17 +102,13 @@ def task_variation(mount: Mount) -> Variation:
         noise_db=NOISE_DB, arms_db=ARMS_DB,
     )  # fmt: skip
     if mount.height_m is not None:
-        known = replace(known, radar_height_m=_around(mount.height_m, HEIGHT_SPREAD_M))
+        known = replace(known, radar_height_m=(mount.height_m - HEIGHT_SPREAD_M, mount.height_m + HEIGHT_SPREAD_M))
     if mount.height_m is None and mount.tilt_deg is None:
         known = replace(known, high_share=HIGH_SHARE)
     if mount.tilt_deg is not None:
         # clouds are reported in the board's axes: a board that looks down sees people higher
-        known = replace(known, tilt_deg=_around(mount.tilt_deg, TILT_SPREAD_DEG))
+        known = replace(known, tilt_deg=(mount.tilt_deg - TILT_SPREAD_DEG, mount.tilt_deg + TILT_SPREAD_DEG))
     return known
-
-
-def _around(value: float, spread: float) -> Span:
-    return value - spread, value + spread
 
 
 def performer(prior: PerformancePrior, variation: Variation, index: int, seed: int) -> Performer:
@@ -156,7 +158,7 @@ def perform(
     lead_s = 0.0 if once or is_event else LEAD_S + late_s
     needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
     scheduled = schedule(plan if once or is_event else repeated(plan, needed_s), needed_s)
-    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
+    scene = random_scene(floor_z_m=-now.radar_height_m, wall_y_m=None)
     x, y = now.start_m
     distance = float(np.hypot(x, y))
     turned_rad = np.radians(prior.heading_of_performance_deg)
@@ -211,8 +213,13 @@ def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.G
     """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
     omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
     slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
-    reached = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
+    reached = _integral(slower, time_s)
     return reached - np.interp(0.0, time_s, reached)
+
+
+def _integral(slowness: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+    """Times (time,) at which a motion of this slowness is where it was at `time_s`, from 0."""
+    return np.concatenate([[0.0], np.cumsum((slowness[1:] + slowness[:-1]) / 2 * np.diff(time_s))])
 
 
 def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
@@ -277,7 +284,7 @@ def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray
     if most - near < LEAST_MOVED_M:
         return time_s
     slower = 1 / (1 + linger * ((far_m - near) / (most - near)).clip(0, 1))
-    gone = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
+    gone = _integral(slower, time_s)
     return time_s[0] + gone * (time_s[-1] - time_s[0]) / gone[-1]
 
 
@@ -290,8 +297,7 @@ def slow_at_turns(time_s: np.ndarray, joints_m: Joints, slower: float) -> np.nda
     speed_mps = step_m / np.gradient(time_s)
     usual_mps = max(float(np.quantile(speed_mps[time_s >= LEAD_S], 0.75)), SLOWEST_MPS)
     longer = 1 + slower * (1 - speed_mps / usual_mps).clip(0, 1)
-    gone_s = np.concatenate([[0.0], np.cumsum((longer[1:] + longer[:-1]) / 2 * np.diff(time_s))])
-    return time_s[0] + gone_s
+    return time_s[0] + _integral(longer, time_s)
 
 
 def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:
@@ -301,13 +307,8 @@ def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence
     started = pose.time_s >= 0.0
     time_s, joints_m = pose.time_s[started] + before_s, pose.joints_m[started]
     after = time_s[-1] + step_s * np.arange(1, int(after_s / step_s) + 4)
-    return replace(
-        pose,
-        time_s=np.concatenate([before, time_s, after]),
-        joints_m=np.concatenate(
-            [np.repeat(joints_m[:1], len(before), axis=0), joints_m, np.repeat(joints_m[-1:], len(after), axis=0)]
-        ),
-    )
+    held_m = np.pad(joints_m, ((len(before), len(after)), (0, 0), (0, 0)), mode="edge")
+    return replace(pose, time_s=np.concatenate([before, time_s, after]), joints_m=held_m)
 
 
 def pelvis_distance_m(pose: PoseSequence) -> np.ndarray:
