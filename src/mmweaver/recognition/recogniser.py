@@ -6,7 +6,7 @@ Reference: docs/recognise.md. `load_recogniser(folder)` reads one; `Recogniser.r
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -192,20 +192,17 @@ def load_recogniser(folder: Path | str) -> Recogniser:
 
 
 def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
-    found = meta.get("recordings")
     try:
-        if not isinstance(found, dict):
-            raise TypeError
-        labels, gap, columns = found["labels"], found["gap_frames"], found["columns"]
-        empty = found.get("empty_label")  # models of before do not say
-        if not labels or not all(isinstance(label, str) for label in labels) or empty not in (None, *labels):
-            raise TypeError
-        return RecordingSettings(
-            labels=tuple(labels), window_s=float(found["window_s"]), frame_rate_hz=float(found["frame_rate_hz"]),
-            gap_frames=None if gap is None else int(gap),
-            columns=None if columns is None else RecordedColumns.of(columns, str(file)), empty_label=empty,
+        found = meta["recordings"]
+        columns, gap = found["columns"], found["gap_frames"]
+        settings = RecordingSettings(
+            labels=tuple(found["labels"]), window_s=float(found["window_s"]),
+            frame_rate_hz=float(found["frame_rate_hz"]), gap_frames=None if gap is None else int(gap),
+            empty_label=found.get("empty_label"),  # models of before 0.3 do not have it
         )  # fmt: skip
-    except (TypeError, KeyError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
+        labels = settings.labels
+        if not labels or not all(isinstance(one, str) for one in labels) or settings.empty_label not in (None, *labels):
+            raise TypeError
+    except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{file} does not say how recordings are read; train the recogniser again") from None
+    return settings if columns is None else replace(settings, columns=RecordedColumns.of(columns, str(file)))

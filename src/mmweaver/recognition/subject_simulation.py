@@ -309,8 +309,3 @@ def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence
     after = time_s[-1] + step_s * np.arange(1, int(after_s / step_s) + 4)
     held_m = np.pad(joints_m, ((len(before), len(after)), (0, 0), (0, 0)), mode="edge")
     return replace(pose, time_s=np.concatenate([before, time_s, after]), joints_m=held_m)
-
-
-def pelvis_distance_m(pose: PoseSequence) -> np.ndarray:
-    """Slant range of the pelvis (time,)."""
-    return np.linalg.norm(pose.joints_m[:, joint("pelvis")], axis=1)
