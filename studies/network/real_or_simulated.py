@@ -28,7 +28,6 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import load_activity
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -46,6 +45,7 @@ from studies.network.learned_scores import (
 )
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method
+from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 

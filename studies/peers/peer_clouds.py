@@ -24,7 +24,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube
 from mmweaver.paths.receiver import IDEAL, Receiver, quantise
-from mmweaver.recognition.mars_data import MarsStretch, cut, read_mars
+from mmweaver.recognition.mars_data import MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.peers.rf_genesis import RfGenesis
 from studies.physics.cloud_scores import score
@@ -43,6 +43,7 @@ from studies.physics.mars import (
     simulate,
     smoothed,
 )
+from studies.physics.mars_pieces import cut, pose_of
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
@@ -59,7 +60,7 @@ def traced(tracer: RfGenesis, pieces: list[MarsStretch], setup: Setup) -> list[A
     found = []
     for piece in pieces:
         still = replace(piece, joints_m=smoothed(piece.joints_m, MarsVariant().smoothing_frames))
-        found.append(tracer.adc(still.pose(setup.shift_m, setup.height_m), IWR1443_MARS, int(piece.frame[-1]) + 1))
+        found.append(tracer.adc(pose_of(still, setup.shift_m, setup.height_m), IWR1443_MARS, int(piece.frame[-1]) + 1))
     return found
 
 

@@ -47,7 +47,6 @@ from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
-from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.read_photo import read_photo
@@ -59,6 +58,7 @@ from studies.physics.signal_statistics import (
     recorded_hall,
     recorded_people,
 )
+from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from studies.result_rows import complete_rows
 from studies.study import Reads
 

@@ -39,11 +39,12 @@ from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.paths.static_paths import AS_PUBLISHED
-from mmweaver.recognition.mars_data import FRAME_S, MarsStretch, as_published, body_height_m, cut, read_mars
+from mmweaver.recognition.mars_data import FRAME_S, MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
+from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
@@ -138,7 +139,7 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
             joints_m=smoothed(piece.joints_m, variant.smoothing_frames)
             + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
         )
-        pose, num = noisy.pose(setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
+        pose, num = pose_of(noisy, setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
         if variant.at_joints:
             adc = run_joints(simulator, pose, num_frames=num, seed=seed, motions=variant.motions, brighter=gain)
         else:

@@ -22,12 +22,11 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.score_recogniser import score_recordings
+from mmweaver.recognition.point_recordings import PointRecording, read_task_recordings, windows_of
+from mmweaver.recognition.scoring import score_recordings
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
-from mmweaver.recognition.train_recogniser import fitted, generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
+from mmweaver.recognition.train_recogniser import fitted
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, generated_windows
 from studies.manifest import StudyRun, content_of
 from studies.motion.mars_exercises import EXERCISES
 from studies.schema import metric

@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student
 
-from mmweaver.recognition.labelled_training import OWN_LEAF, labelled_alone, own_trees
+from mmweaver.recognition.adaptation import OWN_LEAF, labelled_alone, own_trees
+from mmweaver.recognition.point_recordings import windows_of
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows, trees_of, with_recorded
+from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
 from mmweaver.recognition.tree_ensemble import joined_trees
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import add_task_options, task_data
@@ -43,10 +43,10 @@ def accuracy(
     options, own, training = TrainingOptions(trees=TREES), None, made
     if trains.any() and generated:
         own, options = own_trees(made, features[trains], labels[trains], each, options)
-        training = with_recorded(made, features[trains], labels[trains], options.labelled_weight)
+        training = made.with_recorded(features[trains], labels[trains], options.labelled_weight)
     elif trains.any():
         training, options = labelled_alone(made, features[trains], labels[trains]), replace(options, leaf_size=OWN_LEAF)
-    trees = joined_trees(trees_of(training, options), own)
+    trees = joined_trees(training.trees(options), own)
     guess = trees.probabilities(features[tested]).argmax(axis=1)
     return balanced_accuracy(labels[tested], guess)
 

@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.recognition.score_recogniser import score_recordings
+from mmweaver.recognition.scoring import score_recordings
+from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.train_recogniser import fitted, generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions
+from mmweaver.recognition.train_recogniser import fitted
+from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import TASKS, result_row
 from studies.recognition.other_boards import CONDITIONS, empty_place
@@ -69,8 +69,8 @@ def _trained(
     task: RecognitionTask, training: list[PointRecording], settings: TrainingOptions, background: list[PointRecording]
 ) -> Recogniser:
     model = fitted(generated_windows(training, task, settings, background), [], task, settings)
-    facts = replace(RadarFacts.of(task), knows_place=bool(background))
-    return replace(model, points=replace(model.points, facts=facts))
+    radar = replace(Quantisation.of(task), knows_place=bool(background))
+    return replace(model, points=replace(model.points, radar=radar))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:

@@ -13,11 +13,10 @@ from pathlib import Path
 
 from mmweaver.recognition.confusion_picture import confusion_picture, usual_windows
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.task_file import read_task
-from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.train_recogniser import fitted, generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions
+from mmweaver.recognition.train_recogniser import fitted
+from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
 from studies.manifest import StudyRun
 from studies.recognition.blind_recognition import TASKS, add_task_options, recordings_of
 from studies.recognition.zero_shot_pictures import draw

@@ -11,10 +11,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+from mmweaver.recognition.point_recordings import read_task_recordings
 from mmweaver.recognition.pose_estimator import load_estimator
 from mmweaver.recognition.recogniser import load_recogniser
 from mmweaver.recognition.score_poses import score_poses
-from mmweaver.recognition.score_recogniser import score_recogniser
+from mmweaver.recognition.scoring import score_recordings
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import WORDS
 from studies.recognition.zero_shot_pose import WORDS as ALIGNMENTS
@@ -66,7 +67,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         weights = WEIGHTS / folder
         data = {"name": name, "sha256": content_of(place)["sha256"]}
         if name == "RadHAR":
-            scores = score_recogniser(load_recogniser(weights), place)
+            model = load_recogniser(weights)
+            scores = score_recordings(model, read_task_recordings(place, model.settings))
             row = recogniser_row(scores, data, round(time.process_time() - began, 1))
         else:
             scores = score_poses(load_estimator(weights), place, SPLIT)

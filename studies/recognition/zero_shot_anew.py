@@ -11,13 +11,11 @@ import argparse
 import time
 from pathlib import Path
 
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.point_recording_files import read_point_recordings
-from mmweaver.recognition.radhar import ACTIVITIES, radhar_recipe
-from mmweaver.recognition.scoring import evaluate_recogniser
-from mmweaver.recognition.zero_shot import featurize
+from mmweaver.recognition.point_recordings import PointRecording
 from studies.manifest import StudyRun
+from studies.recognition.zero_shot_recipe import radhar_recipe
 from studies.recognition.zero_shot_scores import in_first_half, read_cache, result_row
+from studies.recognition.zero_shot_training import evaluate_recogniser, featurize, radhar_recordings
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
@@ -37,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    people, rows = developed(read_point_recordings(options.recordings, tuple(ACTIVITIES))), []
+    people, rows = developed(radhar_recordings(options.recordings)), []
     for cache in options.caches:
         began = time.process_time()
         windows, source = read_cache(cache)

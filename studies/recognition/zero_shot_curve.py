@@ -15,13 +15,11 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.activity_classifier import ActivityClassifier
-from mmweaver.recognition.frozen_activity import Frozen, load_frozen
-from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.window_features import feature_matrix
 from studies.manifest import StudyRun
+from studies.recognition.activity_classifier import ActivityClassifier
 from studies.recognition.zero_shot_scores import digest
+from studies.recognition.zero_shot_training import Frozen, feature_matrix, load_frozen, radhar_recordings
 from studies.study import Reads
 
 RECORDINGS = (0, 1, 5, 20)
@@ -54,7 +52,7 @@ def accuracy(
 def measure(name: str, recordings: Path, run: StudyRun) -> Path:
     """Writes results/zero_shot/curve.json."""
     frozen = load_frozen(name)
-    people = read_point_recordings(recordings, frozen.labels)
+    people = radhar_recordings(recordings)
     windows = [window for one in people for window in one.windows(frozen.window_s)]
     owner = np.repeat(np.arange(len(people)), [len(one.windows(frozen.window_s)) for one in people])
     features, _ = feature_matrix(windows, frozen.training.names)

@@ -13,14 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.point_recording_files import read_point_recordings
-from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.scoring import evaluate_recogniser, report
-from mmweaver.recognition.variation import VariationSample
-from mmweaver.recognition.zero_shot import featurize
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import VariationSample
+from mmweaver.recognition.scoring import report
 from studies.manifest import StudyRun
+from studies.recognition.zero_shot_recipe import radhar_recipe
 from studies.recognition.zero_shot_scores import digest, first_draws, read_cache
+from studies.recognition.zero_shot_training import evaluate_recogniser, featurize, radhar_recordings
 from studies.study import Reads
 
 LIMBS = ("arms_db", "legs_db")
@@ -49,7 +48,7 @@ def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) 
     """Writes results/zero_shot/limbs.json."""
     recipe = radhar_recipe()
     windows, source = read_cache(cache)
-    people = read_point_recordings(recordings, recipe.activities)
+    people = radhar_recordings(recordings)
     samples, labels = first_draws(recipe, each, seed), tuple(recipe.activities)
     rows: list[dict[str, Any]] = []
     for limb in LIMBS:

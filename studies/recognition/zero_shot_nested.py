@@ -15,15 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
-from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.point_recording_files import read_point_recordings
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.window_features import feature_matrix, window_features
-from mmweaver.recognition.zero_shot import COPIES, featurize
+from mmweaver.recognition.window_features import body_features, window_features
 from studies.manifest import StudyRun
+from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from studies.recognition.zero_shot_scores import digest, in_first_half, read_cache
+from studies.recognition.zero_shot_training import COPIES, feature_matrix, featurize, radhar_recordings
 from studies.study import Reads
 
 TREES = {
@@ -89,8 +87,8 @@ def measure(caches: list[Path], recordings: Path, run: StudyRun) -> Path:
     began = time.process_time()
     read = [read_cache(cache) for cache in caches]
     windows = [window for one, _ in read for window in one]
-    people = read_point_recordings(recordings, sorted({window.label for window in windows}))
-    real = [window for one in people for window in one.windows(windows[0].duration_s)]
+    people = radhar_recordings(recordings)
+    real = [window for one in people for window in one.windows(windows[0].num_frames / windows[0].frame_rate_hz)]
     first = np.array([in_first_half(window.name) for window in real])
     truth = np.array([window.label for window in real])
     found = guesses(windows, real)

@@ -7,11 +7,10 @@ import argparse
 from pathlib import Path
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.recognition.generated_windows import generate_window
-from mmweaver.recognition.point_recording import PointRecording, is_moving
-from mmweaver.recognition.point_recording_files import read_point_recordings
-from mmweaver.recognition.radhar import radhar_recipe
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
 from studies.manifest import StudyRun
+from studies.recognition.zero_shot_recipe import generate_window, radhar_recipe
+from studies.recognition.zero_shot_training import radhar_recordings
 from studies.study import Reads
 
 SHOWN_MPS = 2.5
@@ -62,7 +61,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     from dataclasses import replace
 
     recipe = replace(radhar_recipe(), window_s=SECONDS)
-    people = read_point_recordings(options.recordings, recipe.activities)
+    people = radhar_recordings(options.recordings)
     real = {}
     for label in recipe.activities:
         own = [one for one in people if one.label == label]

@@ -23,7 +23,7 @@ import numpy as np
 
 from mmweaver.figures.pose_strip import draw_pose_strips
 from mmweaver.models.point_frames import middle_m, near
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator
 from mmweaver.recognition.score_poses import (
     JointCalibration,

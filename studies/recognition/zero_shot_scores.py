@@ -1,8 +1,6 @@
 """Activity recognition trained on generated data alone, tested on recordings of people: RadHAR's five activities.
 
 python -m studies run zero_shot_scores generate --cache FOLDER --each 300 --seed 1      # resumable
-python -m studies run zero_shot_scores validate --cache FOLDER --each 300 --seed 1      # generated data alone
-python -m studies run zero_shot_scores freeze NAME --cache FOLDER --each 300 --seed 1
 python -m studies run zero_shot_scores score NAME --recordings shared/data/pointclouds/radhar
 """
 
@@ -18,20 +16,26 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.activity_classifier import ClassifierSettings
-from mmweaver.recognition.frozen_activity import FOLDER, load_frozen, save_frozen
-from mmweaver.recognition.generated_windows import GenerationRecipe, generate_window, read_window, write_window
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.point_recording_files import read_point_recordings
-from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.scoring import Evaluation, balanced_accuracy, evaluate_recogniser, report
-from mmweaver.recognition.variation import VariationSample, sample_variation
-from mmweaver.recognition.zero_shot import TrainingSet, check_cache, featurize, training_set
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import VariationSample, sample_variation
+from mmweaver.recognition.scoring import Evaluation, report
 from studies.manifest import StudyRun
 from studies.provenance import provenance
+from studies.recognition.zero_shot_recipe import (
+    GenerationRecipe,
+    check_cache,
+    generate_window,
+    radhar_recipe,
+    read_window,
+    write_window,
+)
+from studies.recognition.zero_shot_training import (
+    evaluate_recogniser,
+    load_frozen,
+    radhar_recordings,
+)
 from studies.study import Reads
 
-SETTINGS = ClassifierSettings(repetitions=3)  # of what is frozen
 METRICS = {
     "window": "balanced accuracy of windows of 2 s, one after the other",
     "three_windows": "balanced accuracy of the mean vote of three windows (6 s)",
@@ -39,36 +43,8 @@ METRICS = {
 }
 
 
-def validate(
-    made: TrainingSet, samples: list[VariationSample], settings: ClassifierSettings | None = None
-) -> dict[str, float]:
-    """Balanced accuracy on generated windows under conditions that were held out of training.
-
-    Each split trains on one side of a span of conditions and tests on the other; `every_third` is a plain split.
-    """
-    number = np.arange(len(samples))
-    of = {key: np.array([getattr(one, key) or 9.0 for one in samples], float) for key in VARIED}
-    tests = {"every_third": number // len(set(made.labels)) % 3 == 0}
-    for key, value in of.items():
-        tests[f"{key}_low"], tests[f"{key}_high"] = value <= np.quantile(value, 0.3), value >= np.quantile(value, 0.7)
-    scores: dict[str, float] = {}
-    for name, test in tests.items():
-        if test.all():
-            continue  # nothing is left to train on: this was not varied
-        model = TrainingSet(features=made.features[~test], labels=made.labels[~test], names=made.names).train(settings)
-        truth, guess = (
-            np.unique(made.labels).searchsorted(labels)
-            for labels in (made.labels[test], model.predict(made.features[test]))
-        )
-        scores[name] = balanced_accuracy(truth, guess)
-    return scores
-
-
-VARIED = ("tempo", "distance_m", "radar_height_m", "noise_db", "threshold_db", "skin_exponent", "wall_m")
-
-
 def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[VariationSample]:
-    """The sampled conditions of each window in the order of `generate_windows` (the first sample, if repeated)."""
+    """The sampled conditions of each window in the order of `generate` (the first sample, if repeated)."""
     return [
         sample_variation(recipe.variation_of(label), stream(seed, "zero shot", label, index))
         for index in range(each)
@@ -83,7 +59,7 @@ def score(name: str, recordings: Path, run: StudyRun) -> Path:
     """
     began = time.process_time()
     frozen = load_frozen(name)
-    evaluated = evaluate_recogniser(frozen.train(), read_point_recordings(recordings, frozen.labels), frozen.window_s)
+    evaluated = evaluate_recogniser(frozen.train(), radhar_recordings(recordings), frozen.window_s)
     seconds = time.process_time() - began
     first = np.array([in_first_half(one) for one in evaluated.names])[evaluated.recording]
     parts = {
@@ -138,23 +114,6 @@ def digest(folder: Path) -> str:
     return total.hexdigest()
 
 
-def freeze(name: str, caches: list[Path], run: StudyRun) -> Path:
-    """Pools all windows of the caches and writes the frozen files of the package with their sources.
-
-    results/zero_shot/frozen.json holds the same, with the hash of the features.
-    """
-    read = [read_cache(cache) for cache in caches]
-    made = [featurize(windows) for windows, _ in read]
-    sources = [source for _, source in read]
-    pooled = TrainingSet(
-        features=np.concatenate([one.features for one in made]),
-        labels=np.concatenate([one.labels for one in made]),
-        names=made[0].names,
-    )
-    save_frozen(name, pooled, {"classifier": asdict(SETTINGS), "sources": sources})
-    return describe_frozen(name, run)
-
-
 def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
     """The windows of a cache, and their source: commit, seed, number, core seconds, recipe."""
     recipe = radhar_recipe()
@@ -168,14 +127,6 @@ def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
         "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
     }
     return windows, source
-
-
-def describe_frozen(name: str, run: StudyRun) -> Path:
-    """results/zero_shot/frozen.json: settings and sources of a frozen recogniser, and the digest of its features."""
-    settings = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
-    features = hashlib.sha256((FOLDER / f"{name}.npz").read_bytes()).hexdigest()
-    config = {"frozen": name, "features_sha256": features, **settings}
-    return run.write("zero_shot", "frozen", config=config, rows=[])
 
 
 def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
@@ -201,10 +152,9 @@ def _commit_text() -> str:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("what", choices=("generate", "validate", "freeze", "score"))
+    parser.add_argument("what", choices=("generate", "score"))
     parser.add_argument("name", nargs="?", default="development", help="name of the frozen recogniser")
     parser.add_argument("--cache", type=Path, help="folder of generated windows")
-    parser.add_argument("--caches", type=Path, action=Reads, nargs="+", help="folders to freeze together")
     parser.add_argument("--each", type=int, default=300, help="windows of each activity")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--part", type=int, default=0)
@@ -213,16 +163,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    recipe = radhar_recipe()
     if options.what == "score":
         score(options.name, options.recordings, run)
         return
-    if options.what == "generate":
-        generate(recipe, options.cache, each=options.each, seed=options.seed, part=options.part, parts=options.parts)
-        return
-    if options.what == "freeze":
-        freeze(options.name, options.caches, run)
-        return
-    made = training_set(recipe, each=options.each, seed=options.seed, cache=options.cache)
-    for split, value in validate(made, first_draws(recipe, options.each, options.seed)).items():
-        print(f"{split:24s} {value:.3f}")
+    generate(
+        radhar_recipe(), options.cache, each=options.each, seed=options.seed, part=options.part, parts=options.parts
+    )

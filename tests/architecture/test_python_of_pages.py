@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 from mmweaver import Weaver
@@ -29,10 +28,8 @@ ELSEWHERE = {
     "extend.md": "tests/test_register.py, in a process of its own, for it registers things",
     "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
 }
-# Smaller than on the page: a recogniser of 600 windows takes seven minutes.
-SMALLER = {"zero_shot.md": ("each=200", "each=2")}
-# Their parts are tested in tests/comparison, tests/motion/motiongpt and tests/recognition/test_zero_shot.py, and below.
-SLOW = {"compare.md", "motiongpt.md", "zero_shot.md"}
+# Their parts are tested in tests/comparison, tests/motion/motiongpt, and below.
+SLOW = {"compare.md", "motiongpt.md"}
 NOT_INSTALLED = {"datasets": "Hugging Face datasets, which nothing here needs"}
 
 
@@ -59,18 +56,10 @@ def pose_network(place: Path, patch: pytest.MonkeyPatch) -> None:
     assert main([*words, "--steps", "1", "--batch", "2", "--quiet"]) == 0
 
 
-def own_recordings(place: Path, _: pytest.MonkeyPatch) -> None:
-    """Two recordings of each activity that the page names, (point, 8) as its files have them."""
-    for index, label in enumerate(("walk", "wave", "squat")):
-        for take in range(2):
-            (place / "recordings" / label).mkdir(parents=True, exist_ok=True)
-            points = np.random.default_rng([index, take]).normal(2, 0.2, (600, 8)).astype(np.float32)
-            np.savez(place / "recordings" / label / f"{take}.npz", frame=np.arange(600) // 6, pts=points)
-
-
 MADE_BEFORE: dict[str, Callable[[Path, pytest.MonkeyPatch], None]] = {
-    "recognise.md": recogniser, "pose.md": pose_network, "zero_shot.md": own_recordings,
-}  # fmt: skip
+    "recognise.md": recogniser,
+    "pose.md": pose_network,
+}
 
 
 @pytest.fixture(scope="module")
@@ -92,9 +81,7 @@ def test_the_blocks_of_a_page_run(name: str, demo: Path, tmp_path: Path, monkeyp
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     for block in blocks_of(PAGES[name]):
-        code = block.replace(*SMALLER[name]) if name in SMALLER else block
-        assert (code != block) == (name in SMALLER)
-        exec(compile(code, name, "exec"), names)
+        exec(compile(block, name, "exec"), names)
 
 
 def test_what_the_blocks_import_is_there():
@@ -108,8 +95,8 @@ def test_what_the_blocks_import_is_there():
 
 
 def test_all_python_of_the_pages_is_in_blocks_that_are_run():
-    assert sum(len(blocks_of(page)) for page in PAGES.values()) >= 22
+    assert sum(len(blocks_of(page)) for page in PAGES.values()) >= 21
     for name, page in PAGES.items():
         assert not re.search(r"^ {4}(from \w+ )?import \w", page.read_text(encoding="utf-8"), flags=re.MULTILINE), name
-    for name in (*ELSEWHERE, *MADE_BEFORE, *SMALLER, *SLOW):
+    for name in (*ELSEWHERE, *MADE_BEFORE, *SLOW):
         assert blocks_of(PAGES[name]), name

@@ -32,7 +32,6 @@ from mmweaver.formats.radar_options import RadarOptions, read_antennas, with_opt
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
 from mmweaver.playback.wire import pack, unpack
-from mmweaver.recognition.point_recording_files import read_point_recording
 from mmweaver.stored_result import read_result
 from mmweaver.stream_folder import read_stream_cube
 from mmweaver.studio.asked import Asked
@@ -112,9 +111,6 @@ def _clouds() -> list[Reader]:
         {"frame": np.array([0, 1]), "pts": np.ones((2, 8))},
     ]
 
-    def recording(path: Path) -> Any:
-        return read_point_recording(path).cloud
-
     npz = {"damaged": lambda rng: m.mutated_npz(rng.choice(archives), rng)}
     return [
         _read("points dat", ".dat", read_points, logs, wrong=_wrong_cloud),
@@ -122,8 +118,6 @@ def _clouds() -> list[Reader]:
         _read("points RadHAR", ".txt", read_points, [radhar], wrong=_wrong_cloud),
         _read("points MM-Fi", ".bin", read_points, [table.astype("<f8").tobytes()], wrong=_wrong_cloud),
         _read("points mHomeGes", ".npz", read_points, [], wrong=_wrong_cloud, **npz),
-        _read("recognition text", ".txt", recording, [radhar], wrong=_wrong_cloud),
-        _read("recognition npz", ".npz", recording, [], wrong=_wrong_cloud, **npz),
     ]
 
 

@@ -7,9 +7,8 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.recognition.frozen_activity import load_frozen
-from mmweaver.recognition.point_recording_files import read_point_recordings
-from mmweaver.recognition.scoring import evaluate_recogniser, report
+from mmweaver.recognition.scoring import report
+from studies.recognition.zero_shot_training import evaluate_recogniser, load_frozen, radhar_recordings
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "zero_shot"
 
@@ -18,7 +17,7 @@ RESULTS = Path(__file__).resolve().parents[2] / "results" / "zero_shot"
 @pytest.mark.parametrize("name", ["blind", "development"])
 def test_the_score_is_that_of_the_results(real_data: Path, name: str):
     frozen = load_frozen(name)
-    people = read_point_recordings(real_data / "pointclouds" / "radhar", frozen.labels)
+    people = radhar_recordings(real_data / "pointclouds" / "radhar")
     found = report(evaluate_recogniser(frozen.train(), people, frozen.window_s))
     told = json.loads((RESULTS / f"{name}.json").read_text())["rows"][0]["metrics"]
     for key in ("window", "three_windows", "recording"):

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.task_file import RecordingSettings, read_task
-from mmweaver.recognition.train_recogniser import fitted, generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions
+from mmweaver.recognition.train_recogniser import fitted
+from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
 
 OPTIONS = TrainingOptions(sequences=6, copies=1, trees=15)
 SECONDS = 8.0

@@ -8,7 +8,8 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.recognition.mars_data import as_published, body_height_m, cloud_of, cut, joints_from_kinect, read_mars
+from mmweaver.recognition.mars_data import cloud_of, joints_from_kinect, read_mars
+from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
 from tests.rooms import STANDING_M
 
 KINECT = (
@@ -56,7 +57,7 @@ def test_stretches_end_at_long_gaps(tmp_path: Path):
     assert [stretch.frame.tolist() for stretch in stretches] == [[0, 1, 2, 4], [0, 1, 2, 3]]
     assert [len(cloud.x_m) for cloud in stretches[0].clouds] == [2, 1, 2, 2]
     assert stretches[0].clouds[0].intensity[0] == 25
-    pose = stretches[0].pose((0.1, 0.2, 0.3), 1.7)
+    pose = pose_of(stretches[0], (0.1, 0.2, 0.3), 1.7)
     assert pose.time_s == pytest.approx([0, 0.1, 0.2, 0.4])
     assert pose.joints_m - stretches[0].joints_m == pytest.approx(np.broadcast_to((0.1, 0.2, 0.3), (4, 22, 3)))
     assert body_height_m(stretches) == pytest.approx(STANDING_M["neck"][2] + 0.16 - STANDING_M["left_foot"][2] + 0.11)

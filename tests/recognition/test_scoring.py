@@ -25,7 +25,7 @@ def test_classes_have_equal_weight():
 
 
 def test_confusion_has_the_truth_in_rows():
-    assert confusion(ONE).tolist() == [[6, 1], [2, 4]]
+    assert confusion(ONE.truth, ONE.guess, 2).tolist() == [[6, 1], [2, 4]]
 
 
 def test_windows_of_a_recording_are_averaged():

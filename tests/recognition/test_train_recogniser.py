@@ -14,10 +14,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
-from mmweaver.recognition.recogniser import Recogniser, load_recogniser, save_recogniser
-from mmweaver.recognition.score_recogniser import score_recordings
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.quantisation import Quantisation
+from mmweaver.recognition.recogniser import Recogniser, load_recogniser, outside_share, quantiles_of, save_recogniser
+from mmweaver.recognition.scoring import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
 from mmweaver.recognition.window_filter import WindowFilter
@@ -67,7 +67,7 @@ def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
     assert scores["window"]["balanced_accuracy"] == 1.0
     assert np.sum(scores["window"]["confusion"]) == scores["window"]["n"] == 16
     assert scores["warning"] is None
-    assert set(scores["distance"]["per_feature"]) <= set(again.names)
+    assert set(scores["distance"]["largest"]) <= set(again.names)
     points = scores["distance"]["moving_points_a_frame"]
     assert points["recorded"] == pytest.approx(points["generated"], rel=0.2)
     assert scores["hardly_distinct"] == []
@@ -92,11 +92,8 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
     ]
     scores = score_recordings(model, noisy)
     assert "outside what was generated" in scores["warning"]
-    outside = scores["distance"]["outside_per_feature"]
-    assert outside.keys() == scores["distance"]["per_feature"].keys()
-    assert outside["speed_mean"] > 0.5
-    plain = score_recordings(model, people)["distance"]["outside_per_feature"]
-    assert 0 <= np.mean(list(plain.values())) < 0.1
+    assert {"speed_mean", "speed_90"} & set(scores["distance"]["largest"])
+    assert not any(found.is_outside for found in model.recognise(people[1]))
     assert any(found.is_outside for found in model.recognise(noisy[1]))
 
 
@@ -128,7 +125,7 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
     assert len(model.points.busy) == len(again.points.busy) == 9
-    assert again.points.facts == RadarFacts.of(read_task(task_file))
+    assert again.points.radar == Quantisation.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
     with_fan = [_in_front(one, fan) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]
@@ -176,11 +173,9 @@ def test_unlabelled_recordings_and_a_background_are_used(task_file: Path, tmp_pa
     (tmp_path / "some").rename(tmp_path / "unlabelled")
     write_recordings(tmp_path, [replace(drawn_sequences(settings, 1)[0], label="place", name="empty")])
     task_file.write_text(TASK.format(more='unlabelled = "unlabelled"\nbackground = "place/empty.npz"'))
-    model = train_recogniser(task_file, tmp_path / "model", replace(OPTIONS, matching=True))
-    assert model.matching is not None
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     assert model.meta["unlabelled_windows"] == 32
     assert model.meta["self_training"]["used"]
-    assert load_recogniser(tmp_path / "model").matching is not None
 
 
 @pytest.mark.usefixtures("drawn")
@@ -263,6 +258,19 @@ def test_a_pipe_of_csv_lines(task_file: Path):
         with pytest.raises(InputError, match=message):
             list(recognise_stream(model, io.BytesIO(text)))
     assert list(recognise_stream(model, io.BytesIO(b""))) == []
+
+
+def test_distances_name_the_feature_that_lies_elsewhere():
+    rng = np.random.default_rng(1)
+    made = rng.normal(size=(500, 3)).astype(np.float32)
+    recorded = rng.normal(size=(300, 3)).astype(np.float32) * [3.0, 1.0, 0.0] + [5.0, 0.0, 0.0]
+    recorded[::7, 1], made[:, 2] = np.nan, 0.0
+    far = feature_distances(recorded, quantiles_of(made), ("moved", "same", "constant"))
+    assert far["moved"] > 0.8
+    assert far["same"] < 0.15
+    assert far["constant"] == 0.0
+    assert outside_share(recorded, quantiles_of(made)).mean() > 0.2
+    assert outside_share(made, quantiles_of(made)).mean() < 0.02
 
 
 @pytest.mark.parametrize(

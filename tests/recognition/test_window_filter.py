@@ -1,37 +1,66 @@
-"""Neighbours, echoes and fans are left out together; older models leave out movers of the empty place alone."""
+"""Multipath, neighbours and fans are left out; a body with wide arms, who walks alone, and what is at rest stay."""
 
 import numpy as np
+import pytest
 
-from mmweaver.core.records import PointCloud
-from mmweaver.recognition.busy_places import busy_cells
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
-from mmweaver.recognition.window_filter import WindowFilter
+from mmweaver.recognition.background_mask import background_cells
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.quantisation import Quantisation
+from mmweaver.recognition.window_filter import WindowFilter, without_multipath
+from tests.recognition.clouds import in_all_frames, recording_of
 
-FACTS = RadarFacts(
-    range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=0.96, removes_static=False, groups_range=True,
-    groups_velocity=True, knows_place=True,
-)  # fmt: skip
-PERSON, FLANK, ECHO, FAN = (0.0, 2.0, 0.36), (0.0, 2.0, 0.48), (1.5, 3.5, 0.36), (-2.0, 1.0, 0.6)
 FRAMES = 20
+Group = tuple[float, float, float, int]  # right, ahead, velocity, points per frame within 0.2 m
 
 
-def recording(*places: tuple[float, float, float]) -> PointRecording:
-    """Points at (right, ahead, velocity) in every frame; the person's are strongest."""
-    x, y, velocity = np.tile(np.array(places).T, FRAMES)
-    cloud = PointCloud(
-        frame=np.repeat(np.arange(FRAMES), len(places)), x_m=x, y_m=y, z_m=np.zeros(len(x)),
-        radial_velocity_mps=velocity, snr_db=np.where(velocity == PERSON[2], 20.0, 10.0),
+def recording(*groups: Group) -> PointRecording:
+    rows = np.repeat(np.array([group[:3] for group in groups]), [group[3] for group in groups], axis=0)
+    rows = np.repeat(rows, FRAMES, axis=0)
+    noise = np.random.default_rng(0).uniform(-0.1, 0.1, (2, len(rows)))
+    frame = np.tile(np.arange(FRAMES), len(rows) // FRAMES)
+    return recording_of(frame, x_m=rows[:, 0] + noise[0], y_m=rows[:, 1] + noise[1], velocity_mps=rows[:, 2])
+
+
+def test_an_echo_behind_the_person_is_left_out():
+    found = without_multipath(recording((0.0, 2.0, 0.5, 4), (1.2, 2.8, 0.5, 2))).cloud
+    assert len(found.frame) == 4 * FRAMES
+    assert found.x_m.max() < 0.5
+
+
+@pytest.mark.parametrize(
+    "groups",
+    [
+        [(0.0, 2.0, 0.5, 1), (1.2, 2.8, 0.5, 6)],  # many points behind few
+        [(0.0, 2.0, 0.5, 4), (1.2, 4.0, 0.0, 2)],  # at rest
+        [(-0.8, 2.0, 0.5, 2), (0.8, 2.0, -0.5, 2), (0.0, 2.0, 0.2, 2)],  # hands at either side of a body
+    ],
+)
+def test_others_stay(groups: list[Group]):
+    one = recording(*groups)
+    assert without_multipath(one) is one
+
+
+def test_a_runner_is_not_an_echo_of_where_they_were():
+    frame = np.repeat(np.arange(FRAMES), 4)
+    one = recording_of(frame, y_m=1.0 + 0.3 * frame, velocity_mps=3.0)
+    assert without_multipath(one) is one
+
+
+def test_something_farther_counts_while_the_person_is_away():
+    both = recording((0.0, 2.0, 0.5, 3), (1.5, 4.0, 0.5, 2))
+    away = PointRecording(**vars(both) | {"cloud": both.cloud.select((both.cloud.y_m > 3) | (both.cloud.frame < 10))})
+    found = without_multipath(away).cloud
+    assert set(found.frame[found.y_m > 3.0]) == set(range(11, FRAMES))
+
+
+def test_of_a_person_with_all_disturbances_one_point_per_frame_stays():
+    radar = Quantisation(
+        range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=0.96, removes_static=False, groups_range=True,
+        groups_velocity=True, knows_place=True,
     )  # fmt: skip
-    return PointRecording(name="one", cloud=cloud, num_frames=FRAMES, frame_rate_hz=10.0)
-
-
-def kept(points: WindowFilter) -> int:
-    return len(points(recording(PERSON, FLANK, ECHO, FAN)).cloud.frame) // FRAMES
-
-
-def test_of_a_person_with_all_disturbances_one_point_a_frame_stays():
-    busy = busy_cells([recording(FAN)])
-    assert kept(WindowFilter(busy=busy, facts=FACTS)) == 1
-    assert kept(WindowFilter(busy=busy)) == 3
-    assert kept(WindowFilter()) == 4
+    person, flank, echo, fan = (0.0, 2.0, 0.36), (0.0, 2.0, 0.48), (1.5, 3.5, 0.36), (-2.0, 1.0, 0.6)
+    snr_db = np.repeat([20.0, 10.0, 20.0, 10.0], FRAMES)
+    window = in_all_frames([person, flank, echo, fan], FRAMES, snr_db=snr_db)
+    busy = background_cells([in_all_frames([fan], FRAMES)])
+    for points, left in ((WindowFilter(busy=busy, radar=radar), 1), (WindowFilter(busy=busy), 3), (WindowFilter(), 4)):
+        assert len(points(window).cloud.frame) == left * FRAMES

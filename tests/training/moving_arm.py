@@ -5,7 +5,7 @@ import numpy as np
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import JOINT_NAMES, joint
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from tests.rooms import STANDING_M
 
 

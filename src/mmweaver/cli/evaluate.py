@@ -6,9 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.recognise_text import accuracy_lines, confusion_lines, score_lines
+from mmweaver.cli.recognise_text import score_lines
 from mmweaver.core.errors import InputError
-from mmweaver.core.optional_packages import need
 
 FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
@@ -17,14 +16,12 @@ EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
   mmweaver evaluate zero-shot-activity --model model/ --recordings recordings/
-  mmweaver evaluate zero-shot-activity --frozen development --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
 Without --model the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
 second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
 activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
-activities train a model from a task file: docs/recognise.md. --frozen takes one of two older recognisers of these
-activities, docs/zero_shot.md.
+activities train a model from a task file: docs/recognise.md.
 Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
 """
 
@@ -37,12 +34,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument("task", choices=tuple(TASKS), help="what is scored")
     parser.add_argument("--recordings", type=Path, required=True, metavar="DIR", help="folder of recordings")
-    which = parser.add_mutually_exclusive_group()
-    which.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train` or `train pose`")
-    which.add_argument(
-        "--frozen", choices=("development", "blind"),
-        help="an older recogniser of RadHAR's activities: the one after development or the blind one before it",
-    )  # fmt: skip
+    parser.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train` or `train pose`")
     parser.add_argument("--split", choices=("train", "validate", "test"), help="zero-shot-pose: of MARS (default test)")
     parser.add_argument("--json", action="store_true", help="print the scores for machines")
     parser.set_defaults(run=run)
@@ -58,9 +50,22 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
     if arguments.split is not None:
         raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
-    return _of_model(arguments) if arguments.frozen is None else _of_frozen(arguments)
+    from mmweaver.core.repository_files import repository_file
+    from mmweaver.recognition.point_recordings import read_task_recordings
+    from mmweaver.recognition.recogniser import META_FILE, load_recogniser
+    from mmweaver.recognition.scoring import score_recordings
+
+    folder = arguments.model or repository_file(
+        f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
+        "give a model of mmweaver recognise train by --model",
+    ).parent  # fmt: skip
+    model = load_recogniser(folder)
+    made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
+    scores = score_recordings(model, read_task_recordings(arguments.recordings, model.settings))
+    return {"task": arguments.task, "model": folder.name, **made, **scores}
 
 
 def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -78,42 +83,10 @@ def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
     return {"task": arguments.task, "model": model.name, **scores}
 
 
-def _of_model(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
-    from mmweaver.core.repository_files import repository_file
-    from mmweaver.recognition.recogniser import META_FILE, load_recogniser
-    from mmweaver.recognition.score_recogniser import score_recogniser
-
-    folder = arguments.model or repository_file(
-        f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
-        "give --frozen development, or a model of mmweaver recognise train by --model",
-    ).parent  # fmt: skip
-    model = load_recogniser(folder)
-    made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
-    scores = score_recogniser(model, arguments.recordings)
-    return {"task": arguments.task, "model": folder.name, **made, **scores}
-
-
-def _of_frozen(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Scores of the recogniser of RadHAR's activities that comes with the package."""
-    from mmweaver.recognition.frozen_activity import load_frozen
-    from mmweaver.recognition.point_recording_files import read_point_recordings
-    from mmweaver.recognition.scoring import evaluate_recogniser, report
-
-    need("evaluate", "--frozen", "sklearn")
-    frozen = load_frozen(arguments.frozen)
-    recordings = read_point_recordings(arguments.recordings, frozen.labels)
-    scores = report(evaluate_recogniser(frozen.train(), recordings, frozen.window_s))
-    return {"task": arguments.task, "frozen": arguments.frozen, **frozen.provenance, **scores}
-
-
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
-    if "distance" in scores:
-        windows = f"trained on {scores['generated_windows']} generated windows"
-        return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
-    head = f"{scores['recordings']} recordings; trained on {scores['generated_windows']} generated windows alone"
-    return [head, *accuracy_lines(scores, "windows of 2 s"), *confusion_lines(scores)]
+    windows = f"trained on {scores['generated_windows']} generated windows"
+    return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
 
 
 def pose_lines(scores: dict[str, Any]) -> list[str]:

@@ -34,8 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.figures.pose_strip import draw_pose_strips
     from mmweaver.formats.npz_files import write_pose_npz
+    from mmweaver.recognition.point_recordings import read_task_recording
     from mmweaver.recognition.pose_estimator import load_estimator
-    from mmweaver.recognition.task_recordings import read_task_recording
 
     files = ("pose.npz", "pose.png")
     check_output_folder(arguments.out, overwrite=arguments.overwrite, files=files, inputs=[arguments.points])

@@ -95,9 +95,9 @@ def _train(arguments: argparse.Namespace) -> int:
 def _score(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import score_lines
     from mmweaver.recognition.confusion_picture import confusion_picture
+    from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.score_recogniser import score_recordings, without_constant_movers
-    from mmweaver.recognition.task_recordings import read_task_recordings
+    from mmweaver.recognition.scoring import score_recordings, without_persistent_motion
     from mmweaver.recognition.train_recogniser import SEQUENCE_FOLDER
 
     picture = arguments.picture
@@ -109,7 +109,7 @@ def _score(arguments: argparse.Namespace) -> int:
     recordings = read_task_recordings(arguments.recordings, model.settings)
     scores = score_recordings(model, recordings)
     if picture is not None:
-        shown, _ = without_constant_movers(model, recordings)
+        shown, _ = without_persistent_motion(model, recordings)
         confusion_picture(shown, arguments.place / SEQUENCE_FOLDER, recordings, picture)
     print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(score_lines(scores)))
     return 0
@@ -118,8 +118,8 @@ def _score(arguments: argparse.Namespace) -> int:
 def _run(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import contradiction_lines
     from mmweaver.recognition.live_recogniser import recognise_stream
+    from mmweaver.recognition.point_recordings import read_task_recording
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.task_recordings import read_task_recording
 
     model = load_recogniser(arguments.place)
     if str(arguments.points) == STDIN:

@@ -66,14 +66,14 @@ def score_lines(scores: dict[str, Any]) -> list[str]:
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
 
 
-def accuracy_lines(scores: dict[str, Any], windows: str = "windows") -> list[str]:
+def accuracy_lines(scores: dict[str, Any]) -> list[str]:
     """Balanced accuracy with interval and chance: per window, per three windows, per recording."""
-    text, width = [], max(len(windows), 13) + 1
-    for name, words in (("window", windows), ("three_windows", "three windows"), ("recording", "recordings")):
+    text = []
+    for name, words in (("window", "windows"), ("three_windows", "three windows"), ("recording", "recordings")):
         row = scores[name]
         low, high = row["interval_95"]
         text.append(
-            f"  {words:{width}s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
+            f"  {words:14} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
             f" {row['baseline']['chance']:.3f}, n {row['n']}"
         )
     return text

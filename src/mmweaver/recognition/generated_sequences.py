@@ -5,8 +5,9 @@ Sequences are kept in a folder as they are made, so an interrupted run resumes w
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +19,19 @@ from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
 from mmweaver.motion.empty_place import NOBODY
-from mmweaver.recognition.observed_points import PointRadar, observed_cloud
-from mmweaver.recognition.performance import (
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.random_scene import Variation
+from mmweaver.recognition.sensor_model import PointRadar, observed_cloud
+from mmweaver.recognition.subject_simulation import (
     PerformancePrior,
     Performer,
-    pelvis_distance_m,
     perform,
     performer,
     task_variation,
 )
-from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
-from mmweaver.recognition.variation import Variation
 
 WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2
@@ -88,7 +89,9 @@ def generate_sequence(recipe: SequenceRecipe, label: str, index: int) -> PointRe
     for attempt in range(TRIES):
         who = performer(recipe.prior, recipe.variation, index + attempt * 100_003, recipe.seed)
         if sentences == (NOBODY,):
-            return _empty_place(recipe, who, label, index)
+            frames = max(int(recipe.seconds * recipe.task.recordings.frame_rate_hz), 1)
+            cloud = observed_cloud(recipe.board, who.surroundings, (), frames, who.subject + index)
+            return _recording(recipe.task.recordings, label, index, cloud, frames)
         sentence = sentences[(index + attempt) % len(sentences)]
         try:
             sequence, is_seen = _sequence(recipe, who, sentence, label, index, rng)
@@ -106,15 +109,25 @@ def generate_sequence(recipe: SequenceRecipe, label: str, index: int) -> PointRe
 def _sequence(
     recipe: SequenceRecipe, who: Performer, sentence: str, label: str, index: int, rng: np.random.Generator
 ) -> tuple[PointRecording, bool]:
+    """A sequence, and whether the body is detected often enough: else the radar would be placed elsewhere."""
     once, rate_hz = recipe.task.recordings.has_single_performances, recipe.task.recordings.frame_rate_hz
     did = perform(who, recipe.prior, sentence, seconds=recipe.seconds, once=once, rng=rng)
-    frames = max(int(did.lasts_s * rate_hz), 1)
-    cloud = observed_cloud(recipe.board, did.surroundings, did.pose, frames, int(rng.integers(2**31)))
-    recording = PointRecording(
-        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=rate_hz, label=label,
-        joints_m=joints_at(did.pose, np.arange(frames) / rate_hz),
+    frames, pose = max(int(did.lasts_s * rate_hz), 1), did.pose
+    cloud = observed_cloud(recipe.board, did.surroundings, pose, frames, int(rng.integers(2**31)))
+    body_m = np.interp(cloud.frame / rate_hz, pose.time_s, np.linalg.norm(pose.joints_m[:, joint("pelvis")], axis=1))
+    seen = len(np.unique(cloud.frame[np.abs(cloud.range_m - body_m) < REACH_M]))
+    joints_m = joints_at(pose, np.arange(frames) / rate_hz)
+    return _recording(recipe.task.recordings, label, index, cloud, frames, joints_m), seen >= SEEN_SHARE * frames
+
+
+def _recording(
+    settings: RecordingSettings, label: str, index: int, cloud: PointCloud, frames: int,
+    joints_m: np.ndarray | None = None,
+) -> PointRecording:  # fmt: skip
+    return PointRecording(
+        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label,
+        joints_m=joints_m,
     )  # fmt: skip
-    return recording, _is_seen(recording, did.pose)
 
 
 def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
@@ -123,27 +136,6 @@ def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
     early_s, late_s = pose.time_s[before - 1], pose.time_s[before]
     share = ((time_s - early_s) / (late_s - early_s)).clip(0, 1)[:, None, None]
     return (1 - share) * pose.joints_m[before - 1] + share * pose.joints_m[before]
-
-
-def _empty_place(recipe: SequenceRecipe, who: Performer, label: str, index: int) -> PointRecording:
-    frames = max(int(recipe.seconds * recipe.task.recordings.frame_rate_hz), 1)
-    cloud = observed_cloud(recipe.board, who.surroundings, (), frames, who.subject + index)
-    return PointRecording(
-        name=f"{label}_{index}",
-        cloud=cloud,
-        num_frames=frames,
-        frame_rate_hz=recipe.task.recordings.frame_rate_hz,
-        label=label,
-    )
-
-
-def _is_seen(recording: PointRecording, pose: PoseSequence) -> bool:
-    """Whether the body is detected often enough: a radar that misses the person would be placed elsewhere."""
-    cloud = recording.cloud
-    body_m = np.interp(cloud.frame / recording.frame_rate_hz, pose.time_s, pelvis_distance_m(pose))
-    range_m = cloud.range_m
-    there = cloud.frame[np.abs(range_m - body_m) < REACH_M]
-    return len(np.unique(there)) >= SEEN_SHARE * recording.num_frames
 
 
 def generate_sequences(
@@ -155,18 +147,17 @@ def generate_sequences(
     """
     if folder is not None and create_once(folder / "recipe.json", recipe.as_json()) != recipe.as_json():
         raise InputError(f"{folder} holds sequences of another task or seed; choose another folder or remove it")
-    asked = list(_asked(recipe.task, each))
-    sequences: list[PointRecording] = []
-    for label, index in asked:
-        place = None if folder is None else folder / f"{recipe.task.recordings.labels.index(label):03d}_{index:05d}.npz"
+    settings, sequences = recipe.task.recordings, list[PointRecording]()
+    for index, (number, label) in product(range(each), enumerate(settings.labels)):
+        place = None if folder is None else folder / f"{number:03d}_{index:05d}.npz"
         if place is not None and place.is_file():
-            sequences.append(_read(place, recipe.task.recordings, label, index))
+            sequences.append(_read(place, settings, label, index))
         else:
             sequences.append(generate_sequence(recipe, label, index))
             if place is not None:
                 _write(place, sequences[-1])
         if listener is not None:
-            listener(len(sequences), len(asked))
+            listener(len(sequences), each * len(settings.labels))
     return sequences
 
 
@@ -177,10 +168,6 @@ def stored_sequences(folder: Path, settings: RecordingSettings) -> list[PointRec
     if not numbers or max(label for _, label, _ in numbers) >= len(settings.labels):
         raise InputError(f"{folder} does not hold the sequences that the recogniser learned from; train it again")
     return [_read(place, settings, settings.labels[label], index) for place, label, index in numbers]
-
-
-def _asked(task: RecognitionTask, each: int) -> Iterator[tuple[str, int]]:
-    return ((label, index) for index in range(each) for label in task.recordings.labels)
 
 
 def _write(place: Path, sequence: PointRecording) -> None:
@@ -203,7 +190,5 @@ def _read(place: Path, settings: RecordingSettings, label: str, index: int) -> P
     frame = held.numbers("frame", ("point",), kinds="iu", low=0, high=frames - 1).astype(int)
     columns = held.numbers("columns", ("point", len(COLUMNS)), nan=True).astype(float)
     joints_m = held.numbers("joints_m", (frames, 22, 3)).astype(float) if "joints_m" in held else None
-    return PointRecording(
-        name=f"{label}_{index}", cloud=PointCloud(frame=frame, **dict(zip(COLUMNS, columns.T, strict=True))),
-        num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label, joints_m=joints_m,
-    )  # fmt: skip
+    cloud = PointCloud(frame=frame, **dict(zip(COLUMNS, columns.T, strict=True)))
+    return _recording(settings, label, index, cloud, frames, joints_m)

@@ -14,7 +14,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.formats.point_clouds.point_tables import csv_columns
 from mmweaver.formats.point_clouds.ti_uart import MAGIC, ByteSource, packets_of
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser, Recognition
 
 FramePoints = Float[np.ndarray, "point 5"]  # x right, y ahead, z up in m, radial velocity (away +) in m/s, SNR in dB

@@ -3,30 +3,24 @@
 Reference: An and Ogras, "MARS: mmWave-based Assistive Rehabilitation System", 2021; its public repository, MIT.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import MEGABYTE
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.dsp.firmware import FirmwareCloud
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 
 FRAME_S = 0.1
-# The published clouds end sharply here (validate: 868 points in the highest 10 cm below 1 m, none above): whoever made
-# them cut away what lies beyond, mostly second azimuth peaks with absurd heights.
-ASIDE_M, UP_M, AHEAD_M = 1.0, 1.0, 3.0
 LONGEST_GAP = 3  # frames; joints are interpolated over shorter gaps, a longer one begins another recording
-Cloud = TypeVar("Cloud", bound=PointCloud)
 RADAR_COLUMNS, KINECT_COLUMNS = 8, 75
 MOST_BYTES = 200 * MEGABYTE
-CROWN_OVER_HEAD_M = 0.11  # the Kinect's head is the middle of the head
 
 # Our joints as mixtures of the Kinect's: (joint, joint, share of the second).
 SPINE_BASE, SPINE_MID, NECK, HEAD, SPINE_SHOULDER = 0, 1, 2, 3, 20
@@ -53,11 +47,6 @@ class MarsStretch:
     frame: Int[np.ndarray, " sample"]
     joints_m: Float[np.ndarray, "sample 22 3"]  # in the Kinect's frame: x right, y away, z up
     clouds: tuple[FirmwareCloud, ...]  # one a sample, in the radar's frame
-
-    def pose(self, shift_m: tuple[float, float, float], height_m: float) -> PoseSequence:
-        """The joints as a motion in the radar's frame, `shift_m` from the Kinect's."""
-        joints = self.joints_m + np.asarray(shift_m)
-        return PoseSequence(time_s=self.frame * FRAME_S, joints_m=joints, height_m=height_m)
 
 
 def read_mars(folder: Path | str, split: str) -> list[MarsStretch]:
@@ -86,74 +75,35 @@ def read_mars(folder: Path | str, split: str) -> list[MarsStretch]:
     ]
 
 
-def as_published(cloud: Cloud) -> Cloud:
-    """Points within the box of the published recordings: |x| and |z| up to 1 m, y up to 3 m."""
-    kept = (np.abs(cloud.x_m) <= ASIDE_M) & (np.abs(cloud.z_m) <= UP_M) & (cloud.y_m <= AHEAD_M)
-    return type(cloud)(**{field.name: getattr(cloud, field.name)[kept] for field in fields(cloud)})
-
-
 def posed_recordings(folder: Path | str, split: str) -> list[PointRecording]:
     """The stretches of a split as recordings with joints, nan in frames that were not recorded.
 
     Joints lie in the Kinect's axes, points in the radar's; strength is the intensity in dB.
     """
-    return [_posed(stretch, f"{split} {number}") for number, stretch in enumerate(read_mars(folder, split))]
-
-
-def _posed(stretch: MarsStretch, name: str) -> PointRecording:
-    frames = int(stretch.frame[-1]) + 1
-    joints_m = np.full((frames, len(JOINT_NAMES), 3), np.nan)
-    joints_m[stretch.frame] = stretch.joints_m
-    clouds = stretch.clouds
-    columns = {
-        column: np.concatenate([getattr(cloud, column) for cloud in clouds])
-        for column in ("x_m", "y_m", "z_m", "radial_velocity_mps")
-    }
-    intensity = np.concatenate([cloud.intensity for cloud in clouds])
-    frame = np.repeat(stretch.frame, [len(cloud.x_m) for cloud in clouds])
-    return PointRecording(
-        name=name, cloud=PointCloud(frame=frame, snr_db=20 * np.log10(np.maximum(intensity, 1.0)), **columns),
-        num_frames=frames, frame_rate_hz=1 / FRAME_S, joints_m=joints_m,
-    )  # fmt: skip
-
-
-def cut(stretches: list[MarsStretch], length: int, most: int) -> list[MarsStretch]:
-    """Up to `most` pieces of `length` consecutive frames, spread evenly."""
-    pieces = []
-    for stretch in stretches:
-        for first in range(0, int(stretch.frame[-1]) - length + 2, length):
-            chosen = np.flatnonzero((stretch.frame >= first) & (stretch.frame < first + length))
-            # it begins and ends with a measured pose, so that nothing is extrapolated
-            if (
-                len(chosen) > length // 2
-                and stretch.frame[chosen[0]] == first
-                and stretch.frame[chosen[-1]] == first + length - 1
-            ):
-                pieces.append(
-                    replace(
-                        stretch,
-                        frame=stretch.frame[chosen] - first,
-                        joints_m=stretch.joints_m[chosen],
-                        clouds=tuple(stretch.clouds[index] for index in chosen),
-                    )
-                )
-    step = max(len(pieces) / most, 1.0)
-    return [pieces[int(at * step)] for at in range(min(most, len(pieces)))]
+    found = []
+    for number, stretch in enumerate(read_mars(folder, split)):
+        frames = int(stretch.frame[-1]) + 1
+        joints_m = np.full((frames, len(JOINT_NAMES), 3), np.nan)
+        joints_m[stretch.frame] = stretch.joints_m
+        columns = {
+            column: np.concatenate([getattr(cloud, column) for cloud in stretch.clouds])
+            for column in ("x_m", "y_m", "z_m", "radial_velocity_mps", "intensity")
+        }
+        snr_db = 20 * np.log10(np.maximum(columns.pop("intensity"), 1.0))
+        frame = np.repeat(stretch.frame, [len(cloud.x_m) for cloud in stretch.clouds])
+        found.append(
+            PointRecording(
+                name=f"{split} {number}", cloud=PointCloud(frame=frame, snr_db=snr_db, **columns), num_frames=frames,
+                frame_rate_hz=1 / FRAME_S, joints_m=joints_m,
+            )
+        )  # fmt: skip
+    return found
 
 
 def joints_from_kinect(kinect_m: Float[np.ndarray, "sample 25 3"]) -> Float[np.ndarray, "sample 22 3"]:
     """Our 22 joints from the Kinect's 25."""
     mixed = [MIXED[name] for name in JOINT_NAMES]
     return np.stack([kinect_m[:, one] * (1 - share) + kinect_m[:, two] * share for one, two, share in mixed], axis=1)
-
-
-def body_height_m(stretches: list[MarsStretch]) -> float:
-    """Height of the person: the 90 % quantile of head over feet, and the crown above it."""
-    joints = np.concatenate([stretch.joints_m for stretch in stretches])
-    head, neck = JOINT_NAMES.index("head"), JOINT_NAMES.index("neck")
-    feet = [JOINT_NAMES.index("left_foot"), JOINT_NAMES.index("right_foot")]
-    middle_of_head = joints[:, neck, 2] + (joints[:, head, 2] - joints[:, neck, 2]) / 0.75
-    return float(np.quantile(middle_of_head - joints[:, feet, 2].mean(axis=1), 0.9)) + CROWN_OVER_HEAD_M
 
 
 def cloud_of(rows: Float[np.ndarray, "point 8"]) -> FirmwareCloud:

@@ -18,8 +18,7 @@ from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.point_frames import PointFrames, point_frames
 from mmweaver.models.weights import WeightsCard
-from mmweaver.recognition.recorded_columns import RecordedColumns
-from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 
 if TYPE_CHECKING:
     from mmweaver.models.pose_network import PoseNetwork

@@ -6,7 +6,7 @@ Reference: docs/recognise.md. `load_recogniser(folder)` reads one; `Recogniser.r
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,25 +19,23 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.recognition.body_features import body_features
-from mmweaver.recognition.busy_places import NO_CELLS
-from mmweaver.recognition.course_features import course_features
-from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radar_facts import RadarFacts
-from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.background_mask import NO_CELLS
+from mmweaver.recognition.point_recordings import PointRecording, windows_of
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
-from mmweaver.recognition.side_features import side_features
-from mmweaver.recognition.task_file import RecordingSettings
-from mmweaver.recognition.task_recordings import windows_of
-from mmweaver.recognition.timeline_features import timeline_features
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, read_trees, write_trees
-from mmweaver.recognition.window_features import UNPREDICTABLE, window_features
+from mmweaver.recognition.spatiotemporal_features import spatiotemporal_features
+from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
+from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
+from mmweaver.recognition.window_features import UNPREDICTABLE, Row, body_features, window_features
 from mmweaver.recognition.window_filter import WindowFilter
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
 KIND, VERSION = "mmweaver recogniser", 1
+QUANTILES = np.concatenate([[0.005, 0.02], np.linspace(0.05, 0.95, 19), [0.98, 0.995]])
+FEWEST = 20  # known values for a distribution
+
+Quantiles = Float[np.ndarray, "quantile feature"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,9 +61,8 @@ class Recogniser:
     settings: RecordingSettings
     names: tuple[str, ...]  # of the features
     trees: TreeEnsemble
-    generated: Float[np.ndarray, "quantile feature"]  # quantiles (feature_matching.QUANTILES) of generated windows
+    generated: Quantiles  # of generated windows
     outside_above: float  # a window is outside where this share of its features is exceeded
-    matching: FeatureMatching | None  # learned from unlabelled recordings
     meta: dict[str, Any]
     points: WindowFilter = field(default_factory=WindowFilter)  # which of a window's count
 
@@ -76,24 +73,22 @@ class Recogniser:
 
     def contradictions(self, recordings: Sequence[PointRecording]) -> list[str]:
         """What recordings show that cannot be if the task is right; models of before know too little to say."""
-        return [] if self.points.facts is None else contradictions(recordings, self.points.facts)
+        return [] if self.points.radar is None else contradictions(recordings, self.points.radar)
 
-    def features(self, windows: Sequence[PointRecording]) -> Float[np.ndarray, "window feature"]:
-        """Features of windows, not matched."""
+    def features(self, windows: Sequence[PointRecording]) -> Features:
+        """Features of windows (window, feature), float32, nan = unknown."""
         return recognition_features([self.points(window) for window in windows], self.names)
 
-    def votes(self, features: Float[np.ndarray, "window feature"]) -> Float[np.ndarray, "window label"]:
-        """Votes of features as `features` gives them, matched to the generated ones where that was learned."""
-        matched = features if self.matching is None else self.matching.apply(features)
-        return self.trees.probabilities(matched)
+    def votes(self, features: Features) -> Float[np.ndarray, "window label"]:
+        """The share of the trees' votes for each label, of features as `features` gives them."""
+        return self.trees.probabilities(features)
 
-    def is_outside(self, features: Float[np.ndarray, "window feature"]) -> Bool[np.ndarray, " window"]:
+    def is_outside(self, features: Features) -> Bool[np.ndarray, " window"]:
         """Whether windows are unlike everything that was generated."""
-        matched = features if self.matching is None else self.matching.apply(features)
-        return outside_share(matched, self.generated) > self.outside_above
+        return outside_share(features, self.generated) > self.outside_above
 
     def recognise(self, recording: PointRecording) -> list[Recognition]:
-        """The label of each window of a recording; windows are those of `task_recordings.windows_of`."""
+        """The label of each window of a recording; windows are those of `windows_of`."""
         return self.recognise_windows(windows_of(recording, self.settings))
 
     def recognise_windows(self, windows: Sequence[PointRecording]) -> list[Recognition]:
@@ -118,42 +113,46 @@ class Recogniser:
         )
 
 
-def recognition_features(
-    windows: Sequence[PointRecording], names: tuple[str, ...] | None = None
-) -> Float[np.ndarray, "window feature"]:
-    """Features (window, feature) of windows, float32, nan = unknown; by default those of `feature_names`."""
+def quantiles_of(features: Features) -> Quantiles:
+    """Quantiles of the known values of each feature; nan with too few."""
+    columns = [column[np.isfinite(column)] for column in features.T]
+    none = np.full(len(QUANTILES), np.nan)
+    return np.stack(
+        [np.quantile(column, QUANTILES) if len(column) >= FEWEST else none for column in columns], axis=1
+    ).astype(np.float32)
+
+
+def outside_share(features: Features, generated: Quantiles) -> Float[np.ndarray, " window"]:
+    """The share of each window's known features that lie beyond the outer quantiles of generated windows."""
+    known = np.isfinite(features) & np.isfinite(generated[0])
+    with np.errstate(invalid="ignore"):
+        out = (features < generated[0]) | (features > generated[-1])
+    return (out & known).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+
+
+def recognition_features(windows: Sequence[PointRecording], names: tuple[str, ...] | None = None) -> Features:
+    """Features (window, feature) of windows, float32, nan = unknown; by default all of `window_row`."""
     rows = [window_row(window) for window in windows]
-    chosen = names or feature_names(rows[0])
+    chosen = names or tuple(rows[0])
     return np.array([[row[name] for name in chosen] for row in rows], np.float32).reshape(len(rows), len(chosen))
 
 
-def feature_names(row: dict[str, float]) -> tuple[str, ...]:
-    """The features that a simulation can predict: heights count from the body, unevenness depends on the beam."""
-    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns", "side_", "course_"))]
-    kept = {name for name in old if not UNPREDICTABLE & set(name.split("_"))} | (set(row) - set(old))
-    return tuple(name for name in row if name in kept)
+def window_row(window: PointRecording) -> Row:
+    """All features of a window by name that a simulation can predict.
 
-
-def window_row(window: PointRecording) -> dict[str, float]:
-    """All features of a window by name."""
-    return {
-        **window_features(window),
-        **body_features(window),
-        **timeline_features(window),
-        **side_features(window),
-        **course_features(window),
-    }
+    Heights count from the body, and unevenness depends on the beam.
+    """
+    row = {**window_features(window), **body_features(window)}
+    kept = {name: value for name, value in row.items() if not UNPREDICTABLE & set(name.split("_"))}
+    return kept | spatiotemporal_features(window)
 
 
 # files --------------------------------------------------------------------------------------------------------------
 def save_recogniser(folder: Path, model: Recogniser) -> None:
     """Writes the folder's files; meta.json is the last, so a folder with it is complete."""
     write_trees(folder / TREES_FILE, model.trees)
-    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated, "busy": model.points.busy}
-    if model.matching is not None:
-        arrays["recorded"] = model.matching.recorded
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
-        np.savez_compressed(stream, **arrays)
+        np.savez_compressed(stream, names=np.array(model.names), generated=model.generated, busy=model.points.busy)
     settings = asdict(model.settings) | {
         "columns": None if model.settings.columns is None else list(model.settings.columns.names)
     }
@@ -177,10 +176,8 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     held = read_npz(folder / FEATURES_FILE)
     names = held.texts("names")
     generated = held.numbers("generated", (len(QUANTILES), len(names)), nan=True)
-    matching = None
     if "recorded" in held:
-        recorded = held.numbers("recorded", (len(QUANTILES), len(names)), nan=True)
-        matching = FeatureMatching(recorded=recorded, generated=generated)
+        raise InputError(f"{folder} was trained with matching of features, which is gone; train the recogniser again")
     busy = held.numbers("busy", ("cell", 2), kinds="iu", low=-1000, high=1000) if "busy" in held else NO_CELLS
     outside_above = meta.get("outside_above")
     if not isinstance(outside_above, float):
@@ -188,27 +185,24 @@ def load_recogniser(folder: Path | str) -> Recogniser:
     known = {"kind", "version", "recordings", "outside_above"}
     return Recogniser(
         settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
-        generated=generated, outside_above=outside_above, matching=matching,
-        points=WindowFilter(busy=busy, facts=RadarFacts.read(meta.get("radar_facts"))),
+        generated=generated, outside_above=outside_above,
+        points=WindowFilter(busy=busy, radar=Quantisation.read(meta.get("radar_facts"))),
         meta={name: value for name, value in meta.items() if name not in known},
     )  # fmt: skip
 
 
 def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
-    found = meta.get("recordings")
     try:
-        if not isinstance(found, dict):
-            raise TypeError
-        labels, gap, columns = found["labels"], found["gap_frames"], found["columns"]
-        empty = found.get("empty_label")  # models of before do not say
-        if not labels or not all(isinstance(label, str) for label in labels) or empty not in (None, *labels):
-            raise TypeError
-        return RecordingSettings(
-            labels=tuple(labels), window_s=float(found["window_s"]), frame_rate_hz=float(found["frame_rate_hz"]),
-            gap_frames=None if gap is None else int(gap),
-            columns=None if columns is None else RecordedColumns.of(columns, str(file)), empty_label=empty,
+        found = meta["recordings"]
+        columns, gap = found["columns"], found["gap_frames"]
+        settings = RecordingSettings(
+            labels=tuple(found["labels"]), window_s=float(found["window_s"]),
+            frame_rate_hz=float(found["frame_rate_hz"]), gap_frames=None if gap is None else int(gap),
+            empty_label=found.get("empty_label"),  # models of before 0.3 do not have it
         )  # fmt: skip
-    except (TypeError, KeyError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
+        labels = settings.labels
+        if not labels or not all(isinstance(one, str) for one in labels) or settings.empty_label not in (None, *labels):
+            raise TypeError
+    except (TypeError, KeyError, ValueError, AttributeError):
         raise InputError(f"{file} does not say how recordings are read; train the recogniser again") from None
+    return settings if columns is None else replace(settings, columns=RecordedColumns.of(columns, str(file)))

@@ -13,7 +13,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.metrics.pose_errors import ALIGNMENTS, joint_errors_cm
 from mmweaver.models.point_frames import point_frames
 from mmweaver.recognition.mars_data import posed_recordings
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator
 
 Joints = Float[np.ndarray, "frame 22 3"]
@@ -31,8 +31,8 @@ class JointCalibration:
     @staticmethod
     def of(predicted_m: Joints, true_m: Joints) -> "JointCalibration":
         """Fits it by least squares."""
-        ours, theirs = _measured(predicted_m, true_m)
-        ours, theirs = ours - ours[:, :1], theirs - theirs[:, :1]
+        measured = np.isfinite(true_m).all(axis=(1, 2))
+        ours, theirs = (one[measured] - one[measured][:, :1] for one in (predicted_m, true_m))
         here, there = ours.mean(axis=0), theirs.mean(axis=0)
         moved = ((ours - here) ** 2).sum(axis=(0, 2))
         along = ((ours - here) * (theirs - there)).sum(axis=(0, 2))
@@ -43,11 +43,6 @@ class JointCalibration:
     def apply(self, predicted_m: Joints) -> Joints:
         """Calibrated joints, relative to the pelvis."""
         return self.true_m + self.shrink * (predicted_m - predicted_m[:, :1] - self.predicted_m)
-
-
-def _measured(predicted_m: Joints, true_m: Joints) -> tuple[Joints, Joints]:
-    found = np.isfinite(true_m).all(axis=(1, 2))
-    return predicted_m[found], true_m[found]
 
 
 def as_kinect(joints_m: Joints) -> Joints:
@@ -125,13 +120,11 @@ def score_poses(estimator: PoseEstimator, place: Path | str, split: str) -> dict
             row["calibrated_on"] = other
         rows.append(row)
     methods = [name for name in rows[0] if isinstance(rows[0][name], dict) and all(name in row for row in rows)]
-    return {"split": split, "unit": "cm", "mean": {name: _mean(rows, name) for name in methods}, "subjects": rows}
-
-
-def _mean(rows: Sequence[dict[str, Any]], method: str) -> dict[str, dict[str, float]]:
-    """Over subjects."""
-    first = rows[0][method]
-    return {
-        alignment: {group: float(np.mean([row[method][alignment][group] for row in rows])) for group in of_groups}
-        for alignment, of_groups in first.items()
+    mean = {
+        method: {
+            alignment: {group: float(np.mean([row[method][alignment][group] for row in rows])) for group in groups}
+            for alignment, groups in rows[0][method].items()
+        }
+        for method in methods
     }
+    return {"split": split, "unit": "cm", "mean": mean, "subjects": rows}

@@ -1,5 +1,6 @@
-"""Scores of a recogniser on recordings: single windows, groups of windows and whole recordings, with intervals."""
+"""Scores of a recogniser on labelled recordings, with intervals, and how far these lie from what was generated."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,12 +9,17 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.activity_classifier import ActivityClassifier
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.window_features import feature_matrix
+from mmweaver.recognition.background_mask import left_out_lines, persistent_motion_cells
+from mmweaver.recognition.point_recordings import PointRecording, windows_of
+from mmweaver.recognition.recogniser import FEWEST, QUANTILES, Features, Quantiles, Recogniser
+from mmweaver.recognition.window_features import moving_points
 
 RESAMPLINGS = 2000
 LONG_WINDOWS = 3  # windows that are averaged: 6 s
+LISTED = 10  # features that differ most
+MISTAKEN = 0.3  # of generated windows of a label, that are taken for another label
+FAR = 0.5  # Kolmogorov-Smirnov distance above which a feature lies elsewhere
+MOST_FAR, MOST_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is due
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +37,7 @@ class Evaluation:
         return np.argmax(self.votes, axis=1)
 
     def part(self, which: np.ndarray) -> "Evaluation":
-        """The windows selected by a mask (window,)."""
+        """The windows selected by a mask or index (window,)."""
         return replace(self, votes=self.votes[which], truth=self.truth[which], recording=self.recording[which])
 
     def pooled(self, group: np.ndarray) -> "Evaluation":
@@ -39,29 +45,10 @@ class Evaluation:
         _, first, inverse = np.unique(group, return_index=True, return_inverse=True)
         total = np.zeros((len(first), self.votes.shape[1]))
         np.add.at(total, inverse.ravel(), self.votes)
-        votes = total / np.bincount(inverse.ravel())[:, None]
-        return Evaluation(
-            classes=self.classes, votes=votes, truth=self.truth[first], recording=self.recording[first],
-            names=self.names,
-        )  # fmt: skip
+        return replace(self.part(first), votes=total / np.bincount(inverse.ravel())[:, None])
 
 
-def evaluate_recogniser(model: ActivityClassifier, recordings: list[PointRecording], window_s: float) -> Evaluation:
-    """Evaluates on all consecutive windows. Raises InputError where no recording is long enough."""
-    cut = [recording.windows(window_s) for recording in recordings]
-    windows = [window for windows in cut for window in windows]
-    if not windows:
-        raise InputError(f"no recording lasts {window_s:g} s, which is one window; give longer ones")
-    features, _ = feature_matrix(windows, model.names)
-    return Evaluation(
-        classes=model.classes,
-        votes=model.probabilities(features),
-        truth=np.array([model.classes.index(window.label) for window in windows]),
-        recording=np.repeat(np.arange(len(cut)), [len(windows) for windows in cut]),
-        names=tuple(recording.name for recording in recordings),
-    )
-
-
+# scores of windows --------------------------------------------------------------------------------------------------
 def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]) -> float:
     """Recall averaged over the classes that occur.
 
@@ -71,22 +58,22 @@ def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]
     return float(np.mean([np.mean(guess[truth == kind] == kind) for kind in np.unique(truth)]))
 
 
-def confusion(evaluation: Evaluation) -> Int[np.ndarray, "true guessed"]:
+def confusion(
+    truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"], classes: int
+) -> Int[np.ndarray, "true guessed"]:
     """Confusion matrix in counts: true activity (row), recognised activity (column)."""
-    size = len(evaluation.classes)
-    return np.bincount(evaluation.truth * size + evaluation.guess, minlength=size * size).reshape(size, size)
+    return np.bincount(truth * classes + guess, minlength=classes**2).reshape(classes, classes)
 
 
 def interval(evaluation: Evaluation, seed: int = 0) -> tuple[float, float]:
     """95 % bootstrap interval of the balanced accuracy, resampling recordings within each activity."""
-    rng = stream(seed, "recordings drawn again")
-    size = len(evaluation.classes)
-    hits = np.bincount(evaluation.recording, evaluation.guess == evaluation.truth, minlength=len(evaluation.names))
-    count = np.bincount(evaluation.recording, minlength=len(evaluation.names)).astype(float)
-    kind = np.full(len(evaluation.names), -1)
+    rng, recordings = stream(seed, "recordings drawn again"), len(evaluation.names)
+    hits = np.bincount(evaluation.recording, evaluation.guess == evaluation.truth, minlength=recordings)
+    count = np.bincount(evaluation.recording, minlength=recordings).astype(float)
+    kind = np.full(recordings, -1)
     kind[evaluation.recording] = evaluation.truth
     shares = []
-    for one in range(size):
+    for one in range(len(evaluation.classes)):
         own = np.flatnonzero(kind == one)
         if len(own):
             resampled = own[rng.integers(len(own), size=(RESAMPLINGS, len(own)))]
@@ -98,17 +85,124 @@ def interval(evaluation: Evaluation, seed: int = 0) -> tuple[float, float]:
 def report(evaluation: Evaluation) -> dict[str, Any]:
     """Balanced accuracy of windows, groups of three and whole recordings, with intervals and baseline."""
     place = np.concatenate([np.arange(n) for n in np.bincount(evaluation.recording) if n])
-    whole = evaluation.pooled(evaluation.recording)
-    long = evaluation.pooled(evaluation.recording * 10_000 + place // LONG_WINDOWS)
-    chance = 1 / len(evaluation.classes)
+    classes = len(evaluation.classes)
     rows: dict[str, Any] = {"classes": list(evaluation.classes), "recordings": len(np.unique(evaluation.recording))}
-    for name, one in (("window", evaluation), ("three_windows", long), ("recording", whole)):
-        low, high = interval(one)
+    for name, one in (
+        ("window", evaluation),
+        ("three_windows", evaluation.pooled(evaluation.recording * 10_000 + place // LONG_WINDOWS)),
+        ("recording", evaluation.pooled(evaluation.recording)),
+    ):
         rows[name] = {
             "balanced_accuracy": round(balanced_accuracy(one.truth, one.guess), 4),
-            "interval_95": [round(low, 4), round(high, 4)],
-            "baseline": {"chance": round(chance, 4)},
+            "interval_95": [round(end, 4) for end in interval(one)],
+            "baseline": {"chance": round(1 / classes, 4)},
             "n": len(one.truth),
-            "confusion": confusion(one).tolist(),
+            "confusion": confusion(one.truth, one.guess, classes).tolist(),
         }
     return rows
+
+
+# scores of recordings -----------------------------------------------------------------------------------------------
+def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) -> dict[str, Any]:
+    """Scores on labelled recordings: `window`, `three_windows`, `recording`, as `recognise score --json` has them.
+
+    With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
+    against generated ones, without labels), `warning` where the recordings lie outside, `contradictions`: what they
+    show that cannot be if the task is right, `left_out`: what moves all the time in one place and was left out, and
+    `hardly_distinct`: labels that the radar hardly tells apart. Raises InputError where the recordings give no window.
+    """
+    cut = [windows_of(recording, model.settings) for recording in recordings]
+    windows = [window for own in cut for window in own]
+    if not windows:
+        raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
+    model, left_out = without_persistent_motion(model, recordings)
+    features = model.features(windows)
+    evaluation = Evaluation(
+        classes=model.labels,
+        votes=model.votes(features),
+        truth=np.array([model.labels.index(window.label) for window in windows]),
+        recording=np.repeat(np.arange(len(cut)), [len(own) for own in cut]),
+        names=tuple(recording.name for recording in recordings),
+    )
+    generated = model.meta.get("moving_points_a_frame")
+    far = distance(model, features) | {
+        "moving_points_a_frame": {
+            "recorded": round(float(np.mean([moving_points(window) for window in windows])), 2),
+            "generated": round(float(np.mean(list(generated.values()))), 2) if generated else None,
+        },
+    }
+    return {
+        **report(evaluation),
+        "chance": round(1 / len(model.labels), 4),
+        "generated_on_generated": model.meta.get("generated_on_generated"),
+        "distance": far,
+        "warning": warning(far),
+        "contradictions": model.contradictions(recordings),
+        "left_out": left_out,
+        "hardly_distinct": hardly_distinct(model),
+    }
+
+
+def without_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
+    """The recogniser without what moves all the time in one place of these recordings, and what to say of it."""
+    cells = persistent_motion_cells(recordings, model.points.radar)
+    points = model.points.without(cells)
+    if len(points.busy) == len(model.points.busy):
+        return model, []
+    return replace(model, points=points), left_out_lines(cells)
+
+
+def hardly_distinct(model: Recogniser) -> list[str]:
+    """Labels that this radar hardly tells apart, by generated people: no recording can be expected to do better."""
+    expected = model.meta.get("generated_on_generated") or {}
+    found: list[str] = []
+    for label, row in zip(model.labels, expected.get("confusion", []), strict=False):
+        for other, count in zip(model.labels, row, strict=True):
+            share = count / max(sum(row), 1)
+            if other != label and share >= MISTAKEN:
+                found.append(
+                    f"{label} is taken for {other} in {share:.0%} of generated windows: the radar, so set, hardly tells"
+                    " them apart; other settings, a longer window or one label for both may help"
+                )
+    return found
+
+
+def distance(model: Recogniser, features: Features) -> dict[str, Any]:
+    """How far features of recorded windows (window, feature) lie from those of generated ones."""
+    far = feature_distances(features, model.generated, model.names)
+    values = np.array(list(far.values()) or [0.0])
+    return {
+        "features": len(far),
+        "mean": round(float(values.mean()), 4),
+        "features_far": round(float((values > FAR).mean()), 4),
+        "largest": sorted(far, key=lambda name: -far[name])[:LISTED],
+        "windows_outside": round(float(model.is_outside(features).mean()), 4),
+    }
+
+
+def feature_distances(features: Features, generated: Quantiles, names: tuple[str, ...]) -> dict[str, float]:
+    """Kolmogorov-Smirnov distance of each feature between recorded and generated windows, at the stored quantiles."""
+    found: dict[str, float] = {}
+    for name, values, edges in zip(names, features.T, generated.T, strict=True):
+        values = np.sort(values[np.isfinite(values)])
+        if len(values) < FEWEST or np.isnan(edges).any():
+            continue
+        below, under = (np.searchsorted(values, edges, side=side) / len(values) for side in ("right", "left"))
+        # where a value is frequent, any share between the two agrees
+        found[name] = float(np.maximum(np.maximum(under - QUANTILES, QUANTILES - below), 0.0).max())
+    return found
+
+
+def warning(found: dict[str, Any]) -> str | None:
+    """What to say where recordings lie outside what was generated; None where they do not."""
+    if found["features_far"] <= MOST_FAR and found["windows_outside"] <= MOST_OUTSIDE:
+        return None
+    largest = ", ".join(found["largest"][:3])
+    named = f" (most of all {largest})" if largest else ""
+    features = f"{found['features_far']:.0%} of the features are far off{named} and " if found["features"] else ""
+    return (
+        f"the recordings lie outside what was generated: {features}"
+        f"{found['windows_outside']:.0%} of the windows are unlike any; check radar,"
+        " mount and sentences, or name the recordings as `unlabelled`; expect less than the score on generated"
+        " people says"
+    )

@@ -1,4 +1,4 @@
-"""The task of a recogniser, as a page of TOML says it: radar, activities in sentences, mount, recordings.
+"""The task of a recogniser, as a page of TOML describes it: radar, activities in sentences, mount, recordings.
 
 radar = "profile.cfg"
 window_s = 2.0
@@ -20,26 +20,80 @@ frame_rate_hz = 10.0
 gap_frames = 5
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.radar_options import split_radar
 from mmweaver.motion.worded_activities import NOBODY, activities_of
-from mmweaver.recognition.recorded_columns import RecordedColumns
 
-TABLES = {
-    "": ("radar", "window_s", "background", "unlabelled", "activities", "mount", "recordings"),
-    "mount": ("height_m", "tilt_deg", "distance_m"),
-    "recordings": ("columns", "frame_rate_hz", "gap_frames"),
-}
-WINDOW_S, HEIGHT_M, TILT_DEG, DISTANCE_M, RATE_HZ = (0.2, 60.0), (0.0, 5.0), (-90.0, 90.0), (0.2, 20.0), (0.5, 200.0)
-GAP_FRAMES = (0.0, 1e6)
+# Known names of each table, with the limits of those that are numbers.
+TABLES: dict[str, dict[str, tuple[float, float] | None]] = {
+    "": dict.fromkeys(("radar", "background", "unlabelled", "activities", "mount", "recordings")) | {
+        "window_s": (0.2, 60.0),
+    },
+    "mount": {"height_m": (0.0, 5.0), "tilt_deg": (-90.0, 90.0), "distance_m": (0.2, 20.0)},
+    "recordings": {"columns": None, "frame_rate_hz": (0.5, 200.0), "gap_frames": (0.0, 1e6)},
+}  # fmt: skip
+# Words in names of columns: our axis (right, ahead, up) and sign.
+DIRECTIONS = {"right": (0, 1), "left": (0, -1), "ahead": (1, 1), "up": (2, 1), "down": (2, -1)}
+VELOCITIES = {"velocity": 1, "velocity_away": 1, "velocity_towards": -1}
+STRENGTHS = ("snr", "snr_db")
+AXES = ("right or left", "ahead", "up or down")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordedColumns:
+    """Which column of a stored point cloud is what.
+
+    "x_right", "x_ahead", "y_left", "z_up": a direction; "velocity" (away +) or "velocity_towards"; "snr". Other names
+    stand for columns that are not read.
+    """
+
+    names: tuple[str, ...]
+
+    @staticmethod
+    def of(names: object, place: str) -> "RecordedColumns":
+        """Checks names of columns. Raises InputError where a direction or the velocity is missing or named twice."""
+        if not isinstance(names, Sequence) or isinstance(names, str) or not all(isinstance(one, str) for one in names):
+            raise InputError(f'{place}: columns must be a list such as ["x_right", "y_ahead", "z_up", "velocity"]')
+        found = RecordedColumns(names=tuple(map(str, names)))
+        axes = [axis for _, axis, _ in found._directions()]
+        for axis, words in enumerate(AXES):
+            if axes.count(axis) != 1:
+                raise InputError(f'{place}: one column must point {words}; name it so, for example "x_right"')
+        if sum(name in VELOCITIES for name in found.names) != 1:
+            raise InputError(f'{place}: one column must be "velocity" (away +) or "velocity_towards"')
+        return found
+
+    def _directions(self) -> list[tuple[int, int, int]]:
+        """Column, axis and sign of each direction."""
+        words = [name.rpartition("_")[2] for name in self.names]
+        return [(column, *DIRECTIONS[word]) for column, word in enumerate(words) if word in DIRECTIONS]
+
+    def cloud(self, frame: np.ndarray, pts: np.ndarray, place: str) -> PointCloud:
+        """The points of frames (point,) and columns (point, column). Raises InputError for another number of them."""
+        if pts.ndim != 2 or pts.shape[1] != len(self.names):
+            raise InputError(f"{place}: pts is {pts.shape}, but {len(self.names)} columns are named")
+        xyz = np.zeros((3, len(pts)))
+        for column, axis, sign in self._directions():
+            xyz[axis] = sign * pts[:, column]
+        snr_db, velocity = np.full(len(pts), np.nan), np.zeros(len(pts))
+        for name, values in zip(self.names, pts.T, strict=True):
+            if name in STRENGTHS:
+                snr_db = values.astype(float)
+            elif name in VELOCITIES:
+                velocity = VELOCITIES[name] * values.astype(float)
+        return PointCloud(frame=frame, x_m=xyz[0], y_m=xyz[1], z_m=xyz[2], radial_velocity_mps=velocity, snr_db=snr_db)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,84 +146,66 @@ def read_task(file: Path | str) -> RecognitionTask:
     Raises InputError for what is missing, unknown or impossible.
     """
     file = Path(file)
-    content = read_toml(file)
-    mount, recordings = _table(content, "mount", file), _table(content, "recordings", file)
-    _only_known(content, "", file)
-    if not isinstance(content.get("radar"), str):
+    content = _checked(read_toml(file), "", file)
+    mount, recordings = (_checked(content.get(name, {}), name, file) for name in ("mount", "recordings"))
+    source = content.get("radar")
+    if not isinstance(source, str):
         raise InputError(f'{file} names no radar; write radar = "profile.cfg", or a preset such as "awr1843"')
-    said = _radar_of(content["radar"], file.parent)
-    radar = load_radar(said)
-    rate_hz = _number(recordings, "frame_rate_hz", RATE_HZ, file) or 1 / radar.frame_period_s
-    gap = _number(recordings, "gap_frames", GAP_FRAMES, file)
-    columns = recordings.get("columns")
+    if (file.parent / split_radar(source)[0]).is_file():  # else a preset, or a path from the working folder
+        source = str(file.parent / source)
+    radar = load_radar(source)
+    rate_hz = recordings.get("frame_rate_hz") or 1 / radar.frame_period_s
+    gap, columns = recordings.get("gap_frames"), recordings.get("columns")
     activities = activities_of(content, file, with_nobody=True)
     return RecognitionTask(
         radar=replace(radar, frame_period_s=1 / rate_hz),
-        firmware=load_firmware(said),
+        firmware=load_firmware(source),
         activities=activities,
         recordings=RecordingSettings(
             labels=tuple(sorted(activities)),
-            window_s=_number(content, "window_s", WINDOW_S, file) or 2.0,
+            window_s=content.get("window_s", 2.0),
             frame_rate_hz=rate_hz,
             gap_frames=None if gap is None else int(gap),
             columns=None if columns is None else RecordedColumns.of(columns, str(file)),
-            empty_label=next((label for label, said in activities.items() if said == (NOBODY,)), None),
+            empty_label=next((label for label, sentences in activities.items() if sentences == (NOBODY,)), None),
         ),
-        mount=Mount(
-            height_m=_number(mount, "height_m", HEIGHT_M, file), tilt_deg=_number(mount, "tilt_deg", TILT_DEG, file),
-            distance_m=_span(mount, "distance_m", DISTANCE_M, file),
-        ),
+        mount=Mount(**mount),
         background=_place(content, "background", file),
         unlabelled=_place(content, "unlabelled", file),
-    )  # fmt: skip
+    )
 
 
-def _table(content: dict[str, Any], name: str, file: Path) -> dict[str, Any]:
-    table = content.get(name, {})
+def _checked(table: object, name: str, file: Path) -> dict[str, Any]:
+    """A table with known names alone, numbers as floats. Raises InputError."""
     if not isinstance(table, dict):
         raise InputError(f"{file}: {name} must be a table, [{name}]")
-    _only_known(table, name, file)
-    return table
+    checked: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in TABLES[name]:
+            where = f" in [{name}]" if name else ""
+            raise InputError(f"{file}: {key!r}{where} is unknown; known are {', '.join(TABLES[name])}")
+        limits = TABLES[name][key]
+        if key == "distance_m":
+            if not isinstance(value, list) or len(value) != 2:
+                raise InputError(f"{file}: {key} must be two numbers, [near, far]")
+            checked[key] = tuple(_number(one, key, limits or (0, 0), file) for one in value)
+            if value[0] > value[1]:
+                raise InputError(f"{file}: {key} = [{value[0]:g}, {value[1]:g}] must rise")
+        else:
+            checked[key] = value if limits is None else _number(value, key, limits, file)
+    return checked
 
 
-def _only_known(table: dict[str, Any], name: str, file: Path) -> None:
-    unknown = [key for key in table if key not in TABLES[name]]
-    if unknown:
-        where = f" in [{name}]" if name else ""
-        raise InputError(f"{file}: {unknown[0]!r}{where} is unknown; known are {', '.join(TABLES[name])}")
-
-
-def _number(table: dict[str, Any], name: str, limits: tuple[float, float], file: Path) -> float | None:
-    value = table.get(name)
-    if value is None:
-        return None
+def _number(value: object, name: str, limits: tuple[float, float], file: Path) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not limits[0] <= value <= limits[1]:
         raise InputError(f"{file}: {name} must be a number from {limits[0]:g} to {limits[1]:g}, not {value!r}")
     return float(value)
 
 
-def _span(table: dict[str, Any], name: str, limits: tuple[float, float], file: Path) -> tuple[float, float] | None:
-    value = table.get(name)
-    if value is None:
-        return None
-    if not isinstance(value, list) or len(value) != 2:
-        raise InputError(f"{file}: {name} must be two numbers, [near, far]")
-    near, far = (_number({name: one}, name, limits, file) or 0.0 for one in value)
-    if near > far:
-        raise InputError(f"{file}: {name} = [{near:g}, {far:g}] must rise")
-    return near, far
-
-
 def _place(content: dict[str, Any], name: str, file: Path) -> Path | None:
-    said = content.get(name)
-    if said is None:
+    place = content.get(name)
+    if place is None:
         return None
-    if not isinstance(said, str) or not (file.parent / said).exists():
-        raise InputError(f"{file}: {name} must name a recording or a folder of them; {said!r} is not there")
-    return file.parent / said
-
-
-def _radar_of(said: str, folder: Path) -> str:
-    """A radar file next to the task file, else the words themselves: a preset, or a path from the working folder."""
-    name, _ = split_radar(said)
-    return str(folder / said) if (folder / name).is_file() else said
+    if not isinstance(place, str) or not (file.parent / place).exists():
+        raise InputError(f"{file}: {name} must name a recording or a folder of them; {place!r} is not there")
+    return file.parent / place

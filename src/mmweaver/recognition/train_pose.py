@@ -14,8 +14,8 @@ from mmweaver.models.point_frames import point_frames
 from mmweaver.models.pose_network import PoseNetwork
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
-from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.training.pose_examples import PosedFrames, PoseWindows
 from mmweaver.training.pose_training import PoseRecipe, train_pose

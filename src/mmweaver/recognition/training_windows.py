@@ -1,17 +1,29 @@
-"""What the trees of a recogniser learn from: its options, windows with labels and weights, and the trees on them."""
+"""What the trees of a recogniser learn from: windows of generated sequences, with copies, labels and weights."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.performance import PerformancePrior
-from mmweaver.recognition.performance_variation import PerformanceVariation
-from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
+from mmweaver.core.records import PointCloud
+from mmweaver.core.seeding import stream
+from mmweaver.recognition.background_mask import NO_CELLS, Cells, background_cells
+from mmweaver.recognition.generated_sequences import COLUMNS
+from mmweaver.recognition.point_recordings import PointRecording, windows_of
+from mmweaver.recognition.quantisation import Quantisation
+from mmweaver.recognition.recogniser import recognition_features, window_row
+from mmweaver.recognition.subject_simulation import PerformancePrior
+from mmweaver.recognition.task_file import RecognitionTask
+from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, grow_trees
+from mmweaver.recognition.window_augmentation import PerformanceVariation, WindowAugmentation, augmented, varied
 from mmweaver.recognition.window_filter import WindowFilter
 
-SEQUENCES = 40  # people an activity
+SEQUENCES = 40  # people per activity
+SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
+CROWDED_SHARE = 0.3  # of copies in front of a furnished room
+OVERLAP = 3  # windows of a generated sequence begin every so many parts of a window
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +38,6 @@ class TrainingOptions:
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
-    sensitivity: bool = False  # of the board weighed, where there are unlabelled recordings
-    matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
     labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
 
@@ -42,51 +52,111 @@ class TrainingOptions:
 class TrainingWindows:
     """Features of generated windows and of their disturbed copies; with them, perhaps, of recorded ones."""
 
-    features: Float[np.ndarray, "window feature"]
+    features: Features
     label: Int[np.ndarray, " window"]
     person: Int[np.ndarray, " window"]
     is_copy: Bool[np.ndarray, " window"]
     names: tuple[str, ...]
-    importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
+    importance: Float[np.ndarray, " window"] | None = None  # None: all the same
     points: WindowFilter = field(default_factory=WindowFilter)  # which of them count
+
+    @property
+    def own_weights(self) -> Float[np.ndarray, " window"]:
+        return np.ones(len(self.label)) if self.importance is None else self.importance
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:
         """Every label weighs the same."""
-        own = np.ones(len(self.label)) if self.importance is None else self.importance
+        own = self.own_weights
         return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
+    def with_recorded(
+        self, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"], weight: float
+    ) -> "TrainingWindows":
+        """These windows and recorded ones, which weigh `weight` times as much in each label."""
+        classes = int(self.label.max()) + 1
+        of_made, of_recorded = (
+            np.bincount(self.label, self.own_weights, classes),
+            np.bincount(labels, minlength=classes),
+        )
+        return replace(
+            self,
+            features=np.concatenate([self.features, features]),
+            label=np.concatenate([self.label, labels]),
+            person=np.concatenate([self.person, np.full(len(labels), -1)]),
+            is_copy=np.concatenate([self.is_copy, np.zeros(len(labels), bool)]),
+            importance=np.concatenate([self.own_weights, weight * of_made[labels] / of_recorded[labels]]),
+        )
 
-def with_recorded(
-    made: TrainingWindows, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"],
-    weight: float,
+    def trees(self, options: TrainingOptions, which: Bool[np.ndarray, " window"] | None = None) -> TreeEnsemble:
+        """Trees on all windows, or on those of a mask."""
+        return self.weighed_trees(options, which)[0]
+
+    def weighed_trees(
+        self, options: TrainingOptions, which: Bool[np.ndarray, " window"] | None = None
+    ) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
+        """Trees, and the importance of each feature to them."""
+        which = np.ones(len(self.label), bool) if which is None else which
+        return grow_trees(
+            self.features[which], self.label[which], self.weights[which], int(self.label.max()) + 1,
+            trees=options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share, seed=options.seed,
+        )  # fmt: skip
+
+
+def generated_windows(
+    sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
+    background: Sequence[PointRecording] = (), persistent: Cells = NO_CELLS,
 ) -> TrainingWindows:  # fmt: skip
-    """The windows and recorded ones, which weigh `weight` times as much in each label."""
-    own = np.ones(len(made.label)) if made.importance is None else made.importance
-    classes = int(made.label.max()) + 1
-    of_made, of_recorded = np.bincount(made.label, own, classes), np.bincount(labels, minlength=classes)
-    return replace(
-        made, features=np.concatenate([made.features, features]), label=np.concatenate([made.label, labels]),
-        person=np.concatenate([made.person, np.full(len(labels), -1)]),
-        is_copy=np.concatenate([made.is_copy, np.zeros(len(labels), bool)]),
-        importance=np.concatenate([own, weight * of_made[labels] / of_recorded[labels]]),
+    """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
+
+    Points that do not count are left out, also those that move in the cells `persistent`. Raises InputError where an
+    activity gave no window.
+    """
+    shows_room, once = not (task.firmware.static_removal or background), task.recordings.has_single_performances
+    how = WindowAugmentation(
+        cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
+        most_objects=WindowAugmentation().most_objects if shows_room else 0,
+        crowded_share=CROWDED_SHARE if shows_room else 0.0,
+        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
+    step_s, radar = task.recordings.window_s / OVERLAP, Quantisation.of(task)
+    pairs = [(one, window) for one in sequences for window in windows_of(one, task.recordings, step_s)]
+    found = {window.label for _, window in pairs}
+    if missing := [label for label in task.recordings.labels if label not in found]:
+        raise InputError(
+            f"the radar sees nothing of {missing[0]!r}: no window of it was generated; check radar, mount and sentences"
+        )
+    windows = [
+        _in_front_of(background, window, stream(options.seed, "behind", number))
+        for number, (_, window) in enumerate(pairs)
+    ]
+    for copy in range(options.copies):
+        for number, (sequence, window) in enumerate(pairs):
+            rng = stream(options.seed, "disturbed", window.name, number, copy)
+            first, frames = window.first_frame, window.num_frames
+            another = varied(sequence, first, frames, rng, radar, options.variation, once=once)
+            windows.append(_in_front_of(background, augmented(another, rng, how), rng))
+    points = WindowFilter(busy=background_cells(background), radar=radar).without(persistent)
+    windows = [points(window) for window in windows]
+    names = tuple(window_row(windows[0]))
+    return TrainingWindows(
+        features=recognition_features(windows, names),
+        label=np.array([task.recordings.labels.index(window.label) for window in windows]),
+        person=np.array([int(window.name.rpartition("_")[2]) for window in windows]),
+        is_copy=np.arange(len(windows)) >= len(pairs),
+        names=names,
+        points=points,
+    )
 
 
-def trees_of(
-    made: TrainingWindows, options: TrainingOptions, *, which: np.ndarray | None = None, num_trees: int | None = None
-) -> TreeEnsemble:
-    """Trees on all windows, or on those of a mask (window,)."""
-    chosen = options if num_trees is None else replace(options, trees=num_trees)
-    return weighed_trees_of(made, chosen, which=which)[0]
-
-
-def weighed_trees_of(
-    made: TrainingWindows, options: TrainingOptions, *, which: np.ndarray | None = None
-) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
-    """Trees, and the importance of each feature to them."""
-    which = np.ones(len(made.label), bool) if which is None else which
-    return grow_trees(
-        made.features[which], made.label[which], made.weights[which], int(made.label.max()) + 1,
-        trees=options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share, seed=options.seed,
-    )  # fmt: skip
+def _in_front_of(
+    background: Sequence[PointRecording], window: PointRecording, rng: np.random.Generator
+) -> PointRecording:
+    """The window with the points of a stretch of the recorded empty place."""
+    if not background:
+        return window
+    place = background[int(rng.integers(len(background)))]
+    first = int(rng.integers(max(place.num_frames - window.num_frames, 0) + 1))
+    behind = place.part(first, window.num_frames).cloud
+    both = {name: np.concatenate([getattr(window.cloud, name), getattr(behind, name)]) for name in ("frame", *COLUMNS)}
+    return replace(window, cloud=PointCloud(**both).select(np.argsort(both["frame"], kind="stable")))

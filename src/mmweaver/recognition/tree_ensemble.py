@@ -3,7 +3,7 @@
 Reference: Geurts, Ernst and Wehenkel, "Extremely randomized trees", Machine Learning 63, 2006.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +13,9 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_arrays import read_npz
-from mmweaver.recognition.activity_classifier import Features
 
-MOST_NODES = 50_000_000
+MAX_NODES = 50_000_000
+Features = Float[np.ndarray, "window feature"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,28 +61,28 @@ def grow_trees(
     ).fit(features, labels, sample_weight=weights)
     parts = [tree.tree_ for tree in grown.estimators_]
     root = np.cumsum([0, *(part.node_count for part in parts)])[:-1]
-    own = [np.arange(part.node_count) for part in parts]
 
-    def joined(name: str) -> np.ndarray:
-        """A column of nodes; children that a leaf lacks are the leaf itself."""
-        values = [getattr(part, name) for part in parts]
-        if name.startswith("children"):
-            values = [
-                np.where(value < 0, self, value) + start for value, self, start in zip(values, own, root, strict=True)
-            ]
-        return np.concatenate(values)
+    def nodes(name: str) -> np.ndarray:
+        return np.concatenate([getattr(part, name) for part in parts])
 
-    votes = np.concatenate([part.value[:, 0] for part in parts])
+    own = np.arange(sum(part.node_count for part in parts))
+    start = np.repeat(root, [part.node_count for part in parts])
+    left, right = (
+        np.where(child < 0, own, child + start) for child in (nodes("children_left"), nodes("children_right"))
+    )
+    votes = nodes("value")[:, 0]
     whole = np.zeros((len(votes), classes), np.float32)
     whole[:, grown.classes_] = votes / votes.sum(axis=1, keepdims=True)
-    is_leaf = joined("children_left") == np.arange(len(votes))
+    is_leaf = left == own
     ensemble = TreeEnsemble(
-        root=root, left=joined("children_left").astype(np.int32), right=joined("children_right").astype(np.int32),
-        feature=np.where(is_leaf, 0, joined("feature")).astype(np.int16),
-        threshold=np.where(is_leaf, 0.0, joined("threshold")),
-        unknown_left=joined("missing_go_to_left").astype(np.int8),
+        root=root,
+        left=left.astype(np.int32),
+        right=right.astype(np.int32),
+        feature=np.where(is_leaf, 0, nodes("feature")).astype(np.int16),
+        threshold=np.where(is_leaf, 0.0, nodes("threshold")),
+        unknown_left=nodes("missing_go_to_left").astype(np.int8),
         votes=np.where(is_leaf[:, None], whole, 0.0).astype(np.float16),
-    )  # fmt: skip
+    )
     return ensemble, grown.feature_importances_
 
 
@@ -91,13 +91,8 @@ def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
     if other is None:
         return one
     start = len(one.left)
-    return TreeEnsemble(
-        root=np.concatenate([one.root, other.root + start]), left=np.concatenate([one.left, other.left + start]),
-        right=np.concatenate([one.right, other.right + start]), feature=np.concatenate([one.feature, other.feature]),
-        threshold=np.concatenate([one.threshold, other.threshold]),
-        unknown_left=np.concatenate([one.unknown_left, other.unknown_left]),
-        votes=np.concatenate([one.votes, other.votes]),
-    )  # fmt: skip
+    moved = replace(other, root=other.root + start, left=other.left + start, right=other.right + start)
+    return TreeEnsemble(**{name: np.concatenate([array, vars(moved)[name]]) for name, array in vars(one).items()})
 
 
 def write_trees(file: Path, ensemble: TreeEnsemble) -> None:
@@ -110,7 +105,7 @@ def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
     """Reads `write_trees`. Raises InputError where the arrays are no trees over so many features and classes."""
     held = read_npz(file)
     nodes = len(held.take("left"))
-    if not 0 < nodes <= MOST_NODES:
+    if not 0 < nodes <= MAX_NODES:
         raise InputError(f"{file} holds {nodes} nodes; train the recogniser again")
 
     def numbers(name: str, most: int) -> np.ndarray:
@@ -126,7 +121,6 @@ def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
     here = np.arange(nodes)
     if (found.left < here).any() or (found.right < here).any():
         raise InputError(f"{file} holds trees that lead back to themselves; train the recogniser again")
-    is_leaf = (found.left == here) & (found.right == here)
-    if (((found.left == here) | (found.right == here)) & ~is_leaf).any():
+    if ((found.left == here) != (found.right == here)).any():
         raise InputError(f"{file} holds nodes with one child; train the recogniser again")
     return found

@@ -1,18 +1,48 @@
-"""Augmentation of generated windows: points are dropped, clutter and false points added, time and sides reversed.
+"""Copies of generated windows: other performances of the same motion, and what worse boards in worse rooms report.
 
-Which weak points a real board reports (thresholds, antennas, cables, furniture) is unknown beforehand, so a recogniser
-should not depend on it. A copy costs a hundredth of a new window.
+`varied` changes pace, extent, place and what is seen of a motion; neither order nor sides change. `augmented` drops
+points and adds clutter and false alarms: which weak points a real board reports (thresholds, antennas, cables,
+furniture) is unknown beforehand. A copy costs a hundredth of a simulated performance.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Bool
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import STILL_MPS, PointRecording
+from mmweaver.recognition.point_recordings import STILL_MPS, PointRecording, index_runs, is_moving
+from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.window_features import SPEED_EDGES_MPS
 
+BRISK_STEPS = 1.1  # velocities above so many steps of the radar are those of limbs
+FEWEST = 10  # brisk points of a motion that may be seen in part
+NEAREST_M = 0.3
 FARTHEST_M, ASIDE_RAD = 9.0, 1.1  # of static cells in a furnished room
+DETECTED = (1.0, 0.98, 0.9, 0.6, 0.3, 0.1)  # shares of frames in which static objects are
+
+Values = np.ndarray | float
+Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerformanceVariation:
+    """Limits of what differs between a generated window and its copy; each copy samples its own values.
+
+    `tempo` and `size`: standard deviations of the logarithm of the pace and of the extent of the moving points about
+    their median. `shift_m`: the largest change of range. `turn_rad`: standard deviation of the change of azimuth.
+    `cut_share`: of the copies of single performances, those of which the beginning or the end is missing, up to
+    `most_cut` of the motion. `hidden_share`: of the copies, those in which a limb returns little in a part of its way
+    (the earlier or later, the higher or lower, or approaching or receding).
+    """
+
+    tempo: float = 0.2
+    size: float = 0.1
+    shift_m: float = 0.3
+    turn_rad: float = 0.25
+    cut_share: float = 0.35
+    most_cut: float = 0.5
+    hidden_share: float = 0.35
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,20 +74,97 @@ class WindowAugmentation:
     reflected_share: float = 0.5
 
 
-Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
+# other performances -------------------------------------------------------------------------------------------------
+def varied(
+    source: PointRecording, first: int, num_frames: int, rng: np.random.Generator, radar: Quantisation,
+    how: PerformanceVariation, *, once: bool,
+) -> PointRecording:  # fmt: skip
+    """`num_frames` frames of `source`, beginning about frame `first`, of another performance of the same motion.
+
+    Frames beyond the end of `source` are empty. Velocities stay multiples of the radar's step, below its largest.
+    `once`: `source` is a single performance, which copies may cut.
+    """
+    pace = float(np.exp(how.tempo * rng.normal()))
+    if not once:  # what goes on has no end: no copy reads beyond it
+        first = max(min(first, int(source.num_frames - num_frames * pace)), 0)
+        pace = min(pace, source.num_frames / num_frames)
+    cloud = _frames(source.cloud, first + np.floor(np.arange(num_frames) * pace).astype(int))
+    if once:
+        cloud = _cut(cloud, rng, radar, how)
+    cloud = _partly_hidden(cloud, rng, radar, how)
+    cloud = _resized(cloud, float(np.exp(how.size * rng.normal())), pace, radar)
+    cloud = _elsewhere(cloud, rng.uniform(-how.shift_m, how.shift_m), how.turn_rad * rng.normal())
+    return replace(source, cloud=cloud, num_frames=num_frames, first_frame=source.first_frame + first, joints_m=None)
 
 
+def _frames(cloud: PointCloud, wanted: np.ndarray) -> PointCloud:
+    """The points of these frames (frame,), which do not fall, as frames 0, 1, ..."""
+    frame, place = index_runs(np.searchsorted(cloud.frame, wanted), np.searchsorted(cloud.frame, wanted, side="right"))
+    return replace(cloud.select(place), frame=frame)
+
+
+def _brisk(cloud: PointCloud, radar: Quantisation) -> Bool[np.ndarray, " point"]:
+    return np.abs(cloud.radial_velocity_mps) > BRISK_STEPS * radar.velocity_step_mps
+
+
+def _cut(cloud: PointCloud, rng: np.random.Generator, radar: Quantisation, how: PerformanceVariation) -> PointCloud:
+    """Without the beginning or the end of its motion, as recordings are cut; time counts from the first point."""
+    brisk = _brisk(cloud, radar)
+    if rng.random() > how.cut_share or brisk.sum() < FEWEST:
+        return cloud
+    begin, end = np.quantile(cloud.frame[brisk], [0.02, 0.98])
+    missing = rng.uniform(0, how.most_cut) * (end - begin)
+    cloud = cloud.select(cloud.frame >= begin + missing if rng.random() < 0.5 else cloud.frame <= end - missing)
+    return replace(cloud, frame=cloud.frame - cloud.frame[0]) if len(cloud.frame) else cloud
+
+
+def _partly_hidden(
+    cloud: PointCloud, rng: np.random.Generator, radar: Quantisation, how: PerformanceVariation
+) -> PointCloud:
+    """Without most of the brisk points of one part of the way: skin reflects like a mirror, and limbs turn."""
+    brisk = _brisk(cloud, radar)
+    if rng.random() > how.hidden_share or brisk.sum() < FEWEST:
+        return cloud
+    along = (cloud.frame, cloud.z_m, cloud.radial_velocity_mps)[int(rng.integers(3))] * rng.choice([-1.0, 1.0])
+    beyond = along > np.quantile(along[brisk], rng.uniform(0.4, 0.8))
+    return cloud.select(~(brisk & beyond & (rng.random(len(along)) < rng.uniform(0.6, 1.0))))
+
+
+def _resized(cloud: PointCloud, size: float, pace: float, radar: Quantisation) -> PointCloud:
+    """Moving points `size` times as far from their median, all velocities as much and `pace` times as fast."""
+    moving = is_moving(cloud)
+    if not moving.any():
+        return cloud
+    step, most = radar.velocity_step_mps, radar.max_velocity_mps
+    velocity = np.round(cloud.radial_velocity_mps * size * pace / step) * step
+    columns = {"radial_velocity_mps": np.where(moving, (velocity + most) % (2 * most) - most, 0.0)}
+    for name in ("x_m", "y_m", "z_m"):
+        place = getattr(cloud, name)
+        middle = np.median(place[moving])
+        columns[name] = np.where(moving, middle + size * (place - middle), place)
+    return replace(cloud, **columns)
+
+
+def _elsewhere(cloud: PointCloud, farther_m: float, turn_rad: float) -> PointCloud:
+    """All points farther away and turned about the radar."""
+    range_m = cloud.range_m
+    scale = np.maximum(range_m + farther_m, NEAREST_M) / np.maximum(range_m, 1e-6)
+    cos, sin = np.cos(turn_rad), np.sin(turn_rad)
+    x, y = scale * cloud.x_m, scale * cloud.y_m
+    return replace(cloud, x_m=x * cos - y * sin, y_m=x * sin + y * cos, z_m=scale * cloud.z_m)
+
+
+# worse boards and rooms ---------------------------------------------------------------------------------------------
 def augmented(
     window: PointRecording, rng: np.random.Generator, how: WindowAugmentation | None = None
 ) -> PointRecording:
     """One augmented copy of a window; `snr_db` becomes nan."""
     how = how or WindowAugmentation()
     cloud, frames = window.cloud, window.num_frames
-    columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     if how.snr_cut_db and np.isfinite(cloud.snr_db).any():
         weakest_db = float(np.nanmin(cloud.snr_db)) + rng.uniform(0, how.snr_cut_db)
         cloud = cloud.select(~(cloud.snr_db < weakest_db))
-        columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
+    columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
     body = _reversed(body, frames, how, rng)
     parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng), *_crowd(frames, how, rng)]
@@ -65,13 +172,9 @@ def augmented(
     order = np.argsort(frame, kind="stable")
     frame, (x, y, z, velocity) = frame[order], columns[order].T
     tilt = rng.normal(0, how.tilt_rad)
-    return replace(
-        window,
-        cloud=PointCloud(
-            frame=frame, x_m=x, y_m=y * np.cos(tilt) - z * np.sin(tilt), z_m=z * np.cos(tilt) + y * np.sin(tilt),
-            radial_velocity_mps=velocity, snr_db=np.full(len(frame), np.nan),
-        ),
-    )  # fmt: skip
+    turned = {"y_m": y * np.cos(tilt) - z * np.sin(tilt), "z_m": z * np.cos(tilt) + y * np.sin(tilt)}
+    unknown = np.full(len(frame), np.nan)
+    return replace(window, cloud=PointCloud(frame=frame, x_m=x, radial_velocity_mps=velocity, snr_db=unknown, **turned))
 
 
 def _thinned(
@@ -83,7 +186,6 @@ def _thinned(
     moving, static = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_static))
     kept = rng.random(len(frame)) < np.where(speed > STILL_MPS, moving, static)
     kept &= (rng.random(frames) >= rng.uniform(0, how.frames_lost))[frame]
-    columns = columns.copy()
     stops = (speed < SPEED_EDGES_MPS[1]) & (rng.random(len(frame)) < rng.uniform(0, how.slow_to_static))
     columns[stops, 3] = 0.0
     return frame[kept], columns[kept]
@@ -97,16 +199,20 @@ def _reversed(points: Points, frames: int, how: WindowAugmentation, rng: np.rand
     return (frames - 1 - frame if backwards else frame), columns
 
 
+def _columns(range_m: Values, aside: Values, up_m: Values, velocity: Values) -> np.ndarray:
+    """Columns of points at these ranges and azimuths."""
+    return np.stack(np.broadcast_arrays(range_m * np.sin(aside), range_m * np.cos(aside), up_m, velocity), axis=-1)
+
+
 def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
     """Static objects at any range, detected always or intermittently."""
     found = []
     for _ in range(int(rng.integers(how.most_objects + 1))):
         nearest_m, aside = rng.uniform(0.9, 5.5), rng.normal(0, 0.3)
-        share = float(rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1]))
+        share = float(rng.choice(DETECTED))
         for cell in range(int(rng.integers(1, 4))):
             frame = np.flatnonzero(rng.random(frames) < share)
-            range_m = nearest_m + cell * how.cell_m
-            place = [range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.3), 0.0]
+            place = _columns(nearest_m + cell * how.cell_m, aside, rng.normal(0, 0.3), 0.0)
             found.append((frame, np.tile(place, (len(frame), 1))))
     return found
 
@@ -116,11 +222,10 @@ def _crowd(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> li
     if rng.random() >= how.crowded_share:
         return []
     number = int(rng.integers(1, how.most_crowded + 1))
-    share = rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1], number)
+    share = rng.choice(DETECTED, number)
     range_m, aside = rng.uniform(0.3, FARTHEST_M, number), rng.uniform(-ASIDE_RAD, ASIDE_RAD, number)
-    up_m = rng.normal(0, 0.5, number)
+    place = _columns(range_m, aside, rng.normal(0, 0.5, number), 0.0)
     frame, which = np.nonzero(rng.random((frames, number)) < share)
-    place = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), up_m, np.zeros(number)], axis=1)
     return [(frame, place[which])]
 
 
@@ -129,5 +234,5 @@ def _false_points(frames: int, how: WindowAugmentation, rng: np.random.Generator
     number = int(rng.poisson(float(rng.choice([0.0, 0.0, how.false_points / 4, how.false_points]))))
     range_m, aside = rng.uniform(1, 5, number), rng.normal(0, 0.4, number)
     velocity = rng.choice([-1.0, 1.0], number) * how.velocity_step_mps * rng.choice([1.0, 2.0], number)
-    columns = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.4, number), velocity], axis=1)
+    columns = _columns(range_m, aside, rng.normal(0, 0.4, number), velocity)
     return rng.integers(frames, size=number), columns

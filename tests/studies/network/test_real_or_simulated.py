@@ -11,11 +11,11 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.recognition.activity_classifier import ClassifierSettings
 from studies.network import real_or_simulated
 from studies.network.cube_statistics import cube_statistics
 from studies.network.learned_scores import Case
 from studies.network.real_or_simulated import board_by, folds_of, real_or_simulated_scores
+from studies.recognition.activity_classifier import ClassifierSettings
 from tests.cubes import point_cube
 
 ROOMS = [f"room_{index // 3}" for index in range(60)]

@@ -5,9 +5,10 @@ from pathlib import Path
 
 from PIL import Image
 
-from mmweaver.recognition.mars_data import cut, read_mars
+from mmweaver.recognition.mars_data import read_mars
 from studies.physics.mars import Clouds, Setup
 from studies.physics.mars_pictures import draw, setup_of
+from studies.physics.mars_pieces import cut
 from tests.recognition.test_mars_data import write_split
 
 

@@ -8,8 +8,7 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.recognition.task_file import read_task
-from mmweaver.recognition.train_recogniser import generated_windows
-from mmweaver.recognition.training_windows import TrainingOptions
+from mmweaver.recognition.training_windows import generated_windows
 from studies.recognition import blind_recognition
 from studies.recognition.blind_recognition import TASKS, recordings_of, result_row, scored
 from studies.schema import _row_violations
@@ -40,4 +39,3 @@ def test_a_row_has_scores_chance_and_distance(adapted: bool, tmp_path: Path, mon
     assert not _row_violations(row)
     assert row["metrics"]["window"]["baseline"] == {"chance": 0.5}
     assert (row["self_training"] is not None) == adapted
-    assert TrainingOptions().matching is False

@@ -9,13 +9,12 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
-from mmweaver.recognition.generated_windows import write_window
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radhar import ACTIVITIES, radhar_recipe
-from mmweaver.recognition.zero_shot import TrainingSet
+from mmweaver.recognition.point_recordings import PointRecording
 from studies.manifest import StudyRun
 from studies.recognition import zero_shot_anew
+from studies.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
+from studies.recognition.zero_shot_recipe import ACTIVITIES, radhar_recipe, write_window
+from studies.recognition.zero_shot_training import TrainingSet
 
 RECIPE = radhar_recipe()
 
@@ -49,7 +48,7 @@ def test_each_cache_is_scored_on_the_developed_half_with_its_commit(tmp_path, mo
     known = [recording(label, f"{label}_20_{number}") for label in ACTIVITIES for number in (1, 2)]
     # were the other half scored, too, a tenth of its windows would be right
     others = [recording("walk", f"20_{label}_1") for label in ACTIVITIES]
-    monkeypatch.setattr(zero_shot_anew, "read_point_recordings", lambda folder, labels: known + others)
+    monkeypatch.setattr(zero_shot_anew, "radhar_recordings", lambda folder: known + others)
     monkeypatch.setattr(TrainingSet, "train", few_trees)
     (tmp_path / "recordings").mkdir()
     options = argparse.Namespace(caches=caches, recordings=tmp_path / "recordings")

@@ -5,10 +5,9 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.recognition.activity_classifier import ClassifierSettings
-from mmweaver.recognition.frozen_activity import Frozen
-from mmweaver.recognition.zero_shot import TrainingSet
+from studies.recognition.activity_classifier import ClassifierSettings
 from studies.recognition.zero_shot_curve import accuracy, chosen_recordings
+from studies.recognition.zero_shot_training import Frozen, TrainingSet
 
 LABELS = np.array(["a", "b"])[np.arange(40) % 2]
 

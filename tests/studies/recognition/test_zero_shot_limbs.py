@@ -6,9 +6,9 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.radhar import radhar_recipe
+from mmweaver.recognition.point_recordings import PointRecording
 from studies.recognition.zero_shot_limbs import limb_strengths, thirds
+from studies.recognition.zero_shot_recipe import radhar_recipe
 from studies.recognition.zero_shot_scores import first_draws
 
 

@@ -2,9 +2,8 @@
 
 from PIL import Image
 
-from mmweaver.recognition.generated_windows import generate_window
-from mmweaver.recognition.radhar import radhar_recipe
 from studies.recognition.zero_shot_pictures import draw
+from studies.recognition.zero_shot_recipe import generate_window, radhar_recipe
 
 
 def test_a_picture_is_drawn(tmp_path):

@@ -1,0 +1,112 @@
+"""Cells with persistent motion that is not the subject: a fan, a curtain. Moving points in them are left out.
+
+They are known from a recording of the empty place or, without labels, from many recordings: where something moves in
+nearly all of them and goes on moving while people walk 1.2 m or more from it. Whoever exercises at one place in all
+recordings moves there as well; so a place counts only where people walk elsewhere in some recordings.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool, Int
+from scipy.ndimage import find_objects, label
+
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recordings import PointRecording, is_moving
+from mmweaver.recognition.quantisation import Quantisation, group_neighbours
+
+CELL_M = 0.25
+MIN_FRAMES, MIN_SHARE = 3.0, 0.02  # of the empty place, with motion in a cell: whoever walks through leaves it at once
+AROUND = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+FEWEST, WALKERS = 10, 3  # recordings; of these, recordings in which somebody walks elsewhere
+WALKING_SHARE = 0.15  # of the recordings, as well
+NEARLY_ALL, IN_FRAMES = 0.9, 0.05  # of the recordings; of a recording's frames
+APART_M, WALKED_M = 1.2, 1.0  # of whoever walks: from the place, and in range (from the 10th to the 90th percentile)
+STRETCH_S, GOES_ON, MOSTLY = 0.5, 0.5, 0.8  # shares of the stretches in which somebody walks, and of such recordings
+
+Cells = Int[np.ndarray, "_ 2"]  # right, ahead, in steps of CELL_M
+NO_CELLS: Cells = np.zeros((0, 2), int)
+
+
+def background_cells(empty_place: Sequence[PointRecording]) -> Cells:
+    """Cells in which and next to which something moves in recordings of the empty place."""
+    found = [_moving_cells(one, max(MIN_FRAMES, MIN_SHARE * one.num_frames)) for one in empty_place]
+    return _with_neighbours(np.concatenate([NO_CELLS, *found]))
+
+
+def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantisation | None = None) -> Cells:
+    """Cells, and those around, in which something moves that is certainly nobody; none if unsure.
+
+    `radar` says how neighbours are grouped: flanks of static echoes move, if these are not.
+    """
+    if len(recordings) < FEWEST:
+        return NO_CELLS
+    if radar is not None:
+        recordings = [group_neighbours(recording, radar) for recording in recordings]
+    found = [_moving_cells(one, max(IN_FRAMES * one.num_frames, 1.0)) for one in recordings]
+    cells, count = np.unique(np.concatenate(found), axis=0, return_counts=True)
+    cells = cells[count >= NEARLY_ALL * len(recordings)]
+    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: nobody walks
+    walks = np.isfinite(goes_on).sum(axis=0)
+    often = (np.nan_to_num(goes_on) >= GOES_ON).sum(axis=0) >= MOSTLY * np.maximum(walks, 1)
+    return _with_neighbours(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
+
+
+def without_motion_in(window: PointRecording, cells: Cells) -> PointRecording:
+    """The window without the moving points in these cells."""
+    hidden = is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
+    return replace(window, cloud=window.cloud.select(~hidden)) if hidden.any() else window
+
+
+def left_out_lines(cells: Cells) -> list[str]:
+    """One line about each place that cells which touch make up."""
+    if not len(cells):
+        return []
+    first = cells.min(axis=0)
+    held = np.zeros(np.ptp(cells, axis=0) + 1, bool)
+    held[tuple((cells - first).T)] = True
+    lines: list[str] = []
+    for right, ahead in find_objects(label(held, np.ones((3, 3)))[0]):
+        middle = first + np.array([right.start + right.stop, ahead.start + ahead.stop]) / 2
+        right_m, ahead_m = (middle * CELL_M).round(1)
+        where = f"{ahead_m:g} m ahead and {abs(right_m):g} m to the {'left' if right_m < 0 else 'right'}"
+        lines.append(
+            f"something moves all the time {where}, also while people walk elsewhere: it is nobody and left out"
+        )
+    return lines
+
+
+def _cells_of(cloud: PointCloud) -> Int[np.ndarray, "point 2"]:
+    return np.floor(np.stack([cloud.x_m, cloud.y_m], axis=1) / CELL_M).astype(int)
+
+
+def _with_neighbours(cells: Cells) -> Cells:
+    return np.unique((cells[:, None] + AROUND).reshape(-1, 2), axis=0)
+
+
+def _inside(cell: Int[np.ndarray, "point 2"], places: Cells) -> Bool[np.ndarray, " point"]:
+    return (cell[:, None] == places).all(axis=2).any(axis=1)
+
+
+def _moving_cells(recording: PointRecording, min_frames: float) -> Cells:
+    """Cells in which something moves in at least so many frames."""
+    cloud = recording.cloud.select(is_moving(recording.cloud))
+    visits = np.unique(np.column_stack([cloud.frame, _cells_of(cloud)]), axis=0)
+    cells, frames = np.unique(visits[:, 1:], axis=0, return_counts=True)
+    return cells[frames >= min_frames]
+
+
+def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
+    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: nobody."""
+    cloud = recording.cloud.select(is_moving(recording.cloud))
+    stretch, cell = cloud.frame // max(round(STRETCH_S * recording.frame_rate_hz), 1), _cells_of(cloud)
+    point_m = np.stack([cloud.x_m, cloud.y_m], axis=1)
+    persistent = _inside(cell, _with_neighbours(candidates))
+    shares = np.full(len(candidates), np.nan)
+    for number, candidate in enumerate(candidates):
+        walker = (np.hypot(*(point_m - (candidate + 0.5) * CELL_M).T) > APART_M) & ~persistent
+        if walker.sum() >= 2 and np.ptp(np.quantile(cloud.range_m[walker], [0.1, 0.9])) >= WALKED_M:
+            around = np.abs(cell - candidate).max(axis=1) <= 1
+            shares[number] = np.isin(np.unique(stretch[walker]), stretch[around]).mean()
+    return shares

@@ -1,0 +1,217 @@
+"""Recordings of a point-cloud radar, generated or real: reading them, samples between gaps, windows.
+
+A task's recordings lie in folders named by label, as .npz, .dat or whatever `read_points` reads.
+"""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud
+from mmweaver.core.safe_files.regular_files import check_exists
+from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
+from mmweaver.formats.point_clouds.read_points import read_points
+from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
+from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
+
+SUFFIXES = (".npz", ".dat", ".csv", ".txt", ".bin")
+POINTS_FILE, SIGNAL_FILE = "points.npz", "radar.npz"  # of a result folder of mmweaver generate
+SAME_RATE = 0.02
+MAX_FRAMES = 10_000_000
+BREAK_FRAMES = 100  # between the takes of one file
+STILL_MPS = 0.1  # up to this radial speed a point counts as at rest
+
+
+def is_moving(cloud: PointCloud) -> Bool[np.ndarray, " point"]:
+    """Which points move, by their radial velocity."""
+    return np.abs(cloud.radial_velocity_mps) > STILL_MPS
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointRecording:
+    """Points of frames 0 to num_frames - 1 (empty frames included) at a constant frame rate."""
+
+    name: str
+    cloud: PointCloud
+    num_frames: int
+    frame_rate_hz: float
+    label: str = ""  # the activity, if known
+    first_frame: int = 0  # in the recording that this is a part of
+    joints_m: Float[np.ndarray, "frame 22 3"] | None = None  # of one person in the radar's level axes, if known
+
+    def windows(self, seconds: float, step_s: float | None = None) -> "list[PointRecording]":
+        """Windows of this length, consecutive or every `step_s`; an incomplete last window is dropped."""
+        length = max(round(seconds * self.frame_rate_hz), 1)
+        step = max(round((step_s or seconds) * self.frame_rate_hz), 1)
+        return [self.part(first, length) for first in range(0, self.num_frames - length + 1, step)]
+
+    def part(self, first: int, num_frames: int) -> "PointRecording":
+        """`num_frames` frames starting at `first`, renumbered from 0."""
+        inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
+        cloud = self.cloud.select(inside)
+        return replace(
+            self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames,
+            first_frame=self.first_frame + first,
+            joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
+        )  # fmt: skip
+
+
+# reading ------------------------------------------------------------------------------------------------------------
+def read_task_recordings(
+    place: Path | str, settings: RecordingSettings, *, labelled: bool = True
+) -> list[PointRecording]:
+    """All recordings in a folder and its subfolders, sorted by name; a file is one recording.
+
+    The activity is the name of a folder, or a word of the file's name (`Train_walk_3.npz`). Raises InputError where
+    there are none, one names no activity or several, or cannot be read.
+    """
+    place = Path(place)
+    check_exists(place, "a folder of recordings")
+    files, folder = [place], place.parent
+    if place.is_dir():
+        found = (path for path in place.rglob("*") if path.suffix.lower() in SUFFIXES and path.is_file())
+        files, folder = sorted(path for path in found if not _belongs_to_points_file(path)), place
+    if not files:
+        raise InputError(f"{place} holds no recordings; {', '.join(SUFFIXES)} are read")
+    return [
+        read_task_recording(file, settings, _label_of(file, folder, settings.labels) if labelled else "")
+        for file in files
+    ]
+
+
+def read_task_recording(file: Path, settings: RecordingSettings, label: str = "") -> PointRecording:
+    """One recording; frames without points count. Raises InputError for a file that cannot be read."""
+    if file.is_dir() and (file / POINTS_FILE).is_file():
+        file = file / POINTS_FILE
+    cloud, frames = _read_cloud(file, settings)
+    name = file.parent.name if file.name == POINTS_FILE else file.stem
+    frames = frames or settings.window_frames  # without any frame it lasts a window, for all that is known
+    return PointRecording(name=name, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label)
+
+
+def _label_of(file: Path, folder: Path, labels: tuple[str, ...]) -> str:
+    """The activity that a path below `folder` names. Raises InputError where it names none or several."""
+    by_folder = [name for name in labels if name in file.relative_to(folder).parts[:-1]]
+    words = re.split(r"[^a-z]+", file.stem.lower())
+    found = by_folder or [name for name in labels if name == file.stem or name.lower() in words]
+    if len(found) != 1:
+        raise InputError(f"{file} does not name its activity; put it into a folder named {' or '.join(labels)}")
+    return found[0]
+
+
+def _belongs_to_points_file(file: Path) -> bool:
+    """Whether a file is another one of a result folder that has points."""
+    return file.name in (SIGNAL_FILE, "pose.npz") and (file.parent / POINTS_FILE).is_file()
+
+
+def _read_cloud(file: Path, settings: RecordingSettings) -> tuple[PointCloud, int]:
+    """Points and number of frames, 0 where nothing says it."""
+    if file.is_dir() and not any(file.glob("*.bin")):
+        raise InputError(
+            f"{file} holds no {POINTS_FILE}; give a result folder of mmweaver generate, or one recording"
+            f" ({', '.join(SUFFIXES)})"
+        )
+    if file.suffix.lower() == ".npz" and settings.columns is not None:
+        held = read_npz(file, only=("frame", "pts", "num_frames", "x_m"))
+        if "pts" in held or "x_m" not in held:  # else it names its columns itself, as `mmweaver points` writes them
+            return _from_columns(held, file, settings.columns)
+    if file.suffix.lower() == ".dat":
+        log = read_ti_uart(file)
+        return log.points, max(len(log.frame_number), 1)
+    cloud = read_points(file)
+    return cloud, max(_num_frames(cloud.frame), _frames_of_signal(file, settings))
+
+
+def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:
+    """The number of frames of the signal in the same result folder; 0 where there is none.
+
+    Raises InputError where it has another frame rate than the recogniser's recordings.
+    """
+    signal = file.with_name(SIGNAL_FILE)
+    if file.name != POINTS_FILE or not signal.is_file():
+        return 0
+    time_s = read_npz(signal, only=("frame_time_s",)).numbers("frame_time_s", ("frame",))
+    rate_hz = (len(time_s) - 1) / (time_s[-1] - time_s[0]) if len(time_s) > 1 else settings.frame_rate_hz
+    if abs(rate_hz / settings.frame_rate_hz - 1) > SAME_RATE:
+        raise InputError(
+            f"{file.parent} has {rate_hz:.3g} frames a second, the recogniser's recordings"
+            f" {settings.frame_rate_hz:.3g}; generate it at that rate (--fps)"
+        )
+    return len(time_s)
+
+
+def _num_frames(frame: np.ndarray) -> int:
+    return int(frame[-1]) + 1 if len(frame) else 0
+
+
+def _from_columns(held: NpzArrays, file: Path, columns: RecordedColumns) -> tuple[PointCloud, int]:
+    """`frame` (point,) and `pts` (point, column), perhaps `num_frames`; frames count from the first with points."""
+    frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
+    pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
+    # where a log begins to count again, another take follows after a break
+    before = np.concatenate([frame[:1], frame[:-1]])
+    frame = frame + np.cumsum(np.where(frame < before, before - frame + BREAK_FRAMES, 0))
+    if "num_frames" in held:  # then frames count from 0
+        frames = int(held.numbers("num_frames", (), low=_num_frames(frame), high=MAX_FRAMES))
+        return columns.cloud(frame, pts, str(file)), frames
+    frame = frame - frame[0] if len(frame) else frame
+    if _num_frames(frame) > MAX_FRAMES:
+        raise InputError(f"{file} has frame numbers up to {frame[-1]}; leave it out")
+    return columns.cloud(frame, pts, str(file)), _num_frames(frame)
+
+
+# samples and windows ------------------------------------------------------------------------------------------------
+def samples_of(recording: PointRecording, gap_frames: int | None) -> list[PointRecording]:
+    """The parts of a recording between gaps: more than `gap_frames` frames without points. None: never cut."""
+    if gap_frames is None:
+        return [recording]
+    occupied = np.unique(recording.cloud.frame)
+    if not len(occupied):
+        return []
+    parts = np.split(occupied, np.flatnonzero(np.diff(occupied) - 1 > gap_frames) + 1)
+    return [recording.part(int(part[0]), int(part[-1] - part[0]) + 1) for part in parts]
+
+
+def windows_of(
+    recording: PointRecording, settings: RecordingSettings, step_s: float | None = None
+) -> list[PointRecording]:
+    """Consecutive windows of each sample; one that is shorter than a window is a window with empty frames at its end.
+
+    Where recordings are never cut, what is left over at the end is dropped. Where one of the labels is an empty place,
+    gaps are samples of it, but for those of recordings of other labels; else a recording without any point is one
+    sample, unless samples are single performances. `step_s`: every so often a window begins.
+    """
+    windows: list[PointRecording] = []
+    samples = samples_of(recording, settings.gap_frames)
+    for sample in samples:
+        whole = sample.windows(settings.window_s, step_s)
+        if not whole and settings.has_single_performances:
+            whole = [sample.part(0, settings.window_frames)]
+        windows += whole
+    if settings.empty_label is not None and recording.label in ("", settings.empty_label):
+        silent = _silences(recording, samples)
+    else:
+        silent = [] if samples or settings.has_single_performances else [recording]
+    windows += [window for one in silent for window in one.windows(settings.window_s, step_s)]
+    return sorted(windows, key=lambda window: window.first_frame)
+
+
+def _silences(recording: PointRecording, samples: list[PointRecording]) -> list[PointRecording]:
+    """What lies between samples, before the first and after the last, without points."""
+    firsts = [one.first_frame - recording.first_frame for one in samples]
+    begins = [0, *(first + one.num_frames for first, one in zip(firsts, samples, strict=True))]
+    ends = [*firsts, recording.num_frames]
+    return [recording.part(begin, end - begin) for begin, end in zip(begins, ends, strict=True) if end > begin]
+
+
+def index_runs(
+    begin: Int[np.ndarray, " run"], end: Int[np.ndarray, " run"]
+) -> tuple[Int[np.ndarray, " index"], Int[np.ndarray, " index"]]:
+    """All indices from `begin` to `end` - 1 of each run, one run after the other, with the number of their run."""
+    count = end - begin
+    run = np.repeat(np.arange(len(count)), count)
+    return run, np.arange(len(run)) - np.repeat(np.cumsum(count) - count - begin, count)

@@ -1,0 +1,106 @@
+"""How the task's firmware quantises points: steps of range and velocity, static removal, grouping of neighbours.
+
+Neighbours are grouped as the firmware groups them, also where a recording's did not: of cells that touch, the strongest
+stays, so that one echo is about as many points whether or not the board grouped them.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.dsp.firmware import range_step_m
+from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.task_file import RecognitionTask
+
+SLOWER = 0.05  # of two that are equal, what is at rest is the echo and what moves a step is its flank
+AROUND = 2  # cells on either side that tell the middle of an echo
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantisation:
+    """What a task says of its radar, as far as points show it."""
+
+    range_step_m: float
+    velocity_step_mps: float
+    max_velocity_mps: float
+    removes_static: bool
+    groups_range: bool  # of neighbours in range or in velocity one is reported
+    groups_velocity: bool
+    knows_place: bool  # whether there is a recording of the empty place
+
+    @staticmethod
+    def of(task: RecognitionTask) -> "Quantisation":
+        """That of a task's radar and firmware."""
+        return Quantisation(
+            range_step_m=range_step_m(task.radar),
+            velocity_step_mps=task.radar.velocity_resolution_mps,
+            max_velocity_mps=task.radar.max_velocity_mps,
+            removes_static=task.firmware.static_removal,
+            groups_range=task.firmware.group_range,
+            groups_velocity=task.firmware.group_doppler,
+            knows_place=task.background is not None,
+        )
+
+    @staticmethod
+    def read(values: object) -> "Quantisation | None":
+        """That of meta.json; None where it holds none, as models of before 0.3."""
+        try:
+            found = Quantisation(**values) if isinstance(values, dict) else None
+            known = found and 0 < found.velocity_step_mps <= found.max_velocity_mps < np.inf
+            return found if found and known and 0 < found.range_step_m < np.inf else None
+        except TypeError:
+            return None
+
+
+def group_neighbours(window: PointRecording, radar: Quantisation) -> PointRecording:
+    """Keeps one cell of those that touch, in the directions in which the task's firmware groups.
+
+    Velocities are cyclic. What firmware has grouped already has no neighbours, so nothing of it changes.
+    """
+    cloud = window.cloud
+    if not len(cloud.frame) or not (radar.groups_range or radar.groups_velocity):
+        return window
+    columns = max(round(2 * radar.max_velocity_mps / radar.velocity_step_mps), 1)
+    bins = [
+        cloud.frame,
+        np.round(cloud.range_m / radar.range_step_m),
+        np.round(cloud.radial_velocity_mps / radar.velocity_step_mps) % columns,
+    ]
+    cells, cell = np.unique(np.stack(bins, axis=1).astype(int), axis=0, return_inverse=True)
+    frame, row, column = cells.T
+    num_rows = row.max() + 2 * AROUND + 2
+
+    def key(rows: int, steps: int) -> Int[np.ndarray, " cell"]:
+        return (frame * num_rows + row + rows + AROUND) * columns + (column + steps) % columns
+
+    own = key(0, 0)
+
+    def neighbour(rows: int, steps: int) -> Int[np.ndarray, " cell"]:
+        """The index of the cell so many steps from each; -1 where it is empty."""
+        wanted = key(rows, steps)
+        place = np.minimum(np.searchsorted(own, wanted), len(own) - 1)
+        return np.where(own[place] == wanted, place, -1)
+
+    def sum_around(values: Float[np.ndarray, " cell"], most: int) -> Float[np.ndarray, " cell"]:
+        """The sum of each cell's value and of those up to `most` rows away; nearer ones weigh more."""
+        total = np.zeros(len(own))
+        for rows in range(-most, most + 1):
+            for steps in range(-AROUND, AROUND + 1):
+                other = neighbour(rows, steps)
+                total += np.where(other >= 0, values[other], 0.0) / (1.0 + rows**2 + steps**2)
+        return total
+
+    snr_db = np.full(len(own), -np.inf)
+    np.maximum.at(snr_db, cell.ravel(), np.nan_to_num(cloud.snr_db, nan=-np.inf))
+    # a ratio to the noise of each velocity is the same on the flanks of an echo, so that its middle is the peak
+    is_known = bool(np.isfinite(snr_db).all())
+    strength = sum_around(np.maximum(snr_db, 0.0), 0) if is_known else sum_around(np.ones(len(own)), AROUND)
+    strength *= 1 - SLOWER * np.minimum(np.minimum(column, columns - column), AROUND)
+    kept, here = np.ones(len(own), bool), np.arange(len(own))
+    for rows in (-1, 0, 1) if radar.groups_range else (0,):
+        for steps in (-1, 0, 1) if radar.groups_velocity else (0,):
+            other = neighbour(rows, steps)
+            there = np.where(other >= 0, strength[other], -np.inf)
+            kept &= (there < strength) | ((there == strength) & (other >= here))  # of equal ones the first
+    return window if kept.all() else replace(window, cloud=cloud.select(kept[cell.ravel()]))

@@ -1,0 +1,311 @@
+"""How a person performs an activity for a while: where, how fast, how widely, swaying, pausing, in which room.
+
+Tempo, amplitude and sway belong to the person, and vary less between what one person does than between people. The
+same person stands in the same place before the same radar for every activity, so that none of these tells the label.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
+from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Joints
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.animation.profiles import rise
+from mmweaver.motion.compose import compose
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.sentence_parser import parse_sentence
+from mmweaver.motion.language.timing import LONGEST_S, is_elastic, natural_s, repeated, schedule
+from mmweaver.motion.people import MOST_SUBJECTS, person_of
+from mmweaver.recognition.random_scene import (
+    Span,
+    Variation,
+    VariationSample,
+    hung_high,
+    random_scene,
+    sample_variation,
+)
+from mmweaver.recognition.task_file import Mount
+
+SLOWEST_MPS = 0.06  # below this speed, locomotion has ended
+ROAM_HZ = (0.1, 0.6)  # frequencies of the sway of stationary people
+HURRY_HZ = (0.1, 0.5)  # frequencies of tempo changes along a path
+LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
+NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
+ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
+AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
+HIGH_SHARE = 0.25  # of radars of whose mount nothing is known
+HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
+HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
+REST_S = (0.2, 0.8)  # before and after a single performance
+LATEST_EVENT = 0.7  # of the time that a sequence has more than what happens in it takes
+CLOSE_M, FAR_APART_M = 0.2, 0.5  # between the ankles of who stands, and of who stands with the legs apart
+LIFTED_M, LEAST_MOVED_M = 0.06, 0.03
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerformancePrior:
+    """How people differ, and how one person differs between performances; spreads are of logarithms where relative.
+
+    `on_spot`: the usual tempo of what is done in place, relative to the motion library; `on_way` that of walks and runs
+    in a room, log-uniform over people; `single` that of a single performance, which people repeat briskly and widely.
+    `sway_mps`: speed of slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one
+    gesture, `held_sway_mps` of who stays in a posture.
+    `heading_deg`: standard deviation from facing the radar, `heading_of_performance_deg` that of one performance from
+    the person's usual. `wider_m`: how much farther apart than in the motion library narrow feet of who stays in place
+    are, uniform. `linger`: how much longer than on the way people stay where a movement begins, uniform. `at_turns`:
+    how much longer than in the library people who walk or run take to turn and set out again, uniform.
+    """
+
+    tempo_of_person: float = 0.2
+    tempo_of_performance: float = 0.1
+    amplitude_of_person: float = 0.2
+    amplitude_of_performance: float = 0.1
+    on_spot: float = 1.05
+    on_way: Span = (0.7, 1.35)
+    single: float = 1.4
+    usual_amplitude: float = 0.9
+    single_amplitude: float = 1.05
+    sway_mps: Span = (0.01, 0.25)
+    calm_sway_mps: Span = (0.003, 0.04)
+    held_sway_mps: Span = (0.003, 0.08)
+    heading_deg: float = 15.0
+    heading_of_performance_deg: float = 5.7
+    wider_m: Span = (0.0, 0.0)
+    linger: Span = (0.0, 0.0)
+    at_turns: Span = (0.0, 2.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Performer:
+    """One person with the radar and the room before them."""
+
+    subject: int
+    surroundings: VariationSample
+    tempo: float
+    amplitude: float
+    heading_rad: float
+    wider_m: float
+    linger: float
+    on_way: float  # tempo of walks and runs
+    at_turns: float
+
+
+def task_variation(mount: Mount) -> Variation:
+    """The ranges of places, rooms and radars: wide, but for what is known of the mount."""
+    near, far = mount.distance_m or (1.0, 3.2)
+    known = Variation(
+        distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
+        far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
+        noise_db=NOISE_DB, arms_db=ARMS_DB,
+    )  # fmt: skip
+    if mount.height_m is not None:
+        known = replace(known, radar_height_m=(mount.height_m - HEIGHT_SPREAD_M, mount.height_m + HEIGHT_SPREAD_M))
+    if mount.height_m is None and mount.tilt_deg is None:
+        known = replace(known, high_share=HIGH_SHARE)
+    if mount.tilt_deg is not None:
+        # clouds are reported in the board's axes: a board that looks down sees people higher
+        known = replace(known, tilt_deg=(mount.tilt_deg - TILT_SPREAD_DEG, mount.tilt_deg + TILT_SPREAD_DEG))
+    return known
+
+
+def performer(prior: PerformancePrior, variation: Variation, index: int, seed: int) -> Performer:
+    """The index-th person; the same for all activities."""
+    rng = stream(seed, "performer", index)
+    tempo, amplitude, heading = rng.normal(size=3).clip(-2, 2)
+    return Performer(
+        subject=int(rng.integers(MOST_SUBJECTS)),
+        surroundings=hung_high(sample_variation(variation, rng), variation, stream(seed, "mount", index)),
+        tempo=float(np.exp(prior.tempo_of_person * tempo)),
+        amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
+        heading_rad=float(np.radians(prior.heading_deg) * heading),
+        wider_m=float(rng.uniform(*prior.wider_m)),
+        linger=float(rng.uniform(*prior.linger)),
+        on_way=float(np.exp(rng.uniform(*np.log(prior.on_way)))),
+        at_turns=float(rng.uniform(*prior.at_turns)),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Performance:
+    """A motion from its first frame on, and the surroundings it is seen in."""
+
+    pose: PoseSequence
+    lasts_s: float
+    surroundings: VariationSample
+
+
+def perform(
+    who: Performer, prior: PerformancePrior, sentence: str, *, seconds: float, once: bool, rng: np.random.Generator
+) -> Performance:
+    """The person carries out a sentence: `once`, with a short rest before and after, or for this many seconds.
+
+    What ends by itself and cannot be repeated (a fall) happens somewhere in these seconds. Raises InputError where the
+    sentence cannot be carried out there.
+    """
+    plan = parse_sentence(sentence) if once else lasting(parse_sentence(sentence))
+    is_event = not once and happens_once(plan)
+    moves = any(step.moves for step in plan.steps)
+    now, person = who.surroundings, person_of(who.subject, plan.person)
+    tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
+    usual = who.on_way if moves else prior.single if once else prior.on_spot
+    tempo = who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own)
+    usual_amplitude = prior.single_amplitude if once else prior.usual_amplitude
+    amplitude = usual_amplitude * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
+    late_s = 0.0 if once else float(rng.uniform(0.0, LATEST_S))
+    lead_s = 0.0 if once or is_event else LEAD_S + late_s
+    needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
+    scheduled = schedule(plan if once or is_event else repeated(plan, needed_s), needed_s)
+    scene = random_scene(floor_z_m=-now.radar_height_m, wall_y_m=None)
+    x, y = now.start_m
+    distance = float(np.hypot(x, y))
+    turned_rad = np.radians(prior.heading_of_performance_deg)
+    window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
+    pose = compose(
+        scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
+        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person, may_touch=False,
+        heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
+    ).pose  # fmt: skip
+    if is_event:
+        spare_s = max(seconds * tempo - needed_s, 0.0)
+        before_s = max(late_s / LATEST_S * LATEST_EVENT * spare_s, REST_S[0])
+        pose = _rested(pose, before_s, (seconds + 0.3) * tempo * 1.1)
+    if moves and not is_event and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
+        raise InputError("the path ends before the recording does")
+    joints_m = scaled_excursion(pose.joints_m, float(amplitude))
+    if not moves and who.wider_m:
+        joints_m = with_feet_apart(joints_m, who.wider_m)
+    is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
+    usual_sway = prior.calm_sway_mps if once or is_event else prior.held_sway_mps if is_held else prior.sway_mps
+    sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
+    joints_m = joints_m + sway_m(pose.time_s, sway, rng)
+    even_s = pose.time_s
+    if moves and not is_event:
+        even_s = slow_at_turns(pose.time_s, joints_m, who.at_turns)
+    elif not (once or is_event):
+        even_s = lingering(pose.time_s, joints_m, who.linger)
+    time_s = time_warped(
+        even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
+    )
+    pose = replace(pose, time_s=time_s, joints_m=joints_m)
+    if not once:
+        return Performance(pose=pose, lasts_s=seconds, surroundings=now)
+    before_s, after_s = rng.uniform(*REST_S, size=2)
+    return Performance(
+        pose=_rested(pose, float(before_s), float(after_s)),
+        lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
+    )  # fmt: skip
+
+
+def lasting(plan: MotionPlan) -> MotionPlan:
+    """The plan as something that goes on: what is done in place is done as often as time allows, not three times."""
+    return replace(plan, steps=tuple(step if step.moves else replace(step, count=0) for step in plan.steps))
+
+
+def happens_once(plan: MotionPlan) -> bool:
+    """Whether a plan ends by itself and cannot be repeated, as its end does not lead to its beginning."""
+    return repeated(plan, LONGEST_S) is plan and not all(is_elastic(step) for step in plan.steps)
+
+
+def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
+    """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
+    omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
+    slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
+    reached = _integral(slower, time_s)
+    return reached - np.interp(0.0, time_s, reached)
+
+
+def _integral(slowness: np.ndarray, time_s: np.ndarray) -> np.ndarray:
+    """Times (time,) at which a motion of this slowness is where it was at `time_s`, from 0."""
+    return np.concatenate([[0.0], np.cumsum((slowness[1:] + slowness[:-1]) / 2 * np.diff(time_s))])
+
+
+def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
+    """Mean horizontal speed of the pelvis in m/s."""
+    inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
+    path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
+    return float(path_m / (end_s - start_s))
+
+
+def scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
+    """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
+    root = joints_m[:, :1].copy()
+    root[..., 2] = 0.0
+    local = joints_m - root
+    mean = local.mean(axis=0, keepdims=True)
+    return root + mean + vigour * (local - mean)
+
+
+def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
+    """Slow displacement (time, 1, 3) in metres of a stationary person, at this rms speed."""
+    frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
+    omega = 2 * np.pi * frequency_hz
+    shift_m = (np.sin(omega * time_s + phase) / omega).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
+    return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
+
+
+def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
+    """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
+
+    Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.
+    """
+    across = joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]
+    across = across * (1.0, 1.0, 0.0)
+    across = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-6)
+    feet = joints_m[:, [joint("left_ankle"), joint("right_ankle")]]
+    apart_m = float(np.median(((feet[:, 0] - feet[:, 1]) * across).sum(axis=-1)))
+    half_m = 0.5 * wider_m * float(np.clip((FAR_APART_M - apart_m) / (FAR_APART_M - CLOSE_M), 0.0, 1.0))
+    wider = joints_m.copy()
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        for part, share in (("knee", 0.5), ("ankle", 1.0), ("foot", 1.0)):
+            wider[:, joint(f"{side}_{part}")] += sign * share * half_m * across
+    height_m = feet[..., 2] - feet[..., 2].min(axis=0)
+    lifted = rise(height_m / LIFTED_M)  # (frame, side)
+    over_m = half_m * (lifted[:, 1] - lifted[:, 0])
+    feet_of = [joint(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
+    knees = [joint("left_knee"), joint("right_knee")]
+    share = np.ones(joints_m.shape[1])
+    share[knees] = 0.5
+    share[feet_of] = 0.0
+    return wider + share[:, None] * (over_m[:, None] * across)[:, None]
+
+
+def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray:
+    """Times (time,) of a movement on the spot that is slow near the pose it begins in, and faster far from it.
+
+    The tempo at the far end is 1 + `linger` times that at the near end; the whole lasts as long. Movements of less than
+    3 cm (rms over joints) keep their times.
+    """
+    local = joints_m - joints_m[:, :1] * (1.0, 1.0, 0.0)
+    far_m = np.sqrt(((local - local[0]) ** 2).sum(axis=-1).mean(axis=-1))
+    near, most = np.percentile(far_m[time_s >= LEAD_S], (5, 95))
+    if most - near < LEAST_MOVED_M:
+        return time_s
+    slower = 1 / (1 + linger * ((far_m - near) / (most - near)).clip(0, 1))
+    gone = _integral(slower, time_s)
+    return time_s[0] + gone * (time_s[-1] - time_s[0]) / gone[-1]
+
+
+def slow_at_turns(time_s: np.ndarray, joints_m: Joints, slower: float) -> np.ndarray:
+    """Times (time,) of a way on which whoever stands takes 1 + `slower` times as long, and who walks as long as before.
+
+    In between in proportion to the speed of the pelvis, relative to that which three quarters of the time it is below.
+    """
+    step_m = np.linalg.norm(np.gradient(joints_m[:, joint("pelvis"), :2], axis=0), axis=-1)
+    speed_mps = step_m / np.gradient(time_s)
+    usual_mps = max(float(np.quantile(speed_mps[time_s >= LEAD_S], 0.75)), SLOWEST_MPS)
+    longer = 1 + slower * (1 - speed_mps / usual_mps).clip(0, 1)
+    return time_s[0] + _integral(longer, time_s)
+
+
+def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:
+    """The motion with a rest before and after: time 0 is the rest's beginning."""
+    step_s = 0.05
+    before = np.arange(-step_s, before_s - 0.02, step_s)
+    started = pose.time_s >= 0.0
+    time_s, joints_m = pose.time_s[started] + before_s, pose.joints_m[started]
+    after = time_s[-1] + step_s * np.arange(1, int(after_s / step_s) + 4)
+    held_m = np.pad(joints_m, ((len(before), len(after)), (0, 0), (0, 0)), mode="edge")
+    return replace(pose, time_s=np.concatenate([before, time_s, after]), joints_m=held_m)

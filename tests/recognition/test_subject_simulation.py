@@ -1,0 +1,143 @@
+"""How people perform: single gestures brisk and wide by people who hold still, standing people still, others sway."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.recognition.subject_simulation import (
+    Performance,
+    PerformancePrior,
+    lingering,
+    perform,
+    performer,
+    slow_at_turns,
+    task_variation,
+    with_feet_apart,
+)
+from mmweaver.recognition.task_file import Mount
+from mmweaver.recognition.train_pose import POSE_PRIOR
+
+PRIOR = PerformancePrior()
+
+
+def performance(sentence: str, index: int, seconds: float, *, once: bool = False) -> Performance:
+    who = performer(PRIOR, task_variation(Mount()), index, 0)
+    return perform(who, PRIOR, sentence, seconds=seconds, once=once, rng=stream(0, "performance", index))
+
+
+def speeds_mps(sentence: str, part: str, *, once: bool) -> list[float]:
+    """Greatest horizontal speed of a joint of some people."""
+    found = []
+    for index in range(8):
+        did = performance(sentence, index, 4.0, once=once)
+        place_m, time_s = did.pose.joints_m[:, joint(part), :2], did.pose.time_s
+        inside = (time_s >= 0) & (time_s <= did.lasts_s)
+        found.append(float(np.linalg.norm(np.gradient(place_m[inside], time_s[inside], axis=0), axis=1).max()))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("sentence", "once", "between_mps"),
+    [
+        ("a person stands", False, (0.02, 0.3)),
+        ("a person claps", False, (0.15, 1.0)),
+        ("a person claps", True, (0.0, 0.15)),
+    ],
+)
+def test_who_holds_still_sways_little(sentence: str, once: bool, between_mps: tuple[float, float]):
+    """Less for a gesture than to stay in a posture, and less for that than for what goes on on the spot."""
+    fastest = max(speeds_mps(sentence, "pelvis", once=once))
+    assert between_mps[0] < fastest < between_mps[1]
+
+
+@pytest.mark.parametrize("sentence", ["a person falls", "a person sits down on a chair"])
+def test_what_happens_once_is_in_every_sequence(sentence: str):
+    """Whoever falls stands first and lies at the end, in people of any tempo."""
+    for index in range(6):
+        did = performance(sentence, index, 6.0)
+        assert did.lasts_s == 6.0
+        assert did.pose.time_s[-1] > 6.0
+        height_m = np.interp([0.0, 0.1, 6.0], did.pose.time_s, did.pose.joints_m[:, joint("pelvis"), 2])
+        assert height_m[1] == pytest.approx(height_m[0], abs=0.02)
+        assert height_m[2] < height_m[0] - 0.15
+
+
+def test_what_is_counted_goes_on():
+    """Three jumps are not all of it: people who "jump repeatedly" jump in the last second, too."""
+    for index in range(6):
+        did = performance("a person jumps repeatedly", index, 4.0)
+        last = (did.pose.time_s > 2.3) & (did.pose.time_s <= 4.0)
+        assert np.ptp(did.pose.joints_m[last, joint("pelvis"), 2]) > 0.05
+
+
+def test_a_gesture_done_once_is_brisk():
+    assert np.median(speeds_mps("a person pushes the right hand forward", "right_wrist", once=True)) > 1.2
+
+
+def test_the_feet_of_pose_networks_people_are_farther_apart():
+    found = []
+    for wider_m in (0.0, 0.3):
+        prior = replace(POSE_PRIOR, wider_m=(wider_m, wider_m))
+        who = performer(prior, task_variation(Mount()), 3, 0)
+        did = perform(who, prior, "a person raises both arms", seconds=4.0, once=False, rng=stream(0, "performance"))
+        apart_m = did.pose.joints_m[:, joint("left_ankle")] - did.pose.joints_m[:, joint("right_ankle")]
+        found.append(np.linalg.norm(apart_m[:, :2], axis=-1))
+    np.testing.assert_allclose(found[1] - found[0], 0.3, atol=0.03)
+    assert PRIOR.wider_m == (0.0, 0.0)
+
+
+def drawn_stance(apart_m: float) -> np.ndarray:
+    """Joints (1, 22, 3) of somebody who faces the radar, with the ankles this far apart on the floor."""
+    joints_m = np.zeros((1, 22, 3))
+    joints_m[0, :, 2] = 1.0
+    for side, sign in (("left", 0.5), ("right", -0.5)):
+        joints_m[0, joint(f"{side}_hip")] = (0.2 * sign, 2.0, 0.9)
+        for part, height in (("knee", 0.5), ("ankle", 0.08), ("foot", 0.02)):
+            joints_m[0, joint(f"{side}_{part}")] = (apart_m * sign, 2.0, height)
+    return joints_m
+
+
+def test_legs_that_are_apart_already_are_not_spread():
+    np.testing.assert_array_equal(with_feet_apart(drawn_stance(0.6), 0.2), drawn_stance(0.6))
+
+
+def test_the_body_is_over_the_foot_that_stands():
+    both = np.repeat(drawn_stance(0.2), 2, axis=0)
+    both[1, [joint("left_ankle"), joint("left_foot")], 2] += 0.3
+    wider = with_feet_apart(both, 0.2)
+    standing = wider[:, joint("right_ankle"), 0] - wider[:, joint("pelvis"), 0]
+    np.testing.assert_allclose(standing - both[:, joint("right_ankle"), 0], (-0.1, 0.0), atol=1e-9)
+    np.testing.assert_allclose(wider[:, joint("right_ankle")], wider[:1, joint("right_ankle")].repeat(2, 0))
+
+
+def test_who_lingers_stays_longer_where_the_movement_begins():
+    time_s = np.arange(0.0, 12.0, 0.05)
+    joints_m = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
+    high = 0.5 - 0.5 * np.cos(2 * np.pi * time_s / 3)
+    joints_m[:, joint("left_wrist"), 2] += 1.5 * high
+    low_s = [
+        np.gradient(lingering(time_s, joints_m, linger))[high < 0.3].sum() for linger in (0.0, 3.0)
+    ]  # the time spent low
+    assert low_s[1] > 1.3 * low_s[0]
+    warped_s = lingering(time_s, joints_m, 3.0)
+    assert (np.diff(warped_s) > 0).all()
+    np.testing.assert_allclose(warped_s[[0, -1]], time_s[[0, -1]])
+    still = np.repeat(drawn_stance(0.2), len(time_s), axis=0)
+    np.testing.assert_array_equal(lingering(time_s, still, 3.0), time_s)
+
+
+def test_who_turns_slowly_takes_longer_where_the_way_ends_and_nowhere_else():
+    time_s = np.arange(0, 12, 1 / 60)
+    joints_m = np.zeros((len(time_s), 22, 3))  # who stands from 4 to 5 and from 9 to 10 s
+    joints_m[:, :, 1] = np.interp(time_s, [0, 4, 5, 9, 10, 14], [0, 2.8, 2.8, 0, 0, 2.8])[
+        :, None
+    ]  # stands at 4 and 9 s
+    slower_s = slow_at_turns(time_s, joints_m, 2.0)
+    took_s = np.interp([3.9, 5.1, 8.9], time_s, slower_s)
+    assert took_s[0] == pytest.approx(3.9, abs=0.1)
+    assert took_s[1] - took_s[0] == pytest.approx(3.2, abs=0.2)  # one second became three
+    assert took_s[2] - took_s[1] == pytest.approx(3.8, abs=0.1)
+    np.testing.assert_allclose(slow_at_turns(time_s, joints_m, 0.0), time_s)
