@@ -83,8 +83,8 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     `reconstruct` and `LearnedRoom`, which stay as they are.
     """
     from mmweaver.methods import Learned
+    from mmweaver.scene.multiview import reconstruct_together
     from mmweaver.scene.reconstruction import reconstruct
-    from mmweaver.scene.whole_room import reconstruct_together
 
     scenes: dict[str, Scene] = {}
 

@@ -10,6 +10,8 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
 from mmweaver.generation import Room
 from mmweaver.result_folder import file_digest
+from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
+from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
 from mmweaver.scene.photo.posed_photo import PosedPhoto
@@ -19,8 +21,6 @@ from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
-from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
-from mmweaver.scene.whole_room.view_file import read_views
 
 VIEWS_FILE = "views.json"
 
@@ -55,7 +55,7 @@ class RoomReader:
     def read_views(self, views: str | Path, *, segmenter: str | None = None) -> Room:
         """The room of several photos with depth, which views.json names with where each was taken.
 
-        The radar stands at the first; see `scene.whole_room.view_file`. `segmenter` as in `read_room`.
+        The radar stands at the first; see `scene.multiview.view_file`. `segmenter` as in `read_room`.
         """
         stages = Stages(self._listener)
         with stages("read the photos"):

@@ -28,11 +28,11 @@ from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
-from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
 from studies.manifest import StudyRun
 from studies.network.learned_scores import (
     BASELINES,

@@ -50,20 +50,6 @@ def mask2former(folder: Path) -> str:
     return _saved(t.Mask2FormerForUniversalSegmentation(config), processor, folder)
 
 
-def maskformer(folder: Path) -> str:
-    t = _transformers()
-    decoder = t.DetrConfig(
-        d_model=32, encoder_layers=1, decoder_layers=1, encoder_ffn_dim=16, decoder_ffn_dim=16,
-        encoder_attention_heads=2, decoder_attention_heads=2, num_queries=5, use_timm_backbone=False,
-        use_pretrained_backbone=False, backbone=None, backbone_config=t.ResNetConfig(),
-    )  # fmt: skip
-    config = t.MaskFormerConfig(
-        backbone_config=_swin(t), decoder_config=decoder, fpn_feature_size=32, mask_feature_size=32, id2label=ADE
-    )
-    processor = t.MaskFormerImageProcessorPil(size={"height": 64, "width": 64})
-    return _saved(t.MaskFormerForInstanceSegmentation(config), processor, folder)
-
-
 def sam(folder: Path) -> str:
     t = _transformers()
     config = t.SamConfig(

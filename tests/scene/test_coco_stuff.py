@@ -3,7 +3,7 @@
 import pytest
 
 from mmweaver.paths.materials import MATERIALS
-from mmweaver.scene.coco_stuff import ALIASES, GLASS, MATERIAL, MIRRORS, NAMES, coco_class, material_of
+from mmweaver.scene.coco_stuff import ALIASES, GLASS, MATERIAL, MIRRORS, NAMES, coco_class
 
 
 def test_numbers_are_those_of_coco_stuff():
@@ -32,8 +32,3 @@ def test_every_name_used_is_a_class_and_every_material_one_of_the_simulators():
 )  # fmt: skip
 def test_labels_of_ade20k_and_coco_panoptic(label: str, name: str | None):
     assert coco_class(label) == name
-
-
-def test_a_class_without_a_material():
-    assert material_of("wall-other") is None
-    assert material_of("window-other") == "glass"

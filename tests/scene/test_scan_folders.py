@@ -120,22 +120,6 @@ def test_a_scan_is_the_upright_photo(write: Callable[[Path, int], None], clockwi
     assert np.abs(found.rgb[::step, ::step].astype(int) - rgb).mean() < 8
 
 
-def test_record3d_is_read_as_it_was_shown(tmp_path: Path):
-    record3d(tmp_path)
-    _, depth_m, numbers = lying(0)
-    assert scan_kind(tmp_path) == "Record3D"
-    read = read_scan_photo(tmp_path)
-    camera = resized(read.photo.intrinsics, *SIZE)
-    assert (camera.fx, camera.fy, camera.cx, camera.cy) == pytest.approx(numbers, abs=0.01)
-    assert_same_depth(read.photo, depth_m)
-    depth = tmp_path / "rgbd" / "0.depth"
-    whole = depth.read_bytes()
-    for damaged, says in ((whole[:500], "no LZFSE file"), (b"bvx-\4\0\0\0abcdbvx$", "4 bytes"), (b"", "no LZFSE")):
-        depth.write_bytes(damaged)
-        with pytest.raises(InputError, match=says):
-            read_scan_photo(tmp_path)
-
-
 @pytest.mark.parametrize("write", [stray, polycam, record3d])
 def test_depth_of_the_lowest_confidence_is_left_out(write: Callable[[Path, int], None], tmp_path: Path):
     write(tmp_path, 0)
@@ -158,25 +142,12 @@ def test_depth_of_the_lowest_confidence_is_left_out(write: Callable[[Path, int],
     assert "lowest confidence" in " ".join(found.assumptions)
 
 
-def test_an_old_table_of_poses_has_a_line_a_frame(tmp_path: Path):
-    stray(tmp_path, 1)
-    (tmp_path / "odometry.csv").write_text("0.0, 0.0, 0.0, " + ", ".join(map(str, QUATERNIONS[1])))
-    assert_same_depth(read_scan_photo(tmp_path).photo, lying(0)[1])
-
-
 def test_tum_has_its_unit_and_camera(tmp_path: Path):
     tum(tmp_path / "rgbd_dataset_freiburg1_room")
     read = read_scan_photo(tmp_path / "rgbd_dataset_freiburg1_room")
     assert_same_depth(read.photo, lying(0)[1])
     assert resized(read.photo.intrinsics, 640, 480).fx == pytest.approx(517.3, abs=0.1)
     assert "freiburg1" in " ".join(read.assumptions)
-
-
-def test_a_room_of_a_scan(tmp_path: Path):
-    polycam(tmp_path, 1)
-    room = Weaver().read_capture(tmp_path)
-    assert room.scene.floor_z_m == pytest.approx(Weaver().sample_room().scene.floor_z_m, abs=0.03)
-    assert set(room.inputs) >= {"photo", "rgb", "depth"}
 
 
 def test_a_room_is_opened_whatever_it_is(tmp_path: Path):

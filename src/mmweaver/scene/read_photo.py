@@ -84,7 +84,7 @@ def read_photo(
     height, width = depth_m.shape
     numbers = {"width": float(rgb_size[0]), "height": float(rgb_size[1]), **numbers}
     intrinsics, lens_note = (
-        _without_camera_file(rgb_size, (width, height), turned, None if estimated is None else estimated.focal_px)
+        _default_intrinsics(rgb_size, (width, height), turned, None if estimated is None else estimated.focal_px)
         if camera is None
         else (intrinsics_for(camera, numbers, width, height), None)
     )
@@ -161,7 +161,7 @@ def to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, 
     return colours, np.repeat(np.repeat(depth_m, factor, axis=0), factor, axis=1), (note,)
 
 
-def _without_camera_file(
+def _default_intrinsics(
     rgb_size: tuple[int, int], size: tuple[int, int], turned: Turned, focal_px: float | None
 ) -> tuple[CameraIntrinsics, str]:
     """Intrinsics of a picture resampled from `rgb_size` to `size`, and the sentence that says what they come from.

@@ -97,14 +97,14 @@ def _topics(bag: Any) -> dict[str, list[str]]:
     return {"depth": depth, "colour": colour}
 
 
-def _of_topic(bag: Any, topic: str) -> list[Any]:
+def _connections(bag: Any, topic: str) -> list[Any]:
     return [one for one in bag.connections if one.topic == topic]
 
 
 def _message(bag: Any, read: Callable[..., Any], topic: str, index: int) -> tuple[Any, int]:
     """Message `index` of a topic, and its time in nanoseconds."""
     count = 0
-    for count, (connection, time_ns, raw) in enumerate(bag.messages(_of_topic(bag, topic))):
+    for count, (connection, time_ns, raw) in enumerate(bag.messages(_connections(bag, topic))):
         if count == index:
             return read(raw, connection.msgtype), time_ns
     raise InputError(f"{bag.path} holds {count + 1} depth pictures; there is no photo {index}")
@@ -113,7 +113,7 @@ def _message(bag: Any, read: Callable[..., Any], topic: str, index: int) -> tupl
 def _nearest(bag: Any, read: Callable[..., Any], topic: str, time_ns: int) -> tuple[Any, int]:
     """The message of a topic nearest to a time, and how far it is, in nanoseconds."""
     best: tuple[int, Any, Any] | None = None
-    for connection, own_ns, raw in bag.messages(_of_topic(bag, topic)):
+    for connection, own_ns, raw in bag.messages(_connections(bag, topic)):
         apart = abs(own_ns - time_ns)
         if best is None or apart < best[0]:
             best = apart, connection, raw

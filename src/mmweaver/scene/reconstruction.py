@@ -8,16 +8,16 @@ from jaxtyping import Float
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane, RgbdPhoto, Scene
-from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
-from mmweaver.scene.affordances.assumed_floor import find_assumed_floor
+from mmweaver.core.shapes import Array
+from mmweaver.scene.affordances.free_space import find_assumed_floor
 from mmweaver.scene.affordances.landmarks import find_landmarks
-from mmweaver.scene.layout.mesh import floor_faces
-from mmweaver.scene.layout.room_layout import estimate_layout, wall_faces
+from mmweaver.scene.layout.mesh import joined_meshes, rectangle_faces
+from mmweaver.scene.layout.panes import add_wall_panels, find_wall_panels
+from mmweaver.scene.layout.room_layout import estimate_layout
 from mmweaver.scene.layout.surface_materials import ASSUMPTION, ASSUMPTION_OF_CLASSES, MATERIAL_NAMES
 from mmweaver.scene.layout.surfaces import AlignedGrid
-from mmweaver.scene.layout.wall_panels import find_wall_panels, with_wall_panels
 from mmweaver.scene.photo.depth_grid import GridBool
-from mmweaver.scene.seen_room import see
+from mmweaver.scene.single_view import see
 
 DEFAULT_FLOOR = "concrete"  # where none is seen
 _FLOOR_MARGIN_M = 0.3
@@ -41,16 +41,15 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     free_space = replace(seen.free_space, is_assumed=assumed)
 
     # 3. Mesh for the ray caster.
-    vertices_m, faces, face_material = seen.mesh()
-    corners_m, large_faces, large_material = completed_faces(floor, layout.extended)
+    vertices_m, faces, face_material = joined_meshes([seen.mesh(), rectangle_faces([floor, *layout.extended])])
     return Scene(
         photo=seen.view.photo,
         radar_from_camera=seen.room.radar_from_camera,
-        vertices_m=np.concatenate([vertices_m, corners_m]),
-        faces=np.concatenate([faces, large_faces + len(vertices_m)]),
-        face_material=np.concatenate([face_material, large_material]),
+        vertices_m=vertices_m,
+        faces=faces,
+        face_material=face_material,
         material_names=MATERIAL_NAMES,
-        planes=(floor, *with_wall_panels(layout.planes, panels, layout.extended)),
+        planes=(floor, *add_wall_panels(layout.planes, panels, layout.extended)),
         floor_z_m=seen.view.floor_z_m,
         free_space=free_space,
         seats=seen.seats,
@@ -61,18 +60,6 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
             *layout.assumptions,
             *general_assumptions(floor, has_classes=photo.classes is not None),
         ),
-    )
-
-
-def completed_faces(floor: Plane, walls: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
-    """The floor and the extended walls as two triangles each: vertices in metres, faces, material of each face."""
-    corners_m, triangles = floor_faces(floor)
-    wall_corners_m, wall_triangles = wall_faces(walls)
-    names = [plane.material for plane in (floor, *walls) for _ in range(2)]
-    return (
-        np.concatenate([corners_m, wall_corners_m]),
-        np.concatenate([triangles, wall_triangles + len(corners_m)]),
-        np.array([MATERIAL_NAMES.index(name) for name in names]),
     )
 
 

@@ -18,6 +18,7 @@ from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.geometry.pinhole import resized, rotated_clockwise
+from mmweaver.scene.multiview.scan_poses import scan_pose, spread_out
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.lzfse import read_lzfse
 from mmweaver.scene.photo.number_table import number_table
@@ -26,10 +27,10 @@ from mmweaver.scene.photo.posed_photo import Pose, PosedPhoto
 from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
 from mmweaver.scene.photo.video_frame import read_video_frame
 from mmweaver.scene.read_photo import to_common_size
-from mmweaver.scene.whole_room.scan_poses import scan_pose, spread_out
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
-MOST_DOUBTFUL = 0.7  # share of the depth: where more is of the lowest confidence there is nothing better
+MAX_DOUBTFUL = 0.7  # share of the depth: where more is of the lowest confidence there is nothing better
+UP_AXIS = {"Stray Scanner": 1, "Record3D": 1, "ScanNet": 2}  # of the poses' world, y or z
 TUM_APART_S = 0.03  # colour and depth farther apart are of other moments
 # fx, fy, cx, cy of 640 x 480 (Sturm et al., IROS 2012, and the data set's page); by default those of ROS
 TUM_CAMERAS = {
@@ -56,17 +57,11 @@ def scan_kind(folder: Path) -> str | None:
     >>> scan_kind(Path("no_such_folder")) is None
     True
     """
-    if (folder / "camera_matrix.csv").is_file() and (folder / "depth").is_dir():
-        return "Stray Scanner"
-    if (folder / "metadata").is_file() and (folder / "rgbd").is_dir():
-        return "Record3D"
-    if (folder / "keyframes" / "depth").is_dir():
-        return "Polycam"
-    if (folder / "intrinsic").is_dir() and (folder / "color").is_dir() and (folder / "depth").is_dir():
-        return "ScanNet"
-    if (folder / "rgb").is_dir() and (folder / "depth").is_dir():
-        return "TUM RGB-D"
-    return None
+    markers = {
+        "Stray Scanner": ("camera_matrix.csv", "depth"), "Record3D": ("metadata", "rgbd"),
+        "Polycam": ("keyframes/depth",), "ScanNet": ("intrinsic", "color", "depth"), "TUM RGB-D": ("rgb", "depth"),
+    }  # fmt: skip
+    return next((kind for kind, names in markers.items() if all((folder / name).exists() for name in names)), None)
 
 
 def refuse_unread(place: Path) -> None:
@@ -92,15 +87,15 @@ def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str =
     kind = scan_kind(folder)
     if kind is None:
         raise InputError(f"{folder} is no scan of Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D")
-    photo, files, notes, turns = _upright_photo(folder, kind, index)
+    pictures = _pictures(folder, kind)
+    photo, files, notes, turns = _upright_photo(folder, kind, pictures, index)
     others: list[PosedPhoto] = []
     if further:
-        pictures = _pictures(folder, kind)
         first = _pose_of(folder, kind, pictures, index, turns)
         if further == "auto":
             further = spread_out([scan_pose(folder, kind, one) for one in pictures], index)
         for number in further:
-            other, other_files, _, other_turns = _upright_photo(folder, kind, int(number))
+            other, other_files, _, other_turns = _upright_photo(folder, kind, pictures, int(number))
             pose = np.linalg.inv(first) @ _pose_of(folder, kind, pictures, int(number), other_turns)
             others.append(PosedPhoto(photo=other, pose=pose))
             files = files | {f"{name} {number}": file for name, file in other_files.items()}
@@ -109,31 +104,48 @@ def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str =
     return CapturedPhoto(photo=photo, folder=folder, files=files, assumptions=notes, others=tuple(others))
 
 
-def _upright_photo(folder: Path, kind: str, index: int) -> tuple[RgbdPhoto, dict[str, Path], tuple[str, ...], int]:
+def _upright_photo(
+    folder: Path, kind: str, pictures: Sequence[Path], index: int
+) -> tuple[RgbdPhoto, dict[str, Path], tuple[str, ...], int]:
     """The photo turned upright, its files, what was assumed, and by how many quarters it was turned."""
-    frame = _READERS[kind](folder, index)
-    rgb, depth_m, camera, turns = _upright(frame)
-    depth_m, fill_notes = fill_scattered_holes(depth_m)
-    rgb, depth_m, size_notes = to_common_size(rgb, depth_m)
+    if not 0 <= index < len(pictures):
+        raise InputError(f"{folder} holds {len(pictures)} pictures; there is no photo {index}")
+    frame = _READERS[kind](folder, pictures[index], index)
+    up, notes = frame.up, frame.notes
+    if kind in UP_AXIS:
+        pose, axis = scan_pose(folder, kind, pictures[index]), UP_AXIS[kind]
+        if pose is None:
+            notes = ("The scan says no pose of this photo: it was taken as upright.", *notes)
+        else:
+            up = (float(pose[axis, 0]), -float(pose[axis, 1]))
+    turns = int(np.rint(np.arctan2(*up) / (np.pi / 2))) % 4  # counterclockwise, 90 degrees each
+    camera = frame.camera
+    for _ in range((4 - turns) % 4):
+        camera = rotated_clockwise(camera)
+    depth_m, fill_notes = fill_scattered_holes(np.rot90(frame.depth_m, turns).copy())
+    rgb, depth_m, size_notes = to_common_size(np.rot90(frame.rgb, turns).copy(), depth_m)
     photo = RgbdPhoto(rgb=rgb, depth_m=depth_m, intrinsics=resized(camera, depth_m.shape[1], depth_m.shape[0]))
-    return photo, frame.files, (*frame.notes, *fill_notes, *size_notes), turns
+    return photo, frame.files, (*notes, *fill_notes, *size_notes), turns
 
 
 def _pictures(folder: Path, kind: str) -> list[Path]:
     """The pictures by whose names frames are known, in order."""
     where, endings = {
         "Stray Scanner": ("depth", (".png",)), "Record3D": ("rgbd", (".jpg",)), "ScanNet": ("color", (".jpg", ".png")),
-        "TUM RGB-D": ("rgb", (".png", ".jpg")),
-        "Polycam": ("keyframes/corrected_images" if (folder / "keyframes" / "corrected_images").is_dir()
-                    else "keyframes/images", (".jpg",)),
+        "TUM RGB-D": ("rgb", (".png", ".jpg")), "Polycam": (f"keyframes/{_corrected(folder)}images", (".jpg",)),
     }[kind]  # fmt: skip
-    return _in_order(folder / where, *endings)
+    place = folder / where
+    files = [file for file in place.iterdir() if file.suffix.lower() in endings] if place.is_dir() else []
+    return sorted(files, key=lambda file: (len(file.stem), file.stem) if file.stem.isdigit() else (0, file.stem))
+
+
+def _corrected(folder: Path) -> str:
+    """How the names of Polycam's folders begin."""
+    return "corrected_" if (folder / "keyframes" / "corrected_images").is_dir() else ""
 
 
 def _pose_of(folder: Path, kind: str, pictures: Sequence[Path], index: int, turns: int) -> Pose:
     """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
-    if not 0 <= index < len(pictures):
-        raise InputError(f"{folder} holds {len(pictures)} pictures; there is no photo {index}")
     pose = scan_pose(folder, kind, pictures[index])
     if pose is None:
         raise InputError(f"{folder}: the scan says no pose for photo {index}; photos are joined by their poses")
@@ -141,12 +153,12 @@ def _pose_of(folder: Path, kind: str, pictures: Sequence[Path], index: int, turn
     return pose @ np.linalg.matrix_power(quarter, turns).T
 
 
-def _stray(folder: Path, index: int) -> _Frame:
+def _stray(folder: Path, picture: Path, index: int) -> _Frame:
     """rgb.mp4, depth/000000.png in millimetres, confidence/ (0, 1, 2), camera_matrix.csv of the video, odometry.csv.
 
     The table has poses and, of newer versions, the camera of each frame.
     """
-    depth = _chosen(folder / "depth", index, ".png")
+    depth = picture
     matrix = number_table(folder / "camera_matrix.csv")
     if matrix.shape != (3, 3):
         raise InputError(f"{folder / 'camera_matrix.csv'} holds {matrix.shape} numbers; it must be 3 x 3")
@@ -158,20 +170,18 @@ def _stray(folder: Path, index: int) -> _Frame:
     own = said[said[:, 1] == number] if said.shape[1] >= 13 else said[:0]
     if len(own):
         lens = [float(value) for value in own[0, 9:13]]
-    up, notes = _up_of_pose(folder, "Stray Scanner", depth, 1)
-    depth_m, doubts = _without_doubtful(read_depth(depth, MILLIMETRE)[0], folder / "confidence" / depth.name)
+    depth_m, doubts = _drop_doubtful(read_depth(depth, MILLIMETRE)[0], folder / "confidence" / depth.name)
     files = {"rgb": video, "depth": depth}
-    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), up=up, files=files, notes=notes + doubts)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), files=files, notes=doubts)
 
 
-def _record3d(folder: Path, index: int) -> _Frame:
+def _record3d(folder: Path, picture: Path, index: int) -> _Frame:
     """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns, perFrameIntrinsicCoeffs, poses), rgbd/0.jpg,
     rgbd/0.depth (float32 metres, LZFSE), rgbd/0.conf (0, 1, 2; LZFSE).
 
     Pictures are stored upright in portrait; of a phone held across they lie on their side.
     """
-    colour = _chosen(folder / "rgbd", index, ".jpg")
-    depth, doubt = colour.with_suffix(".depth"), colour.with_suffix(".conf")
+    colour, depth, doubt = picture, picture.with_suffix(".depth"), picture.with_suffix(".conf")
     said, rgb = read_json(folder / "metadata"), read_rgb(colour)[0]
     try:
         lens = [float(said["K"][at]) for at in (0, 4, 6, 7)]
@@ -189,49 +199,46 @@ def _record3d(folder: Path, index: int) -> _Frame:
     doubts: tuple[str, ...] = ()
     if doubt.is_file():
         confidence = np.frombuffer(read_lzfse(doubt, rows * columns), np.uint8).reshape(rows, columns)
-        depth_m, doubts = _left_out(depth_m, confidence == 0)
-    up, notes = _up_of_pose(folder, "Record3D", colour, 1)
+        depth_m, doubts = _drop_pixels(depth_m, confidence == 0)
     files = {"rgb": colour, "depth": depth, "camera": folder / "metadata"}
-    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), files=files, up=up, notes=notes + doubts)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(*lens, rgb), files=files, notes=doubts)
 
 
-def _polycam(folder: Path, index: int) -> _Frame:
+def _polycam(folder: Path, picture: Path, index: int) -> _Frame:
     """keyframes/: images, depth in millimetres, confidence (0, 127, 255) and cameras (JSON with fx, fy, cx, cy and the
     pose t_ij, y up).
     """
     keyframes = folder / "keyframes"
-    kind = "corrected_" if (keyframes / "corrected_images").is_dir() else ""
-    colour = _chosen(keyframes / f"{kind}images", index, ".jpg")
-    depth, place = keyframes / "depth" / f"{colour.stem}.png", keyframes / f"{kind}cameras" / f"{colour.stem}.json"
+    colour, depth = picture, keyframes / "depth" / f"{picture.stem}.png"
+    place = keyframes / f"{_corrected(folder)}cameras" / f"{picture.stem}.json"
     said, rgb = read_json(place), read_rgb(colour)[0]
     try:
         fx, fy, cx, cy, right, top = (float(said[key]) for key in ("fx", "fy", "cx", "cy", "t_10", "t_11"))
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{place} lacks fx, fy, cx, cy or the pose t_10, t_11") from None
-    depth_m, doubts = _without_doubtful(read_depth(depth, MILLIMETRE)[0], keyframes / "confidence" / depth.name)
+    depth_m, doubts = _drop_doubtful(read_depth(depth, MILLIMETRE)[0], keyframes / "confidence" / depth.name)
     return _Frame(
         rgb=rgb, depth_m=depth_m, camera=_camera(fx, fy, cx, cy, rgb), up=(right, top), notes=doubts,
         files={"rgb": colour, "depth": depth, "camera": place},
     )  # fmt: skip
 
 
-def _scannet(folder: Path, index: int) -> _Frame:
+def _scannet(folder: Path, picture: Path, index: int) -> _Frame:
     """color/0.jpg, depth/0.png in millimetres, intrinsic/intrinsic_color.txt, pose/0.txt (camera to world, z up)."""
-    colour = _chosen(folder / "color", index, ".jpg", ".png")
-    depth, matrix = folder / "depth" / f"{colour.stem}.png", number_table(folder / "intrinsic" / "intrinsic_color.txt")
+    colour, depth = picture, folder / "depth" / f"{picture.stem}.png"
+    matrix = number_table(folder / "intrinsic" / "intrinsic_color.txt")
     if matrix.shape[0] < 3 or matrix.shape[1] < 3:
         raise InputError(f"{folder / 'intrinsic' / 'intrinsic_color.txt'} holds no 4 x 4 matrix")
     rgb = read_rgb(colour)[0]
-    up, notes = _up_of_pose(folder, "ScanNet", colour, 2)
     files = {"rgb": colour, "depth": depth}
     camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
     depth_m = read_depth(depth, MILLIMETRE)[0]
-    return _Frame(rgb=rgb, depth_m=depth_m, camera=camera, up=up, files=files, notes=notes)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=camera, files=files)
 
 
-def _tum(folder: Path, index: int) -> _Frame:
+def _tum(folder: Path, picture: Path, index: int) -> _Frame:
     """rgb/ and depth/ of PNGs named by their time in seconds, depth in 0.2 mm."""
-    colour = _chosen(folder / "rgb", index, ".png", ".jpg")
+    colour = picture
     depths = {_seconds(file): file for file in (folder / "depth").iterdir() if file.suffix == ".png"}
     nearest = min(depths, key=lambda time_s: abs(time_s - _seconds(colour)), default=np.inf)
     if abs(nearest - _seconds(colour)) > TUM_APART_S:
@@ -250,18 +257,6 @@ def _tum(folder: Path, index: int) -> _Frame:
 _READERS = {"Stray Scanner": _stray, "Record3D": _record3d, "Polycam": _polycam, "ScanNet": _scannet, "TUM RGB-D": _tum}
 
 
-def _chosen(folder: Path, index: int, *endings: str) -> Path:
-    files = _in_order(folder, *endings)
-    if not 0 <= index < len(files):
-        raise InputError(f"{folder} holds {len(files)} pictures ({', '.join(endings)}); there is no photo {index}")
-    return files[index]
-
-
-def _in_order(folder: Path, *endings: str) -> list[Path]:
-    files = [file for file in folder.iterdir() if file.suffix.lower() in endings] if folder.is_dir() else []
-    return sorted(files, key=lambda file: (len(file.stem), file.stem) if file.stem.isdigit() else (0, file.stem))
-
-
 def _seconds(file: Path) -> float:
     try:
         return float(file.stem)
@@ -276,37 +271,19 @@ def _camera(fx: float, fy: float, cx: float, cy: float, rgb: RgbPixels) -> Camer
     return CameraIntrinsics(fx=fx, fy=fy, cx=cx, cy=cy, width=width, height=height)
 
 
-def _up_of_pose(folder: Path, kind: str, picture: Path, axis: int) -> tuple[tuple[float, float], tuple[str, ...]]:
-    """Where the world's axis y (1) or z (2) points in the picture, to the right and to the top."""
-    pose = scan_pose(folder, kind, picture)
-    if pose is None:
-        return (0.0, 1.0), ("The scan says no pose of this photo: it was taken as upright.",)
-    return (float(pose[axis, 0]), -float(pose[axis, 1])), ()
-
-
-def _without_doubtful(depth_m: DepthPixels, file: Path) -> tuple[DepthPixels, tuple[str, ...]]:
+def _drop_doubtful(depth_m: DepthPixels, file: Path) -> tuple[DepthPixels, tuple[str, ...]]:
     """Depth without the pixels of the lowest confidence, 0 in a picture of the same size; all of it without one."""
     if not file.is_file():
         return depth_m, ()
     confidence = read_rgb(file)[0][..., 0]
     if confidence.shape != depth_m.shape:
         raise InputError(f"{file} has another size than the depth; export the scan again")
-    return _left_out(depth_m, confidence == 0)
+    return _drop_pixels(depth_m, confidence == 0)
 
 
-def _left_out(depth_m: DepthPixels, doubtful: np.ndarray) -> tuple[DepthPixels, tuple[str, ...]]:
+def _drop_pixels(depth_m: DepthPixels, doubtful: np.ndarray) -> tuple[DepthPixels, tuple[str, ...]]:
     share = float((doubtful & np.isfinite(depth_m)).sum() / max(np.isfinite(depth_m).sum(), 1))
-    if share == 0 or share > MOST_DOUBTFUL:
+    if share == 0 or share > MAX_DOUBTFUL:
         return depth_m, ()
     note = f"{100 * share:.0f} % of the depth, that of the lowest confidence, was left out."
     return np.where(doubtful, np.nan, depth_m), (note,)
-
-
-def _upright(frame: _Frame) -> tuple[RgbPixels, DepthPixels, CameraIntrinsics, int]:
-    """The pictures turned counterclockwise by so many quarters that the upward direction points to their top."""
-    right, top = frame.up
-    turns = int(np.rint(np.arctan2(right, top) / (np.pi / 2))) % 4  # counterclockwise, 90 degrees each
-    camera = frame.camera
-    for _ in range((4 - turns) % 4):
-        camera = rotated_clockwise(camera)
-    return np.rot90(frame.rgb, turns).copy(), np.rot90(frame.depth_m, turns).copy(), camera, turns

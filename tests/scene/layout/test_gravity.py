@@ -1,4 +1,4 @@
-"""Gravity and floor of rooms with known tilt and height."""
+"""Gravity and camera height, from rooms of boxes."""
 
 from collections.abc import Callable
 

@@ -4,8 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mmweaver.core.records import RgbdPhoto
-from mmweaver.geometry.pinhole import resized
 from mmweaver.scene.photo.depth_grid import make_grid, remove_outliers
 
 
@@ -37,13 +35,3 @@ def test_flying_pixels_and_speckle_are_dropped():
     assert np.isnan(cleaned[5, 4])
     assert cleaned[8, 5] == 2.0
     assert cleaned[8, 15] == 3.0
-
-
-def test_a_large_picture_gives_no_more_cells(box_room: Callable):
-    photo = box_room().photo()
-    large = RgbdPhoto(
-        rgb=np.repeat(np.repeat(photo.rgb, 4, 0), 4, 1),
-        depth_m=np.repeat(np.repeat(photo.depth_m, 4, 0), 4, 1),
-        intrinsics=resized(photo.intrinsics, 1280, 960),
-    )
-    assert make_grid(large).depth_m.shape == (120, 160)

@@ -72,11 +72,6 @@ def test_moge_gives_depth_and_focal_length(monkeypatch: pytest.MonkeyPatch):
     assert found.depth_m[1, 1] == 2.5
 
 
-def test_without_moge_it_says_where_it_is():
-    with pytest.raises(InputError, match="needs the package moge"):
-        estimate_depth(RGB, "Ruicheng/moge-2-vitl-normal")
-
-
 def test_a_camera_in_the_sky_is_noticed():
     assert scale_note(1.4) is None
     assert "4.00 m above the floor" in str(scale_note(4.0))

@@ -77,15 +77,6 @@ def test_a_modelled_room_that_stands_on_a_slab_has_the_floor_that_people_stand_o
     assert found.of_file(np.zeros(3))[2] == pytest.approx(0, abs=0.02)
 
 
-def test_what_a_glb_contradicts_is_said(tmp_path: Path):
-    lying = furnished(tmp_path / "lying.glb", np.eye(4))  # z up, against the format
-    assert "--mesh-up z" in " ".join(upright(lying, read_mesh(lying)).assumptions)
-    assert not upright(lying, read_mesh(lying), up="z").assumptions
-    millimetres = furnished(tmp_path / "mm.glb", Y_UP, 1000.0)
-    with pytest.raises(InputError, match="in mm it would be 6 m"):
-        upright(millimetres, read_mesh(millimetres))
-
-
 def test_the_room_is_the_one_that_was_modelled(tmp_path: Path):
     """From a place that is given: walls, floor and the seat of the sofa where they were put."""
     path = furnished(tmp_path / "room.glb", Y_UP)

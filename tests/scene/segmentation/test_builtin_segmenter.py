@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.scene.coco_stuff import NAMES
+from mmweaver.scene.coco_stuff import NAMES, SEGMENTER_GROUPS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.segmentation.builtin_segmenter import (
     GROUP_NAMES,
-    GROUPS,
     WEIGHTS,
     group_of_classes,
     load_network,
@@ -19,7 +18,7 @@ from mmweaver.scene.segmentation.builtin_segmenter import (
 
 
 def test_groups_are_classes_of_coco_stuff_and_each_class_is_in_one():
-    members = [name for group in GROUPS for name in group]
+    members = [name for group in SEGMENTER_GROUPS for name in group]
     assert set(members) <= set(NAMES)
     assert len(members) == len(set(members))
     assert group_of_classes(("couch", "pillow", "person")).tolist() == [GROUP_NAMES.index("couch")] * 2 + [0]

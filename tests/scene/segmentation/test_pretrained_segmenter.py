@@ -16,7 +16,7 @@ RGB = np.random.default_rng(0).integers(0, 255, (48, 80, 3), dtype=np.uint8)
 KNOWN = {0, *(NAMES.index(name) for name in ("wall-other", "floor-other", "couch", "window-other"))}
 
 
-@pytest.mark.parametrize("make", [models.segformer, models.mask2former, models.maskformer])
+@pytest.mark.parametrize("make", [models.segformer, models.mask2former])
 def test_every_model_family_gives_classes_of_coco_stuff(tmp_path: Path, make):
     mask = segment(RGB, make(tmp_path / "model"))
     assert mask.index.shape == RGB.shape[:2]
@@ -24,15 +24,6 @@ def test_every_model_family_gives_classes_of_coco_stuff(tmp_path: Path, make):
     assert set(np.unique(mask.index).tolist()) <= KNOWN
     again = segment(RGB, str(tmp_path / "model"))
     assert np.array_equal(mask.index, again.index)
-
-
-def test_the_models_labels_determine_the_classes(tmp_path: Path):
-    """The same weights under other labels give the same regions under other names."""
-    one = segment(RGB, models.segformer(tmp_path / "one"))
-    other = segment(RGB, models.segformer(tmp_path / "other", {0: "bed", 1: "door", 2: "tree", 3: "sky"}))
-    names = {"wall-other": "bed", "floor-other": "door", "couch": "tree", "window-other": "sky-other"}
-    for name, instead in names.items():
-        assert np.array_equal(one.index == NAMES.index(name), other.index == NAMES.index(instead)), name
 
 
 def test_sams_masks_are_masks_of_the_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

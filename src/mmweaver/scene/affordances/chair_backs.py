@@ -32,13 +32,13 @@ def chairs_behind_tables(
     labels, _ = label_components(is_back)
     found: list[Seat] = []
     for label in np.nonzero(np.bincount(labels.ravel())[1:] >= _LEAST_SQUARES)[0] + 1:
-        seat = _before_back(height_map, labels == label, tables)
+        seat = _seat_of_back(height_map, labels == label, tables)
         if seat is not None and not any(_are_near(seat, other) for other in (*seats, *found)):
             found.append(seat)
     return tuple(found)
 
 
-def _before_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Seat | None:
+def _seat_of_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Seat | None:
     places = np.argwhere(back)
     axes = np.linalg.eigh(np.cov(places.T))[1]
     thick_m, long_m = (np.ptp(places @ axes, axis=0) + 1) * CELL_M

@@ -1,19 +1,18 @@
 """Landmarks: tables, counters, beds, doors and windows, which a sentence may name as a place to go to."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import LANDMARK_KINDS, FreeSpace, Landmark, Plane, Scene, Seat
-from mmweaver.core.shapes import Array, GridMask, Vec3
+from mmweaver.core.shapes import GridMask
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.affordances.seats import bed_squares
 from mmweaver.scene.layout.class_evidence import landmark_points
 from mmweaver.scene.layout.connected_components import label_components
-from mmweaver.scene.layout.doors_and_windows import find_openings
+from mmweaver.scene.layout.doors_and_windows import LandmarkCandidate, find_openings
 from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 
 _TABLE_M, _COUNTER_M = (0.33, 0.82), (0.82, 1.02)  # heights above the floor
@@ -24,18 +23,6 @@ _BODY_RADIUS_M, _MAX_REACH_M = 0.27, 1.1  # a body's half width, and how far fro
 _MIN_SPACING_M = 0.5  # between landmarks of a kind
 _BEARING_BIN_RAD = 0.02
 _MAX_GIVEN_M = 10.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Candidate:
-    """A landmark before the place to stand at is known."""
-
-    kind: str
-    position_m: Vec3  # its middle
-    squares_m: Float[Array, "square 2"]  # (x, y) of the squares of floor that it covers
-
-    def is_near(self, other: "_Candidate") -> bool:
-        return bool(np.hypot(*(self.position_m - other.position_m)[:2]) <= _MIN_SPACING_M)
 
 
 def find_landmarks(
@@ -51,12 +38,10 @@ def find_landmarks(
     large as a bed; and parts of walls with the size of a door or window and another colour or no surface.
     """
     if view.photo.classes is not None:
-        candidates = _from_classes(view, planes)
+        candidates = _class_candidates(view, planes)
     else:
-        candidates = _horizontal_tops(view, height_map, seats)
-        for opening in find_openings(view, planes):
-            candidates.append(_Candidate(kind=opening.kind, position_m=opening.position_m, squares_m=opening.foot_m))
-    found = [_with_approach(candidate, free_space) for candidate in candidates]
+        candidates = [*_horizontal_tops(view, height_map, seats), *find_openings(view, planes)]
+    found = [_find_approach(candidate, free_space) for candidate in candidates]
     return tuple(sorted(found, key=lambda mark: (mark.kind, float(np.hypot(*mark.position_m[:2])))))
 
 
@@ -75,8 +60,8 @@ def with_given_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, f
                 f" for example {kind}=0.5,3"
             )
         position_m = np.array([x, y, scene.floor_z_m + 1.0])
-        candidate = _Candidate(kind=kind, position_m=position_m, squares_m=np.array([[x, y]]))
-        added.append(_with_approach(candidate, scene.free_space))
+        candidate = LandmarkCandidate(kind=kind, position_m=position_m, squares_m=np.array([[x, y]]))
+        added.append(_find_approach(candidate, scene.free_space))
     kinds = {kind for kind, _ in given}
     notes = tuple(f"The {kind} at x {x:g} m, y {y:g} m was given by the user, not detected." for kind, (x, y) in given)
     return replace(
@@ -86,7 +71,7 @@ def with_given_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, f
     )
 
 
-def _horizontal_tops(view: AlignedPhoto, height_map: HeightMap, seats: tuple[Seat, ...]) -> list[_Candidate]:
+def _horizontal_tops(view: AlignedPhoto, height_map: HeightMap, seats: tuple[Seat, ...]) -> list[LandmarkCandidate]:
     """Beds, tables and counters from the height map."""
     from scipy import ndimage
 
@@ -108,7 +93,7 @@ def _horizontal_tops(view: AlignedPhoto, height_map: HeightMap, seats: tuple[Sea
             kind = _kind_of_top(squares, height_m, view, height_map)
             candidate = _candidate(kind, squares, height_map)
             # The objects on a top may split it into several components.
-            if kind and not any(candidate.is_near(other) for other in found):
+            if kind and not any(_are_near(candidate, other) for other in found):
                 found.append(candidate)
             if kind or squares.sum() * CELL_M**2 >= _MIN_TABLE_M2:
                 taken |= squares
@@ -160,19 +145,23 @@ def _near_seats(height_map: HeightMap, seats: tuple[Seat, ...]) -> GridMask:
     return near
 
 
-def _candidate(kind: str, squares: GridMask, height_map: HeightMap) -> _Candidate:
+def _are_near(one: LandmarkCandidate, other: LandmarkCandidate) -> bool:
+    return bool(np.hypot(*(one.position_m - other.position_m)[:2]) <= _MIN_SPACING_M)
+
+
+def _candidate(kind: str, squares: GridMask, height_map: HeightMap) -> LandmarkCandidate:
     """The candidate that covers some squares, at the median height of their tops."""
     row, column = np.nonzero(squares)
     squares_m = np.stack([height_map.x_m[column], height_map.y_m[row]], axis=1)
     top_m = float(np.nanmedian(height_map.top_m[squares]))
     middle = (squares_m.min(axis=0) + squares_m.max(axis=0)) / 2
     position_m = np.array([middle[0], middle[1], height_map.floor_z_m + top_m])
-    return _Candidate(kind=kind, position_m=position_m, squares_m=squares_m)
+    return LandmarkCandidate(kind=kind, position_m=position_m, squares_m=squares_m)
 
 
-def _from_classes(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[_Candidate]:
+def _class_candidates(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[LandmarkCandidate]:
     """One candidate for each connected region of a landmark's class."""
-    found: list[_Candidate] = []
+    found: list[LandmarkCandidate] = []
     for kind, points in landmark_points(view, planes):
         if kind == "table":
             # The mask includes the legs; the landmark is the top.
@@ -180,13 +169,13 @@ def _from_classes(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[_Candid
             points = points[height_m > np.percentile(height_m, 60) - 0.05]
         low, high = np.percentile(points, [4, 96], axis=0)
         squares_m = np.unique(np.floor(points[:, :2] / CELL_M), axis=0) * CELL_M + CELL_M / 2
-        candidate = _Candidate(kind=kind, position_m=(low + high) / 2, squares_m=squares_m)
-        if not any(other.kind == kind and candidate.is_near(other) for other in found):
+        candidate = LandmarkCandidate(kind=kind, position_m=(low + high) / 2, squares_m=squares_m)
+        if not any(other.kind == kind and _are_near(candidate, other) for other in found):
             found.append(candidate)
     return found
 
 
-def _with_approach(candidate: _Candidate, free_space: FreeSpace) -> Landmark:
+def _find_approach(candidate: LandmarkCandidate, free_space: FreeSpace) -> Landmark:
     """The landmark with the place to stand at: the nearest free place that is wide enough for a body."""
     from scipy import ndimage
 

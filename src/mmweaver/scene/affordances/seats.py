@@ -121,7 +121,7 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     but for their backs come last.
     """
     seats = _seats_of(height_map, evidence)
-    whole = with_flat_planks(height_map, seats)
+    whole = complete_planks(height_map, seats)
     if not np.array_equal(whole.top_m, height_map.top_m, equal_nan=True):
         seats = _seats_of(whole, evidence)
     return (*seats, *chairs_behind_tables(height_map, table_squares(height_map), seats, evidence))
@@ -145,8 +145,8 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
         labelled = (evidence > 0) | (labelled & (evidence >= 0))
     is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
     on_stool, on_bench = (
-        _on_stool(height_map, is_seat_height, candidates),
-        _on_bench(height_map, is_seat_height, candidates),
+        _is_on_stool(height_map, is_seat_height, candidates),
+        _is_on_bench(height_map, is_seat_height, candidates),
     )
     inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
     is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
@@ -231,7 +231,7 @@ def cut_beds(near: GridMask) -> GridMask:
     return found
 
 
-def with_flat_planks(height_map: HeightMap, seats: tuple[Seat, ...]) -> HeightMap:
+def complete_planks(height_map: HeightMap, seats: tuple[Seat, ...]) -> HeightMap:
     """The map with the planks of benches whole on which no seat is found: at a flat angle little but edges is seen."""
     from scipy import ndimage
 
@@ -284,7 +284,7 @@ def _back_share(height_map: HeightMap, candidates: _Candidates) -> PerCandidate:
     return np.where(is_table, 0.0, share)
 
 
-def _on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
+def _is_on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
     """Whether a candidate is on an isolated patch of a stool's size and height."""
     labels, count = label_components(squares)
     is_stool = np.zeros(count + 1, bool)
@@ -296,7 +296,7 @@ def _on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates)
     return is_stool[labels[row, column]]
 
 
-def _on_bench(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
+def _is_on_bench(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
     """Whether a candidate is on a plank of a bench's length, width and height, with little below it."""
     labels, count = label_components(squares)
     is_bench = np.zeros(count + 1, bool)

@@ -8,19 +8,12 @@ from jaxtyping import Bool, Int
 from mmweaver.core.records import ClassMask, Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Points
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.scene.coco_stuff import LANDMARKS, NO_EVIDENCE, SITTABLE
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.layout.height_map import grid_axes, square_index
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool
 
-# COCO-Stuff class -> kind of landmark
-LANDMARKS = {
-    "door-stuff": "door", "door": "door", "window-other": "window", "window": "window", "window-blind": "window",
-    "table": "table", "dining table": "table", "desk-stuff": "table", "desk": "table", "counter": "counter",
-    "bed": "bed",
-}  # fmt: skip
 _MIN_PIXELS = 40
-SITTABLE = ("chair", "couch", "bench", "bed", "stool")
-_NO_EVIDENCE = ("unlabeled", "furniture-other", "pillow", "blanket", "cloth", "textile-other", "rug", "person")
 _SEAT_HEIGHTS_M = (0.25, 0.65)  # above the floor
 
 GridClass = Int[Array, "y x"]
@@ -69,7 +62,7 @@ def _vote(name: str) -> int:
     if name in SITTABLE:
         return 1
     is_room = name.startswith(("wall", "floor", "ceiling", "carpet"))
-    return 0 if name in _NO_EVIDENCE or is_room else -1
+    return 0 if name in NO_EVIDENCE or is_room else -1
 
 
 def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[tuple[str, Points]]:

@@ -30,12 +30,12 @@ BandM = tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opening:
-    """A door or a window in a wall."""
+class LandmarkCandidate:
+    """A landmark before the place to stand at is known."""
 
-    kind: str  # door | window
+    kind: str
     position_m: Vec3  # its middle
-    foot_m: Float[Array, "square 2"]  # places along its foot on the floor
+    squares_m: Float[Array, "square 2"]  # (x, y) of the floor that it covers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,12 +48,12 @@ class _WallImage:
     height_m: Float[Array, " height"]
 
 
-def find_openings(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[Opening]:
+def find_openings(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[LandmarkCandidate]:
     """Spans of a wall's columns, as wide as a door or window, that differ from the wall at the heights of one.
 
     A door is reported only where hardly anything contradicts it: most doors are missed, and few are false.
     """
-    found: list[Opening] = []
+    found: list[LandmarkCandidate] = []
     for wall in planes:
         if wall.kind != "wall" or np.linalg.norm(wall.centre_m) > 2 * _MAX_DISTANCE_M:
             continue
@@ -141,9 +141,9 @@ def _share(image: _WallImage, span: Span, band_m: BandM) -> float:
     return float((image.differs[rows][:, columns] & visible).sum() / max(int(visible.sum()), 1))
 
 
-def _opening(kind: str, span: Span, image: _WallImage, wall: Plane, floor_z_m: float) -> Opening:
+def _opening(kind: str, span: Span, image: _WallImage, wall: Plane, floor_z_m: float) -> LandmarkCandidate:
     along = image.along_m[span[0] : span[1]]
     places_m = wall.centre_m + along[:, None] * wall.axis_u + 0.05 * wall.normal
     middle = places_m.mean(axis=0)
     middle[2] = floor_z_m + (1.0 if kind == "door" else 1.5)
-    return Opening(kind=kind, position_m=middle, foot_m=places_m[:, :2].copy())
+    return LandmarkCandidate(kind=kind, position_m=middle, squares_m=places_m[:, :2].copy())

@@ -1,4 +1,7 @@
-"""Gravity direction and camera height from a depth grid: the floor plane, supported by the walls."""
+"""Gravity direction and camera height from a depth grid, and the grid aligned with them.
+
+The floor plane says where up is, supported by the walls.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +10,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.shapes import Array, PerPoint, Points, Vec3
+from mmweaver.core.shapes import Array, PerPoint, Points, Rotation, Vec3
+from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.scene.layout.surfaces import AlignedGrid, Surface, find_surfaces, floor_cells
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, depth_tolerance_m
 
 Normals = Float[Array, "normal 3"]
@@ -47,7 +52,7 @@ def find_gravity(grid: DepthGrid) -> Gravity:
         found = _floor(points, normals, up)
         if found is not None:
             return Gravity(up_camera=found[0], floor_z_m=found[1], has_floor=True, assumptions=())
-    return _without_floor(points, normals, up)
+    return _assumed_gravity(points, normals, up)
 
 
 def refined_by_walls(gravity: Gravity, grid: DepthGrid, floor: GridBool, walls: Sequence[GridBool]) -> Gravity:
@@ -159,7 +164,7 @@ def _fitted_plane(points: Points, chosen: Bool[Array, " point"], up: Vec3) -> tu
     return normal, offset
 
 
-def _without_floor(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
+def _assumed_gravity(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
     """Up from horizontal or vertical surfaces, else from a level camera; the floor just below all points."""
     sentences = ["No floor is visible."]
     if up is None:
@@ -179,3 +184,45 @@ def _without_floor(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
     floor_z_m = min(-_DEFAULT_CAMERA_HEIGHT_M, lowest_m)
     sentences.append(f"The floor was assumed {-floor_z_m:.2f} m below the camera.")
     return Gravity(up_camera=up, floor_z_m=floor_z_m, has_floor=False, assumptions=(" ".join(sentences),))
+
+
+@dataclass(frozen=True, kw_only=True)
+class AlignedRoom:
+    """A depth grid in the radar's frame and its planar surfaces, the floor excepted."""
+
+    gravity: Gravity
+    radar_from_camera: Rotation
+    grid: AlignedGrid
+    surfaces: tuple[Surface, ...]
+
+
+def align_room(grid: DepthGrid, gravity: Gravity | None = None) -> AlignedRoom:
+    """Aligns the grid with gravity, by default that of `room_gravity`. Raises InputError where it shows no surfaces."""
+    gravity = room_gravity(grid) if gravity is None else gravity
+    radar_from_camera = level_from_camera(gravity.up_camera)
+    aligned = _aligned(grid, radar_from_camera, gravity.floor_z_m)
+    return AlignedRoom(
+        gravity=gravity, radar_from_camera=radar_from_camera, grid=aligned, surfaces=find_surfaces(aligned)
+    )
+
+
+def room_gravity(grid: DepthGrid) -> Gravity:
+    """Gravity by the floor, refined by the walls found with that estimate.
+
+    Raises InputError where the depth shows no surfaces.
+    """
+    gravity = find_gravity(grid)
+    first = _aligned(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)
+    walls = [surface.cells for surface in find_surfaces(first) if surface.plane.kind == "wall"]
+    return refined_by_walls(gravity, grid, floor_cells(first), walls)
+
+
+def _aligned(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> AlignedGrid:
+    """The grid rotated into the radar's frame."""
+    return AlignedGrid(
+        points_m=grid.points_m @ radar_from_camera.T,
+        normals=grid.normals @ radar_from_camera.T,
+        depth_m=grid.depth_m,
+        floor_z_m=floor_z_m,
+        focal_cells=grid.intrinsics.fx,
+    )

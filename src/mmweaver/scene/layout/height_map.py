@@ -80,9 +80,9 @@ def make_height_map(view: AlignedPhoto) -> HeightMap:
         x_m=x_m,
         y_m=y_m,
         floor_z_m=view.floor_z_m,
-        top_m=_without_gaps(top_m, seen_through),
+        top_m=_fill_gaps(top_m, seen_through),
         bottom_m=bottom_m,
-        is_blocked=_without_pockets(obstacle_points >= _MIN_POINTS),
+        is_blocked=_fill_pockets(obstacle_points >= _MIN_POINTS),
         is_floor_seen=floor_points >= 2,
         is_seen_through=seen_through,
         is_clear_at=clear_at,
@@ -103,7 +103,7 @@ def _subsampled(view: AlignedPhoto) -> AlignedPhoto:
     return replace(view, photo=thinned)
 
 
-def _without_pockets(is_blocked: GridMask) -> GridMask:
+def _fill_pockets(is_blocked: GridMask) -> GridMask:
     """Also blocks small regions enclosed by blocked squares: a seat seen edge-on within a chair, gaps in a table."""
     labels, _ = label_components(~is_blocked)
     filled = is_blocked.copy()
@@ -114,7 +114,7 @@ def _without_pockets(is_blocked: GridMask) -> GridMask:
     return filled
 
 
-def _without_gaps(top_m: GridMetres, seen_through: GridMask) -> GridMetres:
+def _fill_gaps(top_m: GridMetres, seen_through: GridMask) -> GridMetres:
     """Fills squares between two of the same height that are at most three squares apart.
 
     A camera just above a surface samples it in rows far apart. Squares that are seen through stay empty.

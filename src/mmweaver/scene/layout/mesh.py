@@ -8,11 +8,13 @@ from jaxtyping import Bool, Float, Int
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.scene.layout.connected_components import bounding_slices, dilated, label_components
+from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
 from mmweaver.scene.photo.depth_grid import GridBool, GridInt, GridVectors, depth_tolerance_m
 
 _MAX_HOLE = 0.04  # share of the grid: larger holes stay open
 _MIN_BORDER = 0.5  # share of a hole's border on one surface
+SET_BACK_M = 0.03  # of the extended walls, so that the measured surface lies before them
 _GRAZING = np.sin(np.deg2rad(4))
 
 
@@ -23,10 +25,10 @@ def make_mesh(
 
     `rays` (row, column, 3) are the cells' viewing directions in the radar's frame. Cells of a planar surface are
     projected onto it along their rays, and small holes within one are filled. Of the floor only the cells at the foot
-    of objects remain: the floor itself is one rectangle, made by `floor_faces`.
+    of objects remain: the floor itself is one rectangle, made by `rectangle_faces`.
     """
     points, surface_of = _projected_onto_surfaces(grid, rays, surfaces, is_floor)
-    points, surface_of, material = _with_filled_holes(points, rays, surfaces, surface_of, cell_material)
+    points, surface_of, material = _fill_holes(points, rays, surfaces, surface_of, cell_material)
     faces = _continuous_faces(points, grid, surface_of)
     faces = faces[~(is_floor.ravel()[faces]).all(axis=1)]
     # A face at the edge of the floor takes the material of what is not floor.
@@ -37,11 +39,29 @@ def make_mesh(
     return points.reshape(-1, 3)[used], compact.reshape(-1, 3), face_material
 
 
-def floor_faces(floor: Plane) -> tuple[Vertices, Faces]:
-    """The floor as two triangles that face up: (4, 3) metres and (2, 3)."""
-    u, v = floor.half_size_m[0] * floor.axis_u, floor.half_size_m[1] * floor.axis_v
-    corners = [floor.centre_m - u - v, floor.centre_m + u - v, floor.centre_m + u + v, floor.centre_m - u + v]
-    return np.stack(corners), np.array([[0, 1, 2], [0, 2, 3]])
+def rectangle_corners_m(plane: Plane) -> Float[Array, "4 3"]:
+    """The corners of a rectangle, counterclockwise seen from its free side, metres."""
+    u, v = plane.half_size_m[0] * plane.axis_u, plane.half_size_m[1] * plane.axis_v
+    return np.stack([plane.centre_m - u - v, plane.centre_m + u - v, plane.centre_m + u + v, plane.centre_m - u + v])
+
+
+def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
+    """Rectangles as two triangles each: vertices in metres, faces, index into MATERIAL_NAMES of each face.
+
+    All but the floor lie slightly behind their measured surfaces.
+    """
+    set_back_m = [(plane.kind != "floor") * SET_BACK_M * plane.normal for plane in planes]
+    corners = [rectangle_corners_m(plane) - back for plane, back in zip(planes, set_back_m, strict=True)]
+    faces = 4 * np.arange(len(planes))[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
+    material = np.repeat([MATERIAL_NAMES.index(plane.material) for plane in planes], 2)
+    return np.concatenate(corners), faces.reshape(-1, 3), material
+
+
+def joined_meshes(meshes: Sequence[tuple[np.ndarray, ...]]) -> tuple[Vertices, Faces, PerFace]:
+    """All vertices, faces and materials: overlapping triangles do no harm, for a ray ends at the first."""
+    starts = np.cumsum([0, *(len(vertices_m) for vertices_m, *_ in meshes)])
+    faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
+    return np.concatenate([mesh[0] for mesh in meshes]), np.concatenate(faces), np.concatenate([m[2] for m in meshes])
 
 
 def _projected_onto_surfaces(
@@ -63,7 +83,7 @@ def _intersections(rays: Float[Array, "cell 3"], normal: Float[Array, "3"], offs
     return rays * (offset / (rays @ normal))[:, None]
 
 
-def _with_filled_holes(
+def _fill_holes(
     points: GridVectors,
     rays: GridVectors,
     surfaces: Sequence[Surface],

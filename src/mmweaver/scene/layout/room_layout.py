@@ -11,7 +11,7 @@ import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane
-from mmweaver.core.shapes import Faces, PerPoint, Vec3, Vertices
+from mmweaver.core.shapes import PerPoint, Vec3
 from mmweaver.scene.layout.surfaces import UP, AlignedGrid
 from mmweaver.scene.photo.depth_grid import GridBool
 
@@ -30,8 +30,6 @@ _MAX_BEYOND = 0.04  # share of all points that may lie behind a wall (seen throu
 _MIN_DISTANCE_M = 0.3
 _NEAREST_BACK_M = 0.05  # a radar may stand close before a wall
 _MIN_AGREEMENT = 0.8  # share of the vertical area that is parallel or perpendicular to the room's axes
-_TRIANGLES = ((0, 1, 2), (0, 2, 3))  # of a rectangle's corners
-_SET_BACK_M = 0.03  # of the extended walls, so that the measured surface lies before them
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,14 +73,14 @@ def estimate_layout(
     ceiling: tuple[Plane, ...] = ()
     if is_whole and seen_ceilings:
         largest = max(seen_ceilings, key=lambda plane: plane.half_size_m[0] * plane.half_size_m[1])
-        ceiling = (_from_wall_to_wall(largest, walls),)
+        ceiling = (_span_walls(largest, walls),)
         planes = [plane for plane in planes if plane.kind != "ceiling"]
     kept = tuple(plane for plane in planes if not any(_is_part_of(plane, wall) for wall in walls))
     note = UsualAssumption(f"Walls ({', '.join(found)}) were extended until they meet, and past the radar.")
     return RoomLayout(planes=(*walls, *ceiling, *kept), extended=(*walls, *ceiling), assumptions=(note,))
 
 
-def _from_wall_to_wall(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
+def _span_walls(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
     """A ceiling that covers all that the walls enclose; of them it takes the axes."""
     u, v = walls[0].axis_u, np.cross(ceiling.normal, walls[0].axis_u)
     ends = [wall.centre_m + side * wall.half_size_m[0] * wall.axis_u for wall in walls for side in (-1, 1)]
@@ -93,17 +91,6 @@ def _from_wall_to_wall(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
         ceiling, centre_m=middle[0] * u + middle[1] * v + ceiling.centre_m[2] * UP, axis_u=u, axis_v=v,
         half_size_m=(float(high[0] - low[0]) / 2, float(high[1] - low[1]) / 2),
     )  # fmt: skip
-
-
-def wall_faces(walls: Sequence[Plane]) -> tuple[Vertices, Faces]:
-    """The walls as two triangles each, slightly behind their measured surfaces: (4 walls, 3) metres, (2 walls, 3)."""
-    corners = [
-        wall.centre_m - _SET_BACK_M * wall.normal + u * wall.half_size_m[0] * wall.axis_u
-        + v * wall.half_size_m[1] * wall.axis_v
-        for wall in walls for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    ]  # fmt: skip
-    faces = [[4 * index + a, 4 * index + b, 4 * index + c] for index in range(len(walls)) for a, b, c in _TRIANGLES]
-    return np.array(corners).reshape(-1, 3), np.array(faces, dtype=int).reshape(-1, 3)
 
 
 def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:

@@ -47,7 +47,7 @@ def surface_material(surface: Surface, rgb: GridVectors) -> str:
     return by_kind.get(surface.plane.kind) or _furniture(rgb[surface.cells])
 
 
-def with_material(plane: Plane, name: str) -> Plane:
+def replace_material(plane: Plane, name: str) -> Plane:
     return replace(plane, material=name)
 
 
@@ -80,7 +80,7 @@ def cell_materials(
     return material, tuple(names)
 
 
-def with_class_materials(
+def apply_class_materials(
     material: GridInt,
     names: tuple[str, ...],
     class_index: GridInt,

@@ -42,7 +42,7 @@ def estimate_depth(
 
     source = EXAMPLE if source == AUTO else source
     if source.rpartition("/")[2].lower().startswith("moge"):
-        return _of_moge(rgb, source)
+        return _estimate_by_moge(rgb, source)
     config, processor, model = load_pretrained(source, "--depth-model", _depth_class)
     height, width = rgb.shape[:2]
     prompt: dict[str, Any] = {}
@@ -82,7 +82,7 @@ def scale_note(camera_height_m: float) -> str | None:
     )
 
 
-def _of_moge(rgb: RgbPixels, source: str) -> EstimatedDepth:
+def _estimate_by_moge(rgb: RgbPixels, source: str) -> EstimatedDepth:
     """By Microsoft's MoGe 2 (package `moge`), which gives points in metres and the camera."""
     try:
         import torch

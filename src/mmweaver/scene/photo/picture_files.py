@@ -44,7 +44,7 @@ def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
     if image.mode == "F":
         raise InputError(f"{path} holds floating-point values, not colours; --rgb needs a photo (PNG or JPEG)")
     with foreign_errors(path, "damaged ({reason}); give a whole picture file"):
-        return np.array(_on_white(image)), turned
+        return np.array(_blend_on_white(image)), turned
 
 
 def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
@@ -148,7 +148,7 @@ def _raw_npy(path: Path) -> np.ndarray:
     return np.array(raw)
 
 
-def _on_white(image: Any) -> Any:
+def _blend_on_white(image: Any) -> Any:
     """Converts any colour mode to RGB, transparent pixels over white."""
     from PIL import Image
 

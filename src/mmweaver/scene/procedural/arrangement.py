@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.shapes import Array
-from mmweaver.scene.procedural import objects
+from mmweaver.scene.procedural.furniture import make_piece
 from mmweaver.scene.procedural.groups import BACK, MIDDLE, FurnitureGroup
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import Boxes, Piece, PlacedPiece, bounding_boxes
@@ -72,20 +72,19 @@ def sample_shell(kind: RoomKind, palette: Palette, rng: np.random.Generator, lay
         behind + float(rng.uniform(*kind.wall_distance_m)),
         float(rng.uniform(2.4, 2.8)),
     )
-    openings = [objects.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
-    openings += [objects.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
+    openings = [make_piece(name, palette, rng) for name in ("door", *["window"] * kind.num_windows)]
     empty = Shell(
         size_m=size,
         openings=tuple(openings),
-        lamp=objects.ceiling_lamp(palette),
+        lamp=make_piece("ceiling lamp", palette, rng),
         fixed=(),
         radar_m=(size[0] / 2, behind, float(layout.uniform(0.5, 1.5))),
         radar_yaw_rad=0.0,
     )
-    return with_radar(empty, layout)
+    return place_radar(empty, layout)
 
 
-def with_radar(shell: Shell, rng: np.random.Generator) -> Shell:
+def place_radar(shell: Shell, rng: np.random.Generator) -> Shell:
     """Samples the radar's position in the middle third of the room and its yaw; less of both in a corridor."""
     narrow = shell.size_m[0] < 2.6
     across = rng.uniform(0.42, 0.58) if narrow else rng.uniform(0.32, 0.68)
@@ -94,7 +93,7 @@ def with_radar(shell: Shell, rng: np.random.Generator) -> Shell:
     return replace(shell, radar_m=(shell.size_m[0] * float(across), y, z), radar_yaw_rad=float(np.deg2rad(yaw_deg)))
 
 
-def with_openings(shell: Shell, rng: np.random.Generator) -> Shell:
+def place_openings(shell: Shell, rng: np.random.Generator) -> Shell:
     """Samples the places of door and windows in the walls, and adds lamps; an opening without a place is omitted."""
     width, depth, height = shell.size_m
     fixed = [PlacedPiece(piece=shell.lamp, x_m=width / 2, y_m=y * depth, z_m=height) for y in (0.3, 0.75)]
@@ -125,8 +124,8 @@ def arrange(
         if attempt >= _ATTEMPTS_PER_SHELL:
             width, depth, height = shell.size_m
             wider = 0.25 if attempt % _ATTEMPTS_PER_SHELL == 0 and attempt > _ATTEMPTS_PER_SHELL else 0.0
-            shell = with_radar(replace(shell, size_m=(width + wider, depth, height)), rng)
-        furnished = with_openings(shell, rng)
+            shell = place_radar(replace(shell, size_m=(width + wider, depth, height)), rng)
+        furnished = place_openings(shell, rng)
         placed = _try_once(furnished, wanted, rng, omit_share=min(attempt / 40, 1.0))
         if placed is None or not _has_furniture_in_view(furnished, placed):
             continue
@@ -239,11 +238,9 @@ def _clear_zones(shell: Shell) -> Boxes:
         if item.piece.landmark == "door":
             ahead = item.points(np.array([[0.0, -0.42, 0.0]]))[0]
             zones.append((float(ahead[0]), float(ahead[1]), 0.45, 0.33, item.yaw_rad))
-    return Boxes(
-        centre_m=np.array([(x, y, 1.03) for x, y, _, _, _ in zones]),
-        half_m=np.array([(a, b, 0.97) for _, _, a, b, _ in zones]),
-        yaw_rad=np.array([yaw_rad for *_, yaw_rad in zones], float),
-    )
+    x, y, a, b, yaw_rad = np.array(zones, float).T
+    middle, half = np.full(len(zones), 1.03), np.full(len(zones), 0.97)
+    return Boxes(centre_m=np.stack([x, y, middle], axis=1), half_m=np.stack([a, b, half], axis=1), yaw_rad=yaw_rad)
 
 
 def _has_furniture_in_view(shell: Shell, placed: Sequence[PlacedPiece]) -> bool:
@@ -257,8 +254,6 @@ def _has_furniture_in_view(shell: Shell, placed: Sequence[PlacedPiece]) -> bool:
 
 
 def _concatenated(one: Boxes, other: Boxes) -> Boxes:
-    return Boxes(
-        centre_m=np.concatenate([one.centre_m, other.centre_m]),
-        half_m=np.concatenate([one.half_m, other.half_m]),
-        yaw_rad=np.concatenate([one.yaw_rad, other.yaw_rad]),
-    )
+    pairs = ((getattr(one, name), getattr(other, name)) for name in ("centre_m", "half_m", "yaw_rad"))
+    centre_m, half_m, yaw_rad = map(np.concatenate, pairs)
+    return Boxes(centre_m=centre_m, half_m=half_m, yaw_rad=yaw_rad)

@@ -1,5 +1,9 @@
 """Ground truth of a procedural room in the radar's frame: materials, planes, free floor, seats and landmarks."""
 
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 from jaxtyping import Float
 
@@ -40,12 +44,21 @@ class RadarFrame:
 
     def boxes(self, boxes: Boxes) -> Boxes:
         """Transforms boxes."""
-        return Boxes(
-            centre_m=self.points(boxes.centre_m),
-            half_m=boxes.half_m,
-            yaw_rad=boxes.yaw_rad - self.yaw_rad,
-            names=boxes.names,
-            piece=boxes.piece,
+        return replace(boxes, centre_m=self.points(boxes.centre_m), yaw_rad=boxes.yaw_rad - self.yaw_rad)
+
+    def plane(
+        self, kind: str, centre_m: Any, normal: Vec3, axis_u: Vec3, half_m: tuple[float, float], material: str
+    ) -> Plane:
+        """Transforms a plane."""
+        normal, axis_u = self.vectors(normal), self.vectors(axis_u)
+        return Plane(
+            kind=kind,
+            centre_m=self.points(np.array(centre_m, float)),
+            normal=normal,
+            axis_u=axis_u,
+            axis_v=np.cross(normal, axis_u),
+            half_size_m=half_m,
+            material=material,
         )
 
 
@@ -59,14 +72,15 @@ def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, f
     """Floor, ceiling, walls, and the large faces of box-shaped furniture, as tops and panels."""
     w, d, h = shell.size_m
     x, y, z = np.eye(3)
-    found = [
-        _plane("floor", (w / 2, d / 2, 0.0), z, x, (w / 2, d / 2), palette.floor.material, frame),
-        _plane("ceiling", (w / 2, d / 2, h), -z, x, (w / 2, d / 2), palette.ceiling.material, frame),
-        _plane("wall", (w / 2, d, h / 2), -y, x, (w / 2, h / 2), palette.wall.material, frame),
-        _plane("wall", (0.0, d / 2, h / 2), x, y, (d / 2, h / 2), palette.wall.material, frame),
-        _plane("wall", (w, d / 2, h / 2), -x, y, (d / 2, h / 2), palette.wall.material, frame),
-        _plane("wall", (w / 2, 0.0, h / 2), y, x, (w / 2, h / 2), palette.wall.material, frame),
-    ]
+    shell_planes = (
+        ("floor", (w / 2, d / 2, 0.0), z, x, (w / 2, d / 2)),
+        ("ceiling", (w / 2, d / 2, h), -z, x, (w / 2, d / 2)),
+        ("wall", (w / 2, d, h / 2), -y, x, (w / 2, h / 2)),
+        ("wall", (0.0, d / 2, h / 2), x, y, (d / 2, h / 2)),
+        ("wall", (w, d / 2, h / 2), -x, y, (d / 2, h / 2)),
+        ("wall", (w / 2, 0.0, h / 2), y, x, (w / 2, h / 2)),
+    )
+    found = [frame.plane(*row, palette[row[0]].material) for row in shell_planes]
     for item in placed:
         for part in item.piece.parts:
             if part.shape == "box":
@@ -74,45 +88,17 @@ def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, f
     return tuple(found)
 
 
-def _faces(
-    item: PlacedPiece, low: Float[Array, "3"], high: Float[Array, "3"], material: str, frame: RadarFrame
-) -> list[Plane]:
+def _faces(item: PlacedPiece, low: Vec3, high: Vec3, material: str, frame: RadarFrame) -> Iterator[Plane]:
     """The large faces, except the lower one, of a box from `low` to `high` in the piece's frame, metres."""
     half, middle = (high - low) / 2, (low + high) / 2
-    found = []
     for axis, sign, along_axis in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
-        other = 3 - axis - along_axis
-        if 4 * half[along_axis] * half[other] < _MIN_FACE_M2:
+        size = (float(half[along_axis]), float(half[3 - axis - along_axis]))
+        if 4 * size[0] * size[1] < _MIN_FACE_M2:
             continue
-        normal, along = np.zeros(3), np.zeros(3)
-        normal[axis], along[along_axis] = sign, 1.0
+        normal, along = sign * np.eye(3)[axis], np.eye(3)[along_axis]
         ends = item.points(np.stack([middle + sign * half[axis] * np.eye(3)[axis], normal, along, np.zeros(3)]))
         kind = "top" if axis == 2 else "panel"
-        size = (float(half[along_axis]), float(half[other]))
-        found.append(_plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, material, frame))
-    return found
-
-
-def _plane(
-    kind: str,
-    centre: tuple | np.ndarray,
-    normal: Vec3,
-    axis_u: Vec3,
-    half: tuple[float, float],
-    material: str,
-    frame: RadarFrame,
-) -> Plane:
-    """A plane from quantities in the room's frame, metres."""
-    normal, axis_u = frame.vectors(normal), frame.vectors(axis_u)
-    return Plane(
-        kind=kind,
-        centre_m=frame.points(np.array(centre, float)),
-        normal=normal,
-        axis_u=axis_u,
-        axis_v=np.cross(normal, axis_u),
-        half_size_m=half,
-        material=material,
-    )
+        yield frame.plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, material)
 
 
 def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, ...]:
@@ -139,25 +125,21 @@ def landmarks_of(placed: tuple[PlacedPiece, ...], free: FreeSpace, frame: RadarF
             continue
         low, high = item.piece.low_m, item.piece.high_m
         middle = (low + high) / 2
-        best = None
-        for side, (u, v) in enumerate(((0, -1), (0, 1), (1, 0), (-1, 0))):
-            if item.piece.on_wall and side:
-                break
-            stand = middle.copy()
-            stand[0] += u * ((high[0] - low[0]) / 2 + _REACH_M)
-            stand[1] = middle[1] + v * ((high[1] - low[1]) / 2 + _REACH_M)
+        best_share, approach, facing = -np.inf, middle, middle
+        for side, (u, v) in enumerate(((0, -1), (0, 1), (1, 0), (-1, 0))[: 1 if item.piece.on_wall else 4]):
+            ahead = np.array([u, v, 0.0])
+            stand = middle + ahead * ((high - low) / 2 + _REACH_M)
             stand[2] = 0.0
-            approach, ahead = frame.points(item.points(np.stack([stand, stand - np.array([u, v, 0.0])])))
-            free_share = _free_share(free, approach[:2])
-            if best is None or free_share > best[0] + 0.1 * side:
-                best = (free_share, approach, ahead - approach)
-        assert best is not None
+            place, before = frame.points(item.points(np.stack([stand, stand - ahead])))
+            share = _free_share(free, place[:2])
+            if share > best_share + 0.1 * side:
+                best_share, approach, facing = share, place, before - place
         found.append(
             Landmark(
                 kind=item.piece.landmark,
                 position_m=frame.points(item.points(middle[None]))[0],
-                approach_m=(float(best[1][0]), float(best[1][1])),
-                facing_rad=float(np.arctan2(best[2][1], best[2][0])),
+                approach_m=(float(approach[0]), float(approach[1])),
+                facing_rad=float(np.arctan2(facing[1], facing[0])),
             )
         )
     return tuple(found)
@@ -173,9 +155,7 @@ def _free_share(free: FreeSpace, place: Float[Array, "2"]) -> float:
 def free_space_of(shell: Shell, boxes: Boxes, frame: RadarFrame) -> FreeSpace:
     """Free floor on the grid of reconstructed scenes, all of it marked as seen; boxes in the radar's frame."""
     x_m, y_m = grid_axes()
-    above = Boxes(
-        centre_m=boxes.centre_m + np.array([0.0, 0.0, shell.radar_m[2]]), half_m=boxes.half_m, yaw_rad=boxes.yaw_rad
-    )
+    above = replace(boxes, centre_m=boxes.centre_m + np.array([0.0, 0.0, shell.radar_m[2]]))
     x, y = np.meshgrid(x_m, y_m)
     in_room = np.stack([x, y, np.zeros_like(x)], axis=-1) @ frame.room_from_radar.T + frame.origin_m
     inside = (in_room[..., 0] > 0) & (in_room[..., 0] < shell.size_m[0])

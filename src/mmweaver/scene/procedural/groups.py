@@ -5,10 +5,11 @@ Groups for the middle of a room have their origin at their own middle.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from mmweaver.scene.procedural import objects, seat_furniture, storage_furniture, table_furniture
+from mmweaver.scene.procedural.furniture import Size, make_piece
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, PlacedPiece, bounding_boxes
 
@@ -22,272 +23,260 @@ class FurnitureGroup:
     """Pieces in the group's own frame, and where in a room the group may stand."""
 
     items: tuple[PlacedPiece, ...]
-    site: str = WALL  # wall (any), back, side, middle
+    site: str = WALL  # wall (any), back, middle
 
 
-Maker = Callable[[Palette, np.random.Generator], FurnitureGroup]
+class GroupBuilder:
+    """Collects pieces in a group's frame; random places are sampled from `rng` in the order of the calls."""
+
+    def __init__(self, palette: Palette, rng: np.random.Generator):
+        self.palette, self.rng = palette, rng
+        self.items: list[PlacedPiece] = []
+
+    def uniform(self, low: float, high: float) -> float:
+        """A random length, metres, or angle, degrees."""
+        return float(self.rng.uniform(low, high))
+
+    def make(self, name: str, **sizes: Any) -> Piece:
+        """A piece by its name, not yet placed."""
+        return make_piece(name, self.palette, self.rng, **sizes)
+
+    def put(
+        self, piece: str | Piece, x: Size = 0.0, y: Size = 0.0, z: float = 0.0, turn: Size = 0.0, sway: float = 0.0
+    ) -> PlacedPiece:
+        """Places a piece, or makes it first by its name; ranges are sampled afterwards.
+
+        Args:
+            piece: the piece or its name.
+            x, y, z: its place in the group's frame, metres.
+            turn: counterclockwise, degrees.
+            sway: greatest random deviation from that.
+        """
+        piece = self.make(piece) if isinstance(piece, str) else piece
+        x, y, turn = (self.uniform(*v) if isinstance(v, tuple) else v for v in (x, y, turn))
+        turn += self.uniform(-sway, sway) if sway else 0.0
+        item = PlacedPiece(piece=piece, x_m=float(x), y_m=float(y), z_m=float(z), yaw_rad=float(np.deg2rad(turn)))
+        self.items.append(item)
+        return item
+
+    def at_wall(self, piece: str | Piece, x: float = 0.0) -> PlacedPiece:
+        """Places a piece with its back close to the wall."""
+        piece = self.make(piece) if isinstance(piece, str) else piece
+        return self.put(piece, x, -float(piece.high_m[1]) - GAP_M)
 
 
-def at(piece: Piece, x: float | int, y: float | int, z: float = 0.0, turn_deg: float = 0.0) -> PlacedPiece:
-    """A piece at a position in its group's frame."""
-    return PlacedPiece(piece=piece, x_m=float(x), y_m=float(y), z_m=float(z), yaw_rad=float(np.deg2rad(turn_deg)))
+GROUPS: dict[str, tuple[Callable[[GroupBuilder], Any], str]] = {}
 
 
-def at_wall(piece: Piece, x: float = 0.0) -> PlacedPiece:
-    """A piece with its back close to the wall."""
-    return at(piece, x, -float(piece.high_m[1]) - GAP_M)
+def group(site: str = WALL) -> Callable:
+    """Registers the function that builds a group, under its own name."""
+
+    def register(build: Any) -> Any:
+        GROUPS[build.__name__.replace("_", " ")] = build, site
+        return build
+
+    return register
 
 
-def _top_m(piece: Piece, lowest: float = 0.0) -> float:
-    """Height of the surface for objects, metres: the highest box top larger than 0.1 m2."""
-    areas = [
-        part.high_m[2]
-        for part in piece.parts
-        if (part.high_m[0] - part.low_m[0]) * (part.high_m[1] - part.low_m[1]) > 0.1 and part.shape == "box"
-    ]
-    return max(top for top in areas if top > lowest)
-
-
-def sample_group(make: Maker, palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Samples a group until its pieces do not penetrate each other."""
+def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+    """Samples a group, or a single piece, by its name until its pieces do not penetrate each other."""
     for _ in range(_MAX_DRAWS):
-        group = make(palette, rng)
-        boxes = bounding_boxes(group.items)
-        piece = np.array(boxes.piece)
-        if not (boxes.overlap(boxes, OVERLAP_M) & (piece[:, None] != piece[None, :])).any():
-            return group
-    raise RuntimeError(f"the pieces of {group.items[0].piece.name!r} always overlap")
+        builder = GroupBuilder(palette, rng)
+        if name in GROUPS:
+            build, site = GROUPS[name]
+            build(builder)
+        else:
+            piece = builder.make(name)
+            (builder.put if piece.on_wall or piece.is_free else builder.at_wall)(piece)
+            site = MIDDLE if piece.is_free else WALL
+        boxes = bounding_boxes(builder.items)
+        number = np.array(boxes.piece)
+        if not (boxes.overlap(boxes, OVERLAP_M) & (number[:, None] != number[None, :])).any():
+            return FurnitureGroup(items=tuple(builder.items), site=site)
+    raise RuntimeError(f"the pieces of {name!r} always overlap")
 
 
 # Work ---------------------------------------------------------------------------------------------------------------
-def desk_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def desk_place(g: GroupBuilder):
     """Desk with monitor, keyboard and cup, and an office chair."""
-    desk = table_furniture.desk(palette, rng, float(rng.uniform(1.2, 1.6)))
-    wall = at_wall(desk)
-    top, half = _top_m(desk), float(desk.high_m[0])
-    items = [wall, at(objects.monitor(palette, rng), rng.uniform(-0.1, 0.2), wall.y_m + 0.14, top)]
-    items.append(at(objects.keyboard(palette, rng), items[-1].x_m, wall.y_m - 0.16, top))
-    items.append(at(objects.cup(palette, rng), -half + 0.18, wall.y_m - 0.05, top))
-    if rng.random() < 0.5:
-        items.append(at(objects.books(palette, rng), half - 0.22, wall.y_m + 0.05, top))
-    away = float(-desk.low_m[1]) + rng.uniform(0.22, 0.42)
-    items.append(
-        at(
-            seat_furniture.office_chair(palette, rng),
-            rng.uniform(-0.08, 0.12),
-            wall.y_m - away,
-            0.0,
-            180 + rng.uniform(-35, 35),
-        )
-    )
-    return FurnitureGroup(items=tuple(items))
+    desk = g.make("desk", width_m=(1.2, 1.6))
+    y, top, half = g.at_wall(desk).y_m, desk.top_m, float(desk.high_m[0])
+    screen = g.put("monitor", (-0.1, 0.2), y + 0.14, top)
+    g.put("keyboard", screen.x_m, y - 0.16, top)
+    g.put("cup", -half + 0.18, y - 0.05, top)
+    if g.rng.random() < 0.5:
+        g.put("books", half - 0.22, y + 0.05, top)
+    away = float(-desk.low_m[1]) + g.uniform(0.22, 0.42)
+    g.put("office chair", (-0.08, 0.12), y - away, turn=180.0, sway=35.0)
 
 
-def laptop_desk(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def laptop_desk(g: GroupBuilder):
     """Desk with laptop and lamp, and a plain chair."""
-    desk = table_furniture.desk(palette, rng, float(rng.uniform(1.0, 1.25)))
-    wall, top = at_wall(desk), _top_m(desk)
-    away = float(-desk.low_m[1]) + rng.uniform(0.24, 0.4)
-    items = (
-        wall,
-        at(objects.laptop(palette, rng), 0.0, wall.y_m - 0.08, top),
-        at(objects.table_lamp(palette, rng), float(desk.low_m[0]) + 0.16, wall.y_m + 0.12, top),
-        at(
-            seat_furniture.chair(palette, rng), rng.uniform(-0.1, 0.1), wall.y_m - away, 0.0, 180 + rng.uniform(-15, 15)
-        ),
-    )
-    return FurnitureGroup(items=items)
+    desk = g.make("desk", width_m=(1.0, 1.25))
+    y, top = g.at_wall(desk).y_m, desk.top_m
+    away = float(-desk.low_m[1]) + g.uniform(0.24, 0.4)
+    g.put("laptop", 0.0, y - 0.08, top)
+    g.put("table lamp", float(desk.low_m[0]) + 0.16, y + 0.12, top)
+    g.put("chair", (-0.1, 0.1), y - away, turn=180.0, sway=15.0)
 
 
-def bench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def lab_bench_place(g: GroupBuilder):
     """Laboratory bench with instruments and a stool."""
-    made = table_furniture.lab_bench(palette, rng, float(rng.uniform(1.5, 2.1)))
-    wall, half = at_wall(made), float(made.high_m[0])
-    items = [wall, at(objects.instrument(palette, rng), -half + 0.4, wall.y_m - 0.05, 0.90)]
-    items.append(at(objects.monitor(palette, rng), half - 0.45, wall.y_m + 0.02, 0.90))
-    items.append(
-        at(seat_furniture.stool(palette, rng), rng.uniform(-0.4, 0.4), wall.y_m - 0.62, 0.0, rng.uniform(0, 40))
-    )
-    return FurnitureGroup(items=tuple(items))
+    bench = g.make("lab bench", width_m=(1.5, 2.1))
+    y, half = g.at_wall(bench).y_m, float(bench.high_m[0])
+    g.put("instrument", -half + 0.4, y - 0.05, 0.90)
+    g.put("monitor", half - 0.45, y + 0.02, 0.90)
+    g.put("stool", (-0.4, 0.4), y - 0.62, turn=(0.0, 40.0))
 
 
-def workbench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def workbench_place(g: GroupBuilder):
     """Workbench with a carton, and a stool."""
-    made = table_furniture.workbench(palette, rng, float(rng.uniform(1.4, 1.8)))
-    wall = at_wall(made)
-    top = float(made.parts[4].high_m[2])
-    items = [wall, at(objects.carton(palette, rng), -0.3, wall.y_m - 0.03, top)]
-    items.append(at(seat_furniture.stool(palette, rng), rng.uniform(0.0, 0.4), wall.y_m - 0.62))
-    return FurnitureGroup(items=tuple(items))
+    bench = g.make("workbench", width_m=(1.4, 1.8))
+    y = g.at_wall(bench).y_m
+    g.put("carton", -0.3, y - 0.03, bench.parts[4].high_m[2])
+    g.put("stool", (0.0, 0.4), y - 0.62)
 
 
-def meeting_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group(MIDDLE)
+def meeting_place(g: GroupBuilder):
     """A long table with chairs on both sides, laptops on it."""
-    length = float(rng.uniform(1.5, 1.9))
-    made = table_furniture.table(palette, rng, (length, float(rng.uniform(0.8, 0.95))), name="meeting table")
-    items = [at(made, 0, 0), at(objects.laptop(palette, rng), -0.3, -0.15, _top_m(made))]
-    out = float(made.high_m[1]) + 0.30
-    for x in (-length / 4, length / 4):
+    table = g.put("meeting table").piece
+    g.put("laptop", -0.3, -0.15, table.top_m)
+    quarter, out = float(table.high_m[0]) / 2, float(table.high_m[1]) + 0.30
+    for x in (-quarter, quarter):
         for side, turn in ((-1, 180.0), (1, 0.0)):
-            y = side * (out + rng.uniform(0.0, 0.1))
-            items.append(at(seat_furniture.office_chair(palette, rng), x, y, 0.0, turn + rng.uniform(-15, 15)))
-    return FurnitureGroup(items=tuple(items), site=MIDDLE)
+            g.put("office chair", x, side * (out + g.uniform(0.0, 0.1)), turn=turn, sway=15.0)
 
 
-def pupils(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group(MIDDLE)
+def pupils_place(g: GroupBuilder):
     """A school table for two with two chairs, facing the wall behind it."""
-    made = table_furniture.table(palette, rng, (1.3, 0.55), name="school table")
-    items = [at(made, 0, 0), at(objects.books(palette, rng), -0.3, 0.0, _top_m(made))]
+    table = g.put("school table").piece
+    g.put("books", -0.3, 0.0, table.top_m)
     for x in (-0.33, 0.33):
-        items.append(
-            at(seat_furniture.chair(palette, rng), x, -0.52 - rng.uniform(0, 0.1), 0.0, 180 + rng.uniform(-12, 12))
-        )
-    return FurnitureGroup(items=tuple(items), site=MIDDLE)
+        chair = g.make("chair")
+        g.put(chair, x, -0.52 - g.uniform(0.0, 0.1), turn=180.0, sway=12.0)
 
 
-def teacher(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group(BACK)
+def teacher_place(g: GroupBuilder):
     """A whiteboard with a desk in front of it."""
-    made = table_furniture.desk(palette, rng, 1.3)
-    y = -1.25
-    items = (
-        at(objects.whiteboard(palette, rng, 2.0), 0, 0),
-        at(made, 0.9, y, 0.0, 180.0),
-        at(objects.laptop(palette, rng), 0.9, y, _top_m(made), 180.0),
-        at(seat_furniture.chair(palette, rng), 0.9, y + 0.68),
-    )
-    return FurnitureGroup(items=items, site=BACK)
-
-
-def board(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A whiteboard alone."""
-    return FurnitureGroup(items=(at(objects.whiteboard(palette, rng, float(rng.uniform(1.2, 1.8))), 0, 0),))
+    desk, y = g.make("desk", width_m=1.3), -1.25
+    g.put(g.make("whiteboard", width_m=2.0))
+    g.put(desk, 0.9, y, turn=180.0)
+    g.put("laptop", 0.9, y, desk.top_m, turn=180.0)
+    g.put("chair", 0.9, y + 0.68)
 
 
 # Home ---------------------------------------------------------------------------------------------------------------
-def sofa_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def sofa_place(g: GroupBuilder):
     """A sofa with a coffee table, often with a floor lamp."""
-    made = seat_furniture.sofa(palette, rng, 2 + int(rng.random() < 0.45))
-    wall = at_wall(made)
-    front = wall.y_m + float(made.low_m[1])
-    low = table_furniture.coffee_table(palette, rng)
-    y = front - 0.42 - float(low.high_m[1])
-    items = [wall, at(low, rng.uniform(-0.2, 0.2), y)]
-    items.append(at(objects.books(palette, rng), items[1].x_m + 0.1, y, _top_m(low)))
-    if rng.random() < 0.7:
-        side = 1 if rng.random() < 0.5 else -1
-        items.append(at(objects.floor_lamp(palette, rng), side * (float(made.high_m[0]) + 0.26), -0.30))
-    return FurnitureGroup(items=tuple(items))
+    sofa = g.make("sofa")
+    front = g.at_wall(sofa).y_m + float(sofa.low_m[1])
+    table = g.make("coffee table")
+    y = front - 0.42 - float(table.high_m[1])
+    x = g.put(table, (-0.2, 0.2), y).x_m
+    g.put("books", x + 0.1, y, table.top_m)
+    if g.rng.random() < 0.7:
+        side = 1 if g.rng.random() < 0.5 else -1
+        g.put("floor lamp", side * (float(sofa.high_m[0]) + 0.26), -0.30)
 
 
-def armchair_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def armchair_place(g: GroupBuilder):
     """An armchair at a small angle to the wall."""
-    made = seat_furniture.armchair(palette, rng)
-    return FurnitureGroup(items=(at(made, 0, -0.62, 0.0, rng.uniform(-20, 20)),))
+    g.put("armchair", 0.0, -0.62, sway=20.0)
 
 
-def television_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def television_place(g: GroupBuilder):
     """A low sideboard with a television."""
-    made = storage_furniture.cabinet(palette, rng, (float(rng.uniform(1.3, 1.7)), 0.40, 0.48), name="sideboard")
-    wall = at_wall(made)
-    return FurnitureGroup(items=(wall, at(objects.television(palette, rng), 0, wall.y_m + 0.02, 0.48)))
+    g.put("television", 0.0, g.at_wall("sideboard").y_m + 0.02, 0.48)
 
 
-def television_on_wall(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A television mounted on the wall."""
-    return FurnitureGroup(items=(at(objects.television(palette, rng, on_wall=True), 0, 0),))
-
-
-def bed_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def bed_place(g: GroupBuilder):
     """Bed and nightstands with lamps."""
-    made = seat_furniture.bed(palette, rng)
-    items = [at_wall(made)]
+    bed = g.at_wall("bed").piece
     for side in (-1, 1):
-        if side > 0 or rng.random() < 0.6:
-            stand = storage_furniture.nightstand(palette, rng)
-            x = side * (float(made.high_m[0]) + 0.25)
-            wall = at_wall(stand, x)
-            items += [wall, at(objects.table_lamp(palette, rng), x, wall.y_m, 0.48)]
-    return FurnitureGroup(items=tuple(items))
+        if side > 0 or g.rng.random() < 0.6:
+            x = side * (float(bed.high_m[0]) + 0.25)
+            g.put("table lamp", x, g.at_wall("nightstand", x).y_m, 0.48)
 
 
-def dining_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group(MIDDLE)
+def dining_place(g: GroupBuilder):
     """A dining table with a bowl and four chairs."""
-    size = (float(rng.uniform(1.2, 1.5)), float(rng.uniform(0.8, 0.95)))
-    made = table_furniture.table(palette, rng, size, name="dining table")
-    items = [at(made, 0, 0), at(objects.bowl(palette, rng), rng.uniform(-0.2, 0.2), 0.0, _top_m(made))]
+    table = g.put("dining table").piece
+    g.put("bowl", (-0.2, 0.2), 0.0, table.top_m)
     for x in (-0.33, 0.33):
         for side, turn in ((-1, 180.0), (1, 0.0)):
-            y = side * (size[1] / 2 + rng.uniform(0.17, 0.34))
-            items.append(at(seat_furniture.chair(palette, rng), x, y, 0.0, turn + rng.uniform(-8, 8)))
-    return FurnitureGroup(items=tuple(items), site=MIDDLE)
+            g.put("chair", x, side * (float(table.high_m[1]) + g.uniform(0.17, 0.34)), turn=turn, sway=8.0)
 
 
-def small_dining(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group(MIDDLE)
+def small_dining_place(g: GroupBuilder):
     """A small table and two chairs."""
-    made = table_furniture.table(palette, rng, (0.8, 0.75), name="dining table")
-    items = [at(made, 0, 0), at(objects.cup(palette, rng), 0.15, 0.1, _top_m(made))]
+    table = g.put("small dining table").piece
+    g.put("cup", 0.15, 0.1, table.top_m)
     for side, turn in ((-1, 90.0), (1, -90.0)):
-        x = side * (0.4 + rng.uniform(0.2, 0.36))
-        items.append(
-            at(seat_furniture.chair(palette, rng), x, rng.uniform(-0.1, 0.1), 0.0, turn + rng.uniform(-20, 20))
-        )
-    return FurnitureGroup(items=tuple(items), site=MIDDLE)
+        g.put("chair", side * (0.4 + g.uniform(0.2, 0.36)), (-0.1, 0.1), turn=turn, sway=20.0)
 
 
-def kitchen_row(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def kitchen_row(g: GroupBuilder):
     """Counter, cooker, refrigerator, cabinets above."""
-    width = float(rng.uniform(1.4, 1.9))
-    made, cooker, cold = (
-        table_furniture.counter(palette, rng, width),
-        storage_furniture.oven(palette, rng),
-        storage_furniture.fridge(palette, rng),
-    )
+    counter, oven, fridge = g.make("counter", width_m=(1.4, 1.9)), g.make("oven"), g.make("refrigerator")
+    width = 2 * float(counter.high_m[0])
     left = -(width + 0.6 + 0.62) / 2
-    wall = at_wall(made, left + width / 2)
-    items = [wall, at_wall(cooker, left + width + 0.31), at_wall(cold, left + width + 0.62 + 0.31)]
-    items.append(at(objects.wall_cabinet(palette, rng, width - 0.2), wall.x_m, 0))
-    sink = made.parts[3]
+    x = g.at_wall(counter, left + width / 2).x_m
+    g.at_wall(oven, left + width + 0.31)
+    g.at_wall(fridge, left + width + 0.62 + 0.31)
+    g.put(g.make("wall cabinet", width_m=width - 0.2), x)
+    sink = counter.parts[3]
     away = 0.28 - width / 2 if sink.low_m[0] + sink.high_m[0] > 0 else width / 2 - 0.28  # the end without the sink
-    items.append(at(objects.microwave(palette, rng), wall.x_m + away, -0.22, 0.91))
-    return FurnitureGroup(items=tuple(items))
+    g.put("microwave", x + away, -0.22, 0.91)
 
 
-def kitchen_counter(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def counter_place(g: GroupBuilder):
     """A counter with cabinets above."""
-    width = float(rng.uniform(1.2, 1.6))
-    wall = at_wall(table_furniture.counter(palette, rng, width))
-    return FurnitureGroup(items=(wall, at(objects.wall_cabinet(palette, rng, width), 0, 0)))
+    counter = g.at_wall(g.make("counter", width_m=(1.2, 1.6))).piece
+    g.put(g.make("wall cabinet", width_m=2 * float(counter.high_m[0])))
 
 
-# One piece at a wall -------------------------------------------------------------------------------------------------
-def single(make: Callable[[Palette, np.random.Generator], Piece], site: str = WALL) -> Maker:
-    """A group of one piece with its back at the wall."""
-    return lambda palette, rng: FurnitureGroup(items=(at_wall(make(palette, rng)),), site=site)
+def _bookcases(g: GroupBuilder, count: int):
+    width, height = g.uniform(0.75, 0.95), g.uniform(1.7, 2.1)
+    cases = [g.make("bookcase", width_m=width, height_m=height) for _ in range(count)]
+    start = -(count - 1) * (width + 0.005) / 2
+    for k, case in enumerate(cases):
+        g.at_wall(case, start + k * (width + 0.005))
 
 
-def on_wall_group(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
-    """A group of one piece mounted on a wall."""
-    return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),))
+@group()
+def bookcases(g: GroupBuilder):
+    """One bookcase."""
+    _bookcases(g, 1)
 
 
-def freestanding(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
-    """A group of one piece in the open."""
-    return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),), site=MIDDLE)
+@group()
+def two_bookcases(g: GroupBuilder):
+    """A row of two."""
+    _bookcases(g, 2)
 
 
-def shelves(count: int) -> Maker:
-    """A row of bookcases."""
-
-    def make(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-        width = float(rng.uniform(0.75, 0.95))
-        height = float(rng.uniform(1.7, 2.1))
-        cases = [storage_furniture.bookcase(palette, rng, width, height) for _ in range(count)]
-        start = -(count - 1) * (width + 0.005) / 2
-        return FurnitureGroup(items=tuple(at_wall(case, start + k * (width + 0.005)) for k, case in enumerate(cases)))
-
-    return make
+@group()
+def three_bookcases(g: GroupBuilder):
+    """A row of three."""
+    _bookcases(g, 3)
 
 
-def treadmill_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+@group()
+def treadmill_place(g: GroupBuilder):
     """A treadmill with its front towards the room."""
-    return FurnitureGroup(items=(at(objects.treadmill(palette, rng), 0, -0.85),))
+    g.put("treadmill", 0.0, -0.85)

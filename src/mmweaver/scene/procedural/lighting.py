@@ -8,6 +8,7 @@ from jaxtyping import Float
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Array, Points
 from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.procedural.palette import TABLES
 from mmweaver.scene.procedural.parts import Colour, PlacedPiece
 
 Irradiance = Float[Array, "point 3"]  # red, green, blue
@@ -27,39 +28,9 @@ class Lighting:
     exposure: float = 1.0
 
 
-_LIGHTINGS = (
-    Lighting(
-        name="day",
-        window=(5.0, 5.5, 6.2),
-        ceiling=(0.6, 0.6, 0.6),
-        lamp=(0.3, 0.25, 0.2),
-        ambient=(0.40, 0.42, 0.45),
-    ),
-    Lighting(
-        name="lamps",
-        window=(0.4, 0.5, 0.8),
-        ceiling=(6.5, 5.9, 4.9),
-        lamp=(5.0, 3.9, 2.5),
-        ambient=(0.36, 0.33, 0.28),
-    ),
-    Lighting(
-        name="evening",
-        window=(0.9, 0.6, 0.5),
-        ceiling=(1.6, 1.25, 0.8),
-        lamp=(9.0, 6.6, 3.8),
-        ambient=(0.24, 0.19, 0.14),
-        exposure=1.5,
-    ),
-    Lighting(
-        name="tubes",
-        window=(2.5, 2.8, 3.2),
-        ceiling=(6.0, 6.4, 6.6),
-        lamp=(0.5, 0.5, 0.4),
-        ambient=(0.42, 0.44, 0.45),
-    ),
+LIGHTINGS: Registry[Lighting] = Registry(
+    "lighting", [(name, Lighting(name=name, **row)) for name, row in TABLES["lightings"].items()]
 )
-
-LIGHTINGS: Registry[Lighting] = Registry("lighting", [(lighting.name, lighting) for lighting in _LIGHTINGS])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from mmweaver.scene.procedural.parts import Appearance, Part, PlacedPiece
 
 FACE_M = 0.25  # longest side: the simulator finds the edges of small faces
 _ROWS, _COLUMNS, _RING = 9, 20, 20
+_QUAD = np.array([[0, 1, 2], [0, 2, 3]])
 _SIDES = (  # normal axis, its sign, and the two tangent axes, whose cross product points outward
     (0, -1, 2, 1), (0, 1, 1, 2), (1, -1, 0, 2), (1, 1, 2, 0), (2, -1, 1, 0), (2, 1, 0, 1),
 )  # fmt: skip
@@ -30,29 +31,20 @@ class Mesh:
 
 def make_room_mesh(size_m: tuple[float, float, float], placed: Sequence[PlacedPiece], palette: Palette) -> Mesh:
     """The mesh of the empty room and of all pieces in it."""
-    vertices, faces, appearance, piece = [], [], [], []
-    appearances: dict[Appearance, int] = {}
-    count = 0
-
-    def add(corners: np.ndarray, triangles: np.ndarray, of: Appearance, number: int) -> None:
-        nonlocal count
-        vertices.append(corners)
-        faces.append(triangles + count)
-        appearance.append(np.full(len(triangles), appearances.setdefault(of, len(appearances))))
-        piece.append(np.full(len(triangles), number))
-        count += len(corners)
-
-    for corners, of in _shell(size_m, palette):
-        add(corners, np.array([[0, 1, 2], [0, 2, 3]]), of, -1)
+    solids = [(corners, _QUAD, surface, -1) for corners, surface in _shell(size_m, palette)]
     for number, item in enumerate(placed):
         for part in item.piece.parts:
             corners, triangles = _triangles(part)
-            add(item.points(corners), triangles, part.appearance, number)
+            solids.append((item.points(corners), triangles, part.appearance, number))
+    appearances = list(dict.fromkeys(surface for _, _, surface, _ in solids))
+    index = {surface: number for number, surface in enumerate(appearances)}
+    starts = np.cumsum([0, *(len(corners) for corners, *_ in solids)])
+    counts = [len(triangles) for _, triangles, *_ in solids]
     return Mesh(
-        vertices_m=np.concatenate(vertices),
-        faces=np.concatenate(faces),
-        appearance=np.concatenate(appearance),
-        piece=np.concatenate(piece),
+        vertices_m=np.concatenate([corners for corners, *_ in solids]),
+        faces=np.concatenate([solid[1] + start for solid, start in zip(solids, starts, strict=False)]),
+        appearance=np.repeat([index[surface] for _, _, surface, _ in solids], counts),
+        piece=np.repeat([number for *_, number in solids], counts),
         appearances=tuple(appearances),
     )
 
@@ -61,12 +53,12 @@ def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[n
     """The corners (4, 3), metres, and appearance of floor, ceiling and walls."""
     w, d, h = size_m
     quads = [
-        ([(0, 0, 0), (w, 0, 0), (w, d, 0), (0, d, 0)], palette.floor),
-        ([(0, 0, h), (0, d, h), (w, d, h), (w, 0, h)], palette.ceiling),
-        ([(0, d, 0), (w, d, 0), (w, d, h), (0, d, h)], palette.wall),
-        ([(0, 0, 0), (0, d, 0), (0, d, h), (0, 0, h)], palette.wall),
-        ([(w, 0, 0), (w, 0, h), (w, d, h), (w, d, 0)], palette.wall),
-        ([(0, 0, 0), (0, 0, h), (w, 0, h), (w, 0, 0)], palette.wall),
+        ([(0, 0, 0), (w, 0, 0), (w, d, 0), (0, d, 0)], palette["floor"]),
+        ([(0, 0, h), (0, d, h), (w, d, h), (w, 0, h)], palette["ceiling"]),
+        ([(0, d, 0), (w, d, 0), (w, d, h), (0, d, h)], palette["wall"]),
+        ([(0, 0, 0), (0, d, 0), (0, d, h), (0, 0, h)], palette["wall"]),
+        ([(w, 0, 0), (w, 0, h), (w, d, h), (w, d, 0)], palette["wall"]),
+        ([(0, 0, 0), (0, 0, h), (w, 0, h), (w, 0, 0)], palette["wall"]),
     ]
     return [(np.array(corners, float), appearance) for corners, appearance in quads]
 

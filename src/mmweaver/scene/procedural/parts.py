@@ -12,7 +12,6 @@ Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
 _MANY_PARTS = 24
 OVERLAP_M = 0.0005  # less is touching
-SHAPES = ("box", "rounded", "cylinder", "cone")
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class Appearance:
 
     colour: Colour
     material: str
-    coco: str
+    coco: str = ""
     pattern: str = "plain"  # a name in textures.PATTERNS
     emission: float = 0.0  # relative to the colour
     is_glass: bool = False  # depth cameras mostly measure nothing
@@ -34,7 +33,7 @@ class Part:
     low_m: Point
     high_m: Point
     appearance: Appearance
-    shape: str = "box"  # one of SHAPES
+    shape: str = "box"  # box | rounded | cylinder | cone
 
 
 @dataclass(frozen=True)
@@ -57,6 +56,7 @@ class Piece:
     seats: tuple[LocalSeat, ...] = ()
     landmark: str = ""  # Landmark.kind, if it is a landmark
     on_wall: bool = False  # mounted on a wall at y = 0
+    is_free: bool = False  # stands anywhere in a room, not only at a wall
 
     @property
     def low_m(self) -> Float[Array, "3"]:
@@ -65,6 +65,12 @@ class Piece:
     @property
     def high_m(self) -> Float[Array, "3"]:
         return np.max([part.high_m for part in self.parts], axis=0)
+
+    @property
+    def top_m(self) -> float:
+        """Height of the surface for objects, metres: the highest top of a box that is larger than 0.1 m2."""
+        sizes = [(part, np.subtract(part.high_m, part.low_m)) for part in self.parts if part.shape == "box"]
+        return max(part.high_m[2] for part, size in sizes if size[0] * size[1] > 0.1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,14 +144,8 @@ class Boxes:
         """Signed distance of each point to each box's surface, metres; negative inside."""
         offset = points_m[:, None] - self.centre_m[None]
         cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        local = np.stack(
-            [
-                cosine * offset[..., 0] + sine * offset[..., 1],
-                cosine * offset[..., 1] - sine * offset[..., 0],
-                offset[..., 2],
-            ],
-            -1,
-        )
+        x, y, z = np.moveaxis(offset, -1, 0)
+        local = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], -1)
         beyond = np.abs(local) - self.half_m
         return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0)
 
@@ -156,27 +156,26 @@ def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:
     return np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], axis=1)
 
 
-def part_boxes(placed: Sequence[PlacedPiece], first: int = 0) -> Boxes:
-    """The boxes of all parts of some pieces, numbered from `first`."""
-    low, high, yaw, names, index, origin = [], [], [], [], [], []
-    for number, item in enumerate(placed, start=first):
-        for part in item.piece.parts:
-            low.append(part.low_m)
-            high.append(part.high_m)
-            yaw.append(item.yaw_rad)
-            origin.append((item.x_m, item.y_m, item.z_m))
-            names.append(item.piece.name)
-            index.append(number)
-    low_m, high_m = np.array(low, float).reshape(-1, 3), np.array(high, float).reshape(-1, 3)
-    yaw_rad, local = np.array(yaw, float), (low_m + high_m) / 2
+def part_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
+    """The boxes of all parts of some pieces."""
+    rows = [(number, item, part) for number, item in enumerate(placed) for part in item.piece.parts]
+    low_m, high_m, origin_m = (
+        np.array(values, float).reshape(-1, 3)
+        for values in (
+            [part.low_m for *_, part in rows],
+            [part.high_m for *_, part in rows],
+            [(item.x_m, item.y_m, item.z_m) for _, item, _ in rows],
+        )
+    )
+    yaw_rad, local = np.array([item.yaw_rad for _, item, _ in rows], float), (low_m + high_m) / 2
     x = np.cos(yaw_rad) * local[:, 0] - np.sin(yaw_rad) * local[:, 1]
     y = np.sin(yaw_rad) * local[:, 0] + np.cos(yaw_rad) * local[:, 1]
     return Boxes(
-        centre_m=np.stack([x, y, local[:, 2]], axis=1) + np.array(origin, float).reshape(-1, 3),
+        centre_m=np.stack([x, y, local[:, 2]], axis=1) + origin_m,
         half_m=(high_m - low_m) / 2,
         yaw_rad=yaw_rad,
-        names=tuple(names),
-        piece=tuple(index),
+        names=tuple(item.piece.name for _, item, _ in rows),
+        piece=tuple(number for number, *_ in rows),
     )
 
 
@@ -186,31 +185,7 @@ def bounding_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
     for item in placed:
         piece = item.piece
         if len(piece.parts) > _MANY_PARTS:
-            low, high = (tuple(float(v) for v in end) for end in (piece.low_m, piece.high_m))
-            piece = replace(piece, parts=(Part(low, high, piece.parts[0].appearance),))  # type: ignore
+            low, high = (tuple(end.tolist()) for end in (piece.low_m, piece.high_m))
+            piece = replace(piece, parts=(Part(low, high, piece.parts[0].appearance),))
         whole.append(replace(item, piece=piece))
     return part_boxes(whole)
-
-
-# Shorthands for the furniture modules ---------------------------------------------------------------------------------
-def block(
-    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], appearance: Appearance, shape: str = "box"
-) -> Part:
-    """A part from its three extents."""
-    return Part((x[0], y[0], z[0]), (x[1], y[1], z[1]), appearance, shape)
-
-
-def legs(
-    x: tuple[float, float],
-    y: tuple[float, float],
-    height_m: float,
-    thick_m: float,
-    appearance: Appearance,
-    shape: str = "box",
-) -> tuple[Part, ...]:
-    """Four legs at the corners of a rectangle, inside it."""
-    return tuple(
-        block((a, a + thick_m), (b, b + thick_m), (0.0, height_m), appearance, shape)
-        for a in (x[0], x[1] - thick_m)
-        for b in (y[0], y[1] - thick_m)
-    )

@@ -33,6 +33,10 @@ from mmweaver.scene.procedural.rendering import CameraView, cast_view, render_cl
 from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
 
 MAX_LAYOUTS = 1000
+_OF_SCENE = (  # the fields of a scene that a room has, too
+    "radar_from_camera", "vertices_m", "faces", "face_material", "material_names", "planes", "floor_z_m", "free_space",
+    "seats", "landmarks",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,20 +115,7 @@ class ProceduralRoom:
 
     def scene(self, lighting: str = "day") -> Scene:
         """The true room, including what the camera cannot see."""
-        return Scene(
-            photo=self.photo(lighting),
-            radar_from_camera=self.radar_from_camera,
-            vertices_m=self.vertices_m,
-            faces=self.faces,
-            face_material=self.face_material,
-            material_names=self.material_names,
-            planes=self.planes,
-            floor_z_m=self.floor_z_m,
-            free_space=self.free_space,
-            seats=self.seats,
-            assumptions=(),
-            landmarks=self.landmarks,
-        )
+        return Scene(photo=self.photo(lighting), assumptions=(), **{name: getattr(self, name) for name in _OF_SCENE})
 
     @property
     def true_depth_m(self) -> DepthPixels:

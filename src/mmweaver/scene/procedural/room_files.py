@@ -34,49 +34,28 @@ def ground_truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
     """The ground truth of a room for JSON: metres in the radar's frame (x right, y away, z up), radians."""
     pitch, roll = pitch_and_roll_rad(room.radar_from_camera)
     boxes = room.boxes
+    columns = zip(boxes.names, boxes.piece, boxes.centre_m, boxes.half_m, boxes.yaw_rad, strict=True)
     return {
         "schema_version": TRUTH_VERSION,
-        "kind": room.kind,
-        "layout": room.layout,
-        "seed": room.seed,
+        **{name: getattr(room, name) for name in ("kind", "layout", "seed")},
         "lighting": lighting,
-        "floor_z_m": _rounded_list(room.floor_z_m),
-        "camera_pitch_rad": _rounded_list(pitch),
-        "camera_roll_rad": _rounded_list(roll),
+        "floor_z_m": _rounded(room.floor_z_m),
+        "camera_pitch_rad": _rounded(pitch),
+        "camera_roll_rad": _rounded(roll),
         "radar_from_camera": np.round(room.radar_from_camera, 6).tolist(),
-        "free_floor_m2": _rounded_list(room.free_m2),
-        "walkable_m2": _rounded_list(room.walkable_m2),
-        "seats": [
-            {
-                "position_m": _rounded_list(s.position_m),
-                "facing_rad": _rounded_list(s.facing_rad),
-                "size_m": _rounded_list(s.size_m),
-            }
-            for s in room.seats
-        ],
-        "landmarks": [
-            {
-                "kind": mark.kind,
-                "position_m": _rounded_list(mark.position_m),
-                "approach_m": _rounded_list(mark.approach_m),
-                "facing_rad": _rounded_list(mark.facing_rad),
-            }
-            for mark in room.landmarks
-        ],
+        "free_floor_m2": _rounded(room.free_m2),
+        "walkable_m2": _rounded(room.walkable_m2),
+        "seats": [_rounded(vars(seat)) for seat in room.seats],
+        "landmarks": [_rounded(vars(mark)) for mark in room.landmarks],
         "boxes": [
-            {
-                "name": name,
-                "piece": piece,
-                "centre_m": _rounded_list(centre),
-                "half_size_m": _rounded_list(half),
-                "yaw_rad": _rounded_list(yaw),
-            }
-            for name, piece, centre, half, yaw in zip(
-                boxes.names, boxes.piece, boxes.centre_m, boxes.half_m, boxes.yaw_rad, strict=True
-            )
+            _rounded(dict(zip(("name", "piece", "centre_m", "half_size_m", "yaw_rad"), row, strict=True)))
+            for row in columns
         ],
     }
 
 
-def _rounded_list(value: Any) -> Any:
-    return np.round(np.asarray(value, float), 4).tolist()
+def _rounded(value: Any) -> Any:
+    """Numbers to a tenth of a millimetre, as lists; names and whole numbers as they are."""
+    if isinstance(value, dict):
+        return {name: _rounded(inner) for name, inner in value.items()}
+    return value if isinstance(value, str | int) else np.round(np.asarray(value, float), 4).tolist()

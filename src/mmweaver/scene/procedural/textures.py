@@ -1,12 +1,14 @@
 """Procedural textures: reflectance from surface coordinates, by value noise on a lattice."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array
+from mmweaver.scene.procedural.palette import TABLES
 from mmweaver.scene.procedural.parts import Appearance
 
 Plane2 = Float[Array, "point 2"]
@@ -32,7 +34,8 @@ def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade
 def albedo(appearance: Appearance, plane: Plane2) -> Rgb:
     """Reflectance (point, 3) in linear RGB at surface coordinates `plane`, (point, 2) metres."""
     colour = np.asarray(appearance.colour, np.float32)
-    made = PATTERNS[appearance.pattern](plane, colour)
+    layers = _NOISE.get(appearance.pattern)
+    made = PATTERNS[appearance.pattern](plane, colour) if layers is None else _noise(plane, layers)
     return made if made.ndim == 2 else colour * made[:, None]
 
 
@@ -43,40 +46,12 @@ def _random(cell: np.ndarray, other: np.ndarray) -> Shade:
 
 # Each texture maps surface coordinates, (point, 2) metres, and a base colour (3,) to a factor of that colour, (point,),
 # or to colours, (point, 3).
-def _plain(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.03 * lattice_noise(plane, 0.06)
-
-
-def _grain(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.20 * lattice_noise(plane, (0.11, 0.01)) + 0.08 * lattice_noise(plane, 0.3)
-
-
-def _upright(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.18 * lattice_noise(plane, (0.012, 0.3)) + 0.08 * lattice_noise(plane, 0.3)
-
-
-def _weave(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.12 * lattice_noise(plane, 0.01) + 0.08 * lattice_noise(plane, 0.09)
-
-
-def _pile(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.16 * lattice_noise(plane, 0.012) + 0.10 * lattice_noise(plane, 0.25)
-
-
-def _plaster(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.025 * lattice_noise(plane, 0.35) + 0.015 * lattice_noise(plane, 0.02)
-
-
-def _concrete(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.10 * lattice_noise(plane, 0.4) + 0.08 * lattice_noise(plane, 0.05) + 0.05 * lattice_noise(plane, 0.012)
-
-
-def _speckle(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.14 * lattice_noise(plane, 0.008) + 0.05 * lattice_noise(plane, 0.15)
-
-
-def _leaves(plane: Plane2, colour: np.ndarray) -> Shade:
-    return 1 + 0.8 * lattice_noise(plane, 0.035)
+def _noise(plane: Plane2, layers: tuple) -> Shade:
+    """1 plus noise of each layer's amplitude and spacing."""
+    shade: Any = 1
+    for amplitude, scale_m in layers:
+        shade = shade + amplitude * lattice_noise(plane, scale_m)
+    return shade
 
 
 def _boards(plane: Plane2, colour: np.ndarray) -> Shade:
@@ -163,9 +138,8 @@ def _keys(plane: Plane2, colour: np.ndarray) -> Shade:
     return np.where(gap, 0.4, 1.6)
 
 
+_NOISE = TABLES["noise"]
 PATTERNS: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
-    "plain": _plain, "panel": _plain, "grain": _grain, "upright": _upright, "weave": _weave, "pile": _pile,
-    "plaster": _plaster, "concrete": _concrete, "speckle": _speckle, "leaves": _leaves, "boards": _boards,
-    "tiles": _tiles, "brick": _brick, "panels": _panels, "books": _books, "screen": _screen, "scribbles": _scribbles,
-    "picture": _picture, "sky": _sky, "keys": _keys,
+    "boards": _boards, "tiles": _tiles, "brick": _brick, "panels": _panels, "books": _books, "screen": _screen,
+    "scribbles": _scribbles, "picture": _picture, "sky": _sky, "keys": _keys,
 }  # fmt: skip

@@ -15,7 +15,7 @@ from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.scene.coco_stuff import MATERIAL, NAMES, UNLABELED, coco_class
+from mmweaver.scene.coco_stuff import CLASS_OF_MATERIAL, MATERIAL, NAMES, UNLABELED, coco_class
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.scanned_mesh.read_mesh import ColouredMesh, read_mesh
@@ -27,12 +27,6 @@ UPWARDS_RAD = np.deg2rad(40.0)
 MOST_NAMES = 12  # that a note lists
 FEWEST_SEEN = 0.2  # share of a picture's pixels
 TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
-# of the classes that imply a material, the one that says least else
-CLASS_OF_MATERIAL = {
-    "concrete": "wall-concrete", "brick": "wall-brick", "wood": "wood", "glass": "window-other", "metal": "metal",
-    "fabric": "cloth", "marble": "floor-marble", "floorboard": "floor-wood", "ceiling_board": "ceiling-tile",
-    "chipboard": "cabinet", "plasterboard": "wall-other",
-}  # fmt: skip
 
 
 def read_mesh_photo(

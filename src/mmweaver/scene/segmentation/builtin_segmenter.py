@@ -20,35 +20,18 @@ from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import foreign_errors
 from mmweaver.core.safe_files.safe_tensors import read_tensors
 from mmweaver.core.shapes import Array
-from mmweaver.scene.coco_stuff import NAMES
+from mmweaver.scene.coco_stuff import NAMES, SEGMENTER_GROUPS
 from mmweaver.scene.photo.depth_grid import make_grid
 from mmweaver.scene.segmentation.segmenter_features import CHANNELS, STRIDE, grid_features
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "segmenter.safetensors"
 WIDTHS = (32, 48, 80, 128)
-# A group is represented by its first class; a class in none of them is "unlabeled".
-GROUPS: tuple[tuple[str, ...], ...] = (
-    ("unlabeled",),
-    ("wall-other", "wall-brick", "wall-concrete", "wall-panel", "wall-stone", "wall-tile", "wall-wood"),
-    ("floor-other", "floor-marble", "floor-stone", "floor-tile", "floor-wood", "carpet", "rug", "mat"),
-    ("ceiling-other", "ceiling-tile"),
-    ("window-other", "window"),
-    ("mirror-stuff", "mirror"),
-    ("door-stuff", "door"),
-    ("couch", "bed", "pillow", "blanket"),
-    ("curtain", "cloth", "towel", "textile-other"),
-    ("chair", "bench"),
-    ("table", "desk-stuff", "desk", "dining table"),
-    ("cabinet", "cupboard", "shelf", "furniture-other", "counter"),
-    ("tv", "laptop"),
-    ("refrigerator", "oven", "microwave", "sink", "metal"),
-)
-GROUP_NAMES = tuple(group[0] for group in GROUPS)
+GROUP_NAMES = tuple(group[0] for group in SEGMENTER_GROUPS)
 
 
 def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
     """The group of each class name, (name,); 0 for a class in none."""
-    group = {name: index for index, members in enumerate(GROUPS) for name in members}
+    group = {name: index for index, members in enumerate(SEGMENTER_GROUPS) for name in members}
     return np.array([group.get(name, 0) for name in names])
 
 
@@ -70,7 +53,7 @@ def make_network() -> Any:
             self.stem = block(CHANNELS, a)
             self.down = nn.ModuleList([block(a, b, 2), block(b, c, 2), block(c, d, 2)])
             self.up = nn.ModuleList([block(d + c, c), block(c + b, b), block(b + a, a)])
-            self.head = nn.Conv2d(a, len(GROUPS), 1)
+            self.head = nn.Conv2d(a, len(SEGMENTER_GROUPS), 1)
 
         def forward(self, cells: torch.Tensor) -> torch.Tensor:
             levels = [self.stem(cells)]

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.shapes import Array
-from mmweaver.scene.layout.gravity_alignment import AlignedRoom, align_room
+from mmweaver.scene.layout.gravity import AlignedRoom, align_room
 from mmweaver.scene.layout.height_map import CELL_M
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridFloat
 

@@ -9,8 +9,8 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
+from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.sample_photo import sample_photo
-from mmweaver.scene.whole_room.view_file import read_views
 
 IDENTITY = np.eye(4).tolist()
 AHEAD = [[1, 0, 0, 0.0], [0, 1, 0, 0], [0, 0, 1, 2.0], [0, 0, 0, 1]]

@@ -6,32 +6,39 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.core.records import Plane, RgbdPhoto, Scene
-from mmweaver.scene.affordances.assumed_floor import find_assumed_floor
+from mmweaver.scene.affordances.free_space import find_assumed_floor
 from mmweaver.scene.affordances.landmarks import find_landmarks
-from mmweaver.scene.layout.gravity_alignment import room_gravity
+from mmweaver.scene.layout.gravity import room_gravity
+from mmweaver.scene.layout.mesh import joined_meshes, rectangle_faces
+from mmweaver.scene.layout.panes import add_wall_panels, find_wall_panels
 from mmweaver.scene.layout.room_layout import estimate_layout
 from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
-from mmweaver.scene.layout.wall_panels import find_wall_panels, with_wall_panels
-from mmweaver.scene.photo.depth_grid import make_grid
-from mmweaver.scene.photo.posed_photo import PosedPhoto
-from mmweaver.scene.reconstruction import (
-    DEFAULT_FLOOR,
-    completed_faces,
-    floor_plane,
-    general_assumptions,
-    reconstruct,
-)
-from mmweaver.scene.seen_room import SeenRoom, see
-from mmweaver.scene.whole_room.common_frame import SPREAD_M, common_gravity, moved_by_walls, turned_by_walls
-from mmweaver.scene.whole_room.joined_parts import (
+from mmweaver.scene.multiview.fusion import (
     joined_free_space,
     joined_grid,
     joined_landmarks,
     joined_planes,
     joined_seats,
 )
-from mmweaver.scene.whole_room.level_pose import AT_FIRST, LevelPose
-from mmweaver.scene.whole_room.matched_heights import height_map, shift_by_heights
+from mmweaver.scene.multiview.registration import (
+    AT_FIRST,
+    SPREAD_M,
+    LevelPose,
+    common_gravity,
+    height_map,
+    moved_by_walls,
+    shift_by_heights,
+    turned_by_walls,
+)
+from mmweaver.scene.photo.depth_grid import make_grid
+from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.reconstruction import (
+    DEFAULT_FLOOR,
+    floor_plane,
+    general_assumptions,
+    reconstruct,
+)
+from mmweaver.scene.single_view import SingleView, see
 
 
 def reconstruct_together(photo: RgbdPhoto, others: Sequence[PosedPhoto], *, assumptions: tuple[str, ...] = ()) -> Scene:
@@ -66,13 +73,13 @@ def reconstruct_together(photo: RgbdPhoto, others: Sequence[PosedPhoto], *, assu
     # 4. Meshes of all photos, for the ray caster.
     meshes = [(one.mesh(), pose) for one, pose in pairs]
     moved = [(pose.points(mesh[0]), *mesh[1:]) for mesh, pose in meshes]
-    vertices_m, faces, face_material = _joined_meshes([*moved, completed_faces(floor, layout.extended)])
+    vertices_m, faces, face_material = joined_meshes([*moved, rectangle_faces([floor, *layout.extended])])
     notes = tuple(dict.fromkeys(note for one in seen for note in one.assumptions))
     has_classes = any(one.view.photo.classes is not None for one in seen)
     return Scene(
         photo=seen[0].view.photo, radar_from_camera=seen[0].room.radar_from_camera, vertices_m=vertices_m, faces=faces,
         face_material=face_material, material_names=MATERIAL_NAMES,
-        planes=(floor, *with_wall_panels(layout.planes, panels, layout.extended)),
+        planes=(floor, *add_wall_panels(layout.planes, panels, layout.extended)),
         floor_z_m=seen[0].view.floor_z_m, free_space=replace(free, is_assumed=assumed), seats=joined_seats(seats),
         landmarks=joined_landmarks(landmarks),
         assumptions=(
@@ -87,7 +94,7 @@ def _photos(others: Sequence[PosedPhoto]) -> tuple[RgbdPhoto, ...]:
 
 
 def _corrected(
-    seen: Sequence[SeenRoom], poses: Sequence[LevelPose], others: Sequence[PosedPhoto]
+    seen: Sequence[SingleView], poses: Sequence[LevelPose], others: Sequence[PosedPhoto]
 ) -> tuple[LevelPose, ...]:
     """The level pose of every photo, the first's first, each corrected by what those before it show."""
     placed, known, floor_z_m = [AT_FIRST], list(seen[0].planes), seen[0].view.floor_z_m
@@ -104,11 +111,11 @@ def _corrected(
     return tuple(placed)
 
 
-def _points(one: SeenRoom, pose: LevelPose) -> np.ndarray:
+def _points(one: SingleView, pose: LevelPose) -> np.ndarray:
     return pose.points(one.room.grid.points_m.reshape(-1, 3))
 
 
-def _is_wall(seen: Sequence[SeenRoom]) -> np.ndarray | None:
+def _is_wall(seen: Sequence[SingleView]) -> np.ndarray | None:
     """The cells (1, cell) that class masks label as wall; None unless every photo has a mask."""
     masks = [one.is_wall for one in seen]
     if any(mask is None for mask in masks):
@@ -116,22 +123,15 @@ def _is_wall(seen: Sequence[SeenRoom]) -> np.ndarray | None:
     return np.concatenate([mask.ravel() for mask in masks if mask is not None])[None]
 
 
-def _panels(one: SeenRoom, pose: LevelPose, walls: Sequence[Plane]) -> list[Plane]:
+def _panels(one: SingleView, pose: LevelPose, walls: Sequence[Plane]) -> list[Plane]:
     own_walls = [pose.inverse.plane(wall) for wall in walls]
     return [pose.plane(panel) for panel in find_wall_panels(one.view, own_walls)]
 
 
-def _landmarks(one: SeenRoom):
+def _landmarks(one: SingleView):
     material = one.floor_material or DEFAULT_FLOOR
     floor = floor_plane(one.room.grid, one.is_floor, material)
     return find_landmarks(one.view, (floor, *one.planes), one.height_map, one.free_space, one.seats)
-
-
-def _joined_meshes(meshes: Sequence[tuple[np.ndarray, ...]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """All vertices, faces and materials: overlapping triangles do no harm, for a ray ends at the first."""
-    starts = np.cumsum([0, *(len(vertices_m) for vertices_m, *_ in meshes)])
-    faces = [mesh[1] + start for mesh, start in zip(meshes, starts, strict=False)]
-    return np.concatenate([mesh[0] for mesh in meshes]), np.concatenate(faces), np.concatenate([m[2] for m in meshes])
 
 
 def _note(given: Sequence[LevelPose], placed: Sequence[LevelPose], others: Sequence[PosedPhoto]) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.scene.whole_room.scan_poses import scan_pose, spread_out
+from mmweaver.scene.multiview.scan_poses import scan_pose, spread_out
 
 # a camera 1 m along x that looks along -x, upright; y is up in the worlds of phones, z in those of data sets
 PLACE = (1.0, 0.0, 0.0)

@@ -1,22 +1,24 @@
 """Joins what several photos show of one room: planes, floor, seats, landmarks."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
 from mmweaver.scene.affordances.free_space import MIN_DISTANCE_M
+from mmweaver.scene.layout.mesh import rectangle_corners_m
 from mmweaver.scene.layout.surfaces import AlignedGrid
-from mmweaver.scene.seen_room import SeenRoom
-from mmweaver.scene.whole_room.level_pose import LevelPose
+from mmweaver.scene.multiview.registration import LevelPose
+from mmweaver.scene.single_view import SingleView
 
 SAME_PLANE_M, SAME_NORMAL = 0.1, np.cos(np.deg2rad(10))
 GAP_M = 0.15  # between two parts of one plane
 SAME_SEAT_M, SAME_LANDMARK_M = 0.4, 0.8
 
 
-def joined_grid(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> AlignedGrid:
+def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> AlignedGrid:
     """The cells of all photos in one row, (1, cell), in the first camera's level frame."""
 
     def one_row(parts: list[np.ndarray]) -> np.ndarray:
@@ -60,11 +62,7 @@ def _is_one(large: Plane, small: Plane) -> bool:
 
 def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
     """Where the corners of the smaller one lie along the axes of the larger, from its centre."""
-    corners = [
-        small.centre_m + u * small.half_size_m[0] * small.axis_u + v * small.half_size_m[1] * small.axis_v
-        for u in (-1, 1) for v in (-1, 1)
-    ]  # fmt: skip
-    local = (np.array(corners) - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
+    local = (rectangle_corners_m(small) - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
     return local.min(axis=0), local.max(axis=0)
 
 
@@ -79,7 +77,7 @@ def _around(large: Plane, small: Plane) -> Plane:
     )  # fmt: skip
 
 
-def joined_free_space(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> FreeSpace:
+def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> FreeSpace:
     """The first camera's map, with the floor that any photo shows free and none shows blocked."""
     first = seen[0].free_space
     is_free, is_seen = np.zeros_like(first.is_free), np.zeros_like(first.is_free)
@@ -96,18 +94,19 @@ def joined_free_space(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> F
 
 def joined_seats(seats: Sequence[Seat]) -> tuple[Seat, ...]:
     """The seats, each once."""
-    kept: list[Seat] = []
-    for seat in seats:
-        if all(np.linalg.norm((seat.position_m - one.position_m)[:2]) > SAME_SEAT_M for one in kept):
-            kept.append(seat)
-    return tuple(kept)
+    return _once(seats, SAME_SEAT_M, lambda one: "seat")
 
 
 def joined_landmarks(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
     """The landmarks, each once."""
-    kept: list[Landmark] = []
-    for landmark in landmarks:
-        same = (one for one in kept if one.kind == landmark.kind)
-        if all(np.linalg.norm((landmark.position_m - one.position_m)[:2]) > SAME_LANDMARK_M for one in same):
-            kept.append(landmark)
+    return _once(landmarks, SAME_LANDMARK_M, lambda one: one.kind)
+
+
+def _once(places: Sequence[Any], apart_m: float, kind: Callable[[Any], str]) -> tuple[Any, ...]:
+    """The first of places of a kind that are no more than `apart_m` from each other."""
+    kept: list[Any] = []
+    for place in places:
+        same = (one for one in kept if kind(one) == kind(place))
+        if all(np.linalg.norm((place.position_m - one.position_m)[:2]) > apart_m for one in same):
+            kept.append(place)
     return tuple(kept)

@@ -12,23 +12,22 @@ from mmweaver.scene.affordances.free_space import find_free_space
 from mmweaver.scene.affordances.seats import find_seats
 from mmweaver.scene.coco_stuff import ROUGH, WALLS
 from mmweaver.scene.layout.class_evidence import cells_of, seat_evidence
-from mmweaver.scene.layout.gravity import Gravity
-from mmweaver.scene.layout.gravity_alignment import AlignedRoom, align_room
+from mmweaver.scene.layout.gravity import AlignedRoom, Gravity, align_room
 from mmweaver.scene.layout.height_map import HeightMap, make_height_map
 from mmweaver.scene.layout.mesh import make_mesh
+from mmweaver.scene.layout.panes import fill_panes
 from mmweaver.scene.layout.surface_materials import (
     MATERIAL_NAMES,
+    apply_class_materials,
     cell_materials,
-    with_class_materials,
-    with_material,
+    replace_material,
 )
 from mmweaver.scene.layout.surfaces import Surface, floor_cells
-from mmweaver.scene.layout.transparent_surfaces import with_transparent_surfaces
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_grid
 
 
 @dataclass(frozen=True, kw_only=True)
-class SeenRoom:
+class SingleView:
     """A photo aligned with gravity, its surfaces with their materials, and the places for people that it shows."""
 
     view: AlignedPhoto
@@ -65,12 +64,12 @@ class SeenRoom:
         return make_mesh(self.room.grid, rays, self.room.surfaces, self.is_floor, self.material)
 
 
-def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SeenRoom:
+def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SingleView:
     """Finds surfaces, places and materials in a photo; `gravity` where it is known better than this photo shows.
 
     Raises InputError where the depth shows no surfaces.
     """
-    photo, pane_assumptions = with_transparent_surfaces(photo)
+    photo, pane_assumptions = fill_panes(photo)
     grid = make_grid(photo)
     room = align_room(grid, gravity)
     gravity, aligned, surfaces = room.gravity, room.grid, room.surfaces
@@ -84,11 +83,11 @@ def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SeenRoom:
     # Materials, from geometry and colour, then from the class mask.
     material, surface_names = cell_materials(aligned, grid.rgb, surfaces, is_floor, seats)
     if grid.class_index is not None and photo.classes is not None:
-        material, surface_names = with_class_materials(
+        material, surface_names = apply_class_materials(
             material, surface_names, grid.class_index, photo.classes.names, surfaces, is_floor
         )
-    planes = tuple(with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True))
-    return SeenRoom(
+    planes = tuple(replace_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True))
+    return SingleView(
         view=view, grid=grid, room=room, is_floor=is_floor, height_map=height_map, free_space=free_space, seats=seats,
         material=material, planes=planes, assumptions=(*pane_assumptions, *gravity.assumptions),
     )  # fmt: skip

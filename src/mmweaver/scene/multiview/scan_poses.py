@@ -26,21 +26,21 @@ def scan_pose(folder: Path, kind: str, frame: Path) -> Pose | None:
     if kind != "ScanNet" and not number.replace(".", "", 1).isdigit():
         return None
     if kind == "Stray Scanner":
-        return _in_table(folder / "odometry.csv", float(number), 1, slice(2, 9), apart=0.5)
+        return _nearest_row(folder / "odometry.csv", float(number), 1, slice(2, 9), apart=0.5)
     if kind == "TUM RGB-D":
-        return _in_table(folder / "groundtruth.txt", float(number), 0, slice(1, 8), apart=TUM_APART_S)
+        return _nearest_row(folder / "groundtruth.txt", float(number), 0, slice(1, 8), apart=TUM_APART_S)
     if kind == "ScanNet":
         file = folder / "pose" / f"{number}.txt"
         return _matrix(number_table(file, allow_infinite=True)) if file.is_file() else None
     if kind == "Polycam":
         cameras = "corrected_cameras" if (folder / "keyframes" / "corrected_images").is_dir() else "cameras"
         said = read_json(folder / "keyframes" / cameras / f"{number}.json")
-        return _of_polycam(said)
+        return _polycam_pose(said)
     poses = read_json(folder / "metadata").get("poses")
     if not isinstance(poses, list) or int(number) >= len(poses):
         return None
     values = poses[int(number)]
-    return _of_quaternion([*values[4:7], *values[:4]], Y_UP_CAMERA) if isinstance(values, list) else None
+    return _quaternion_pose([*values[4:7], *values[:4]], Y_UP_CAMERA) if isinstance(values, list) else None
 
 
 def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[int]:
@@ -51,7 +51,9 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
     places = {index: _place_and_direction(pose) for index, pose in known.items()}
     chosen = [first]
     while len(chosen) <= most:
-        new = {index: min(_apart(place, places[one]) for one in chosen) for index, place in places.items()}
+        new = {
+            index: min(float(np.linalg.norm(place - places[one])) for one in chosen) for index, place in places.items()
+        }
         best = max(new, key=lambda index: new[index])
         if new[best] < ENOUGH:
             break
@@ -64,26 +66,22 @@ def _place_and_direction(pose: Pose) -> np.ndarray:
     return np.concatenate([pose[:3, 3], pose[:3, 2] * 57.3 / DEGREES_A_METRE])
 
 
-def _apart(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.linalg.norm(a - b))
-
-
-def _in_table(path: Path, key: float, column: int, values: slice, *, apart: float) -> Pose | None:
+def _nearest_row(path: Path, key: float, column: int, values: slice, *, apart: float) -> Pose | None:
     """The row of a table of poses (place, quaternion x y z w) nearest to a key."""
     if not path.is_file():
         return None
     rows = number_table(path)
     if rows.shape[1] == 7 and column:  # Stray Scanner until 2021: a line a frame, no time and number
-        return _of_quaternion(rows[int(key)].tolist(), np.eye(4)) if int(key) < len(rows) else None
+        return _quaternion_pose(rows[int(key)].tolist(), np.eye(4)) if int(key) < len(rows) else None
     if rows.shape[1] < values.stop:
         return None
     nearest = int(np.argmin(np.abs(rows[:, column] - key)))
     if abs(rows[nearest, column] - key) > apart:
         return None
-    return _of_quaternion(rows[nearest, values].tolist(), np.eye(4))
+    return _quaternion_pose(rows[nearest, values].tolist(), np.eye(4))
 
 
-def _of_quaternion(values: Sequence[Any], own_axes: np.ndarray) -> Pose | None:
+def _quaternion_pose(values: Sequence[Any], own_axes: np.ndarray) -> Pose | None:
     """From place and quaternion (x, y, z, w); None where they are no pose."""
     from scipy.spatial.transform import Rotation
 
@@ -98,7 +96,7 @@ def _of_quaternion(values: Sequence[Any], own_axes: np.ndarray) -> Pose | None:
     return pose @ own_axes
 
 
-def _of_polycam(said: Any) -> Pose | None:
+def _polycam_pose(said: Any) -> Pose | None:
     try:
         rows = [[float(said[f"t_{row}{column}"]) for column in range(4)] for row in range(3)]
     except (KeyError, TypeError, ValueError):

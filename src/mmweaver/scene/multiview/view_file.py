@@ -24,7 +24,7 @@ from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.posed_photo import Pose, PosedPhoto
 from mmweaver.scene.read_photo import read_photo
 
-MOST_PHOTOS = 24
+MAX_PHOTOS = 24
 FILES = ("rgb", "depth", "camera", "classes")
 KEYS = {*FILES, "pose", "place_m", "turned_deg"}
 ROTATION_ERROR = 1e-2
@@ -34,8 +34,8 @@ def read_views(path: Path, *, segmenter: str | None = None) -> CapturedPhoto:
     """Reads the photos that a views.json names, paths relative to it. Raises InputError."""
     content = read_json(path)
     entries = content.get("photos") if isinstance(content, dict) else None
-    if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_PHOTOS:
-        raise InputError(f'{path} must be {{"photos": [...]}} with 1 to {MOST_PHOTOS} photos')
+    if not isinstance(entries, list) or not 1 <= len(entries) <= MAX_PHOTOS:
+        raise InputError(f'{path} must be {{"photos": [...]}} with 1 to {MAX_PHOTOS} photos')
     photos, poses, files, notes = [], [], {}, []
     for number, entry in enumerate(entries, 1):
         if not isinstance(entry, dict) or not {"rgb", "depth"} <= set(entry) or not set(entry) <= KEYS:

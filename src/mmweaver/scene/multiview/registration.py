@@ -1,22 +1,101 @@
 """Brings several photos of a room into the level frame of the first: gravity of all, poses, corrected by the walls."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
-from mmweaver.core.records import Plane
-from mmweaver.core.shapes import Vec3
+from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.core.shapes import Array, Points, Rotation, Vec3
 from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.layout.gravity import Gravity
 from mmweaver.scene.layout.room_layout import room_azimuth_rad
 from mmweaver.scene.photo.posed_photo import PosedPhoto
-from mmweaver.scene.whole_room.level_pose import LevelPose, about_vertical
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelPose:
+    """From the level frame of a further camera to that of the first, in which the radar stands at the origin."""
+
+    turn: Rotation  # about the vertical
+    position_m: Vec3  # of the further camera
+
+    def points(self, points_m: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
+        """Places in the first camera's level frame, metres."""
+        return points_m @ self.turn.T + self.position_m
+
+    def directions(self, vectors: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
+        """Directions in the first camera's level frame."""
+        return vectors @ self.turn.T
+
+    def turned(self, angle_rad: float) -> "LevelPose":
+        """The camera at the same place, turned further, counterclockwise as seen from above."""
+        return LevelPose(turn=about_vertical(angle_rad) @ self.turn, position_m=self.position_m)
+
+    def moved(self, shift_m: Vec3) -> "LevelPose":
+        """The camera turned alike, at another place."""
+        return LevelPose(turn=self.turn, position_m=self.position_m + shift_m)
+
+    @property
+    def inverse(self) -> "LevelPose":
+        """From the first camera's level frame to this one's."""
+        return LevelPose(turn=self.turn.T, position_m=-self.turn.T @ self.position_m)
+
+    @property
+    def azimuth_rad(self) -> float:
+        """How far the camera is turned, counterclockwise as seen from above."""
+        return float(np.arctan2(self.turn[1, 0], self.turn[0, 0]))
+
+    def plane(self, plane: Plane) -> Plane:
+        """A plane in the first camera's level frame."""
+        return Plane(
+            kind=plane.kind, centre_m=self.points(plane.centre_m), normal=self.directions(plane.normal),
+            axis_u=self.directions(plane.axis_u), axis_v=self.directions(plane.axis_v),
+            half_size_m=plane.half_size_m, material=plane.material,
+        )  # fmt: skip
+
+    def seat(self, seat: Seat) -> Seat:
+        """A seat in the first camera's level frame."""
+        facing_rad = _wrapped(seat.facing_rad + self.azimuth_rad)
+        return Seat(position_m=self.points(seat.position_m), facing_rad=facing_rad, size_m=seat.size_m)
+
+    def landmark(self, landmark: Landmark) -> Landmark:
+        """A landmark in the first camera's level frame."""
+        x, y, _ = self.points(np.array([*landmark.approach_m, 0.0]))
+        return Landmark(
+            kind=landmark.kind, position_m=self.points(landmark.position_m), approach_m=(float(x), float(y)),
+            facing_rad=_wrapped(landmark.facing_rad + self.azimuth_rad),
+        )  # fmt: skip
+
+    def looked_up(self, values: np.ndarray, of: FreeSpace, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
+        """Values (y, x) of this camera's map of the floor at squares of the first camera's; False outside the map."""
+        x, y = np.meshgrid(x_m, y_m)
+        own = self.inverse.points(np.stack([x, y, np.zeros_like(x)], axis=-1))
+        cell_m = of.x_m[1] - of.x_m[0]
+        column = np.rint((own[..., 0] - of.x_m[0]) / cell_m).astype(int)
+        row = np.rint((own[..., 1] - of.y_m[0]) / cell_m).astype(int)
+        inside = (column >= 0) & (column < len(of.x_m)) & (row >= 0) & (row < len(of.y_m))
+        return inside & values[np.where(inside, row, 0), np.where(inside, column, 0)]
+
+
+AT_FIRST = LevelPose(turn=np.eye(3), position_m=np.zeros(3))
+
+
+def about_vertical(angle_rad: float) -> Rotation:
+    """The rotation counterclockwise as seen from above."""
+    cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _wrapped(angle_rad: float) -> float:
+    return float(np.angle(np.exp(1j * angle_rad)))
+
 
 SAME_UP = np.cos(np.deg2rad(3.0))  # upward directions of photos that agree
-MOST_TURN_RAD = {True: np.deg2rad(20.0), False: np.deg2rad(3.0)}  # by which walls correct a pose, by its being rough
+MAX_TURN_RAD = {True: np.deg2rad(20.0), False: np.deg2rad(3.0)}  # by which walls correct a pose, by its being rough
 SPREAD_M = {True: 0.15, False: 0.03}  # standard deviation of a pose's place, by its being rough
 PARALLEL = np.cos(np.deg2rad(6.0))
 SAME_PLANE_M, STEP_M = 0.03, 0.01
@@ -46,7 +125,7 @@ def common_gravity(
     gravities, poses = [first], []
     for index, one in enumerate(others, 1):
         if isinstance(one.pose, RadarPose):
-            gravity, pose = _of_rough(own[index], one.pose, first)
+            gravity, pose = _rough_pose(own[index], one.pose, first)
         else:
             own_up = rotations[index].T @ up
             turn = level @ rotations[index] @ level_from_camera(own_up).T
@@ -69,7 +148,7 @@ def _agreed(ups: list[Vec3]) -> Vec3:
     return mean / np.linalg.norm(mean)
 
 
-def _of_rough(own: Gravity, given: RadarPose, first: Gravity) -> tuple[Gravity, LevelPose]:
+def _rough_pose(own: Gravity, given: RadarPose, first: Gravity) -> tuple[Gravity, LevelPose]:
     """Gravity and level pose where only place and turn are known: heights follow from the floors."""
     both = own.has_floor and first.has_floor
     height_m = first.floor_z_m - own.floor_z_m if both else given.z_m
@@ -91,7 +170,7 @@ def turned_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Pl
     if own_rad is None or known_rad is None:
         return pose
     turn_rad = float(np.angle(np.exp(4j * (known_rad - own_rad)))) / 4
-    return pose.turned(turn_rad) if abs(turn_rad) < MOST_TURN_RAD[is_rough] else pose
+    return pose.turned(turn_rad) if abs(turn_rad) < MAX_TURN_RAD[is_rough] else pose
 
 
 def moved_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Plane], *, is_rough: bool) -> LevelPose:
@@ -139,3 +218,44 @@ def _overlap(plane: Plane, other: Plane, axis: Vec3) -> bool:
 
 def _area_m2(plane: Plane) -> float:
     return 4 * plane.half_size_m[0] * plane.half_size_m[1]
+
+
+CELL_M, REACH_M = 0.05, 8.0
+SAME_HEIGHT_M = 0.06
+MIN_HEIGHT_M = 0.15  # above the floor: what is lower is floor
+FLOOR_WEIGHT = 0.2  # of cells where both show the floor: it is the same everywhere
+MIN_CELLS = 150  # that both show, and not as floor
+
+
+def height_map(points_m: Points, floor_z_m: float) -> Float[Array, "y x"]:
+    """The highest point above each square, metres above the floor, nan where nothing was measured."""
+    side = int(2 * REACH_M / CELL_M)
+    points_m = points_m[np.isfinite(points_m).all(axis=1)]
+    column, row = (np.floor((points_m[:, axis] + REACH_M) / CELL_M).astype(int) for axis in (0, 1))
+    inside = (column >= 0) & (column < side) & (row >= 0) & (row < side)
+    found = np.full(side * side, -np.inf)
+    np.maximum.at(found, row[inside] * side + column[inside], points_m[inside, 2] - floor_z_m)
+    found[np.abs(found) < MIN_HEIGHT_M] = 0.0
+    return np.where(np.isfinite(found), found, np.nan).reshape(side, side)
+
+
+def shift_by_heights(own: Float[Array, "y x"], known: Float[Array, "y x"], spread_m: float) -> Vec3:
+    """The horizontal shift of `own` for which most squares have the height of `known`; none where too few agree.
+
+    Squares of other heights count against it; `spread_m` is the standard deviation that is expected of the shift.
+    """
+    steps = range(-int(2.5 * spread_m / CELL_M), int(2.5 * spread_m / CELL_M) + 1)
+    best, shift = -np.inf, (0, 0)
+    for rows in steps:
+        for columns in steps:
+            moved = np.roll(own, (rows, columns), axis=(0, 1))
+            both = np.isfinite(moved) & np.isfinite(known)
+            a, b = moved[both], known[both]
+            is_same = np.abs(a - b) < SAME_HEIGHT_M
+            is_floor = (a == 0) & (b == 0)
+            agree = (is_same & ~is_floor).sum()
+            score = agree + FLOOR_WEIGHT * is_floor.sum() - 0.5 * (~is_same).sum()
+            score -= 0.5 * MIN_CELLS * ((rows**2 + columns**2) * CELL_M**2) / spread_m**2
+            if score > best and agree > MIN_CELLS:
+                best, shift = score, (rows, columns)
+    return np.array([shift[1] * CELL_M, shift[0] * CELL_M, 0.0])

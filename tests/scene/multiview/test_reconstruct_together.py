@@ -7,9 +7,9 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
 
 LEFT, RIGHT, BACK, FRONT, HEIGHT = -1.8, 2.4, -0.6, 4.4, 2.5
 EYE_M = 1.2  # of the first camera, above the floor
@@ -72,15 +72,6 @@ def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPo
     assert ceiling.centre_m[2] == pytest.approx(HEIGHT - EYE_M, abs=0.03)
     assert 4 * np.prod(ceiling.half_size_m) == pytest.approx((RIGHT - LEFT) * (FRONT - BACK), rel=0.03)
     assert scene.floor_z_m == pytest.approx(-EYE_M, abs=0.02)
-
-
-def test_a_stated_place_that_nothing_bears_out_is_said():
-    true = RadarPose(x_m=SECOND.x_m, y_m=SECOND.y_m, yaw_deg=SECOND.yaw_deg)
-    elsewhere = RadarPose(x_m=30.0, y_m=3.9, yaw_deg=SECOND.yaw_deg + 35)
-    for stated, is_said in ((true, False), (elsewhere, True)):
-        scene = reconstruct_together(photo(RadarPose()), [PosedPhoto(photo=photo(SECOND), pose=stated)])
-        note = next(one for one in scene.assumptions if "photos were joined, 1 of them by rough places;" in one)
-        assert ("Nothing in photo 2 bears out where it was taken" in note) == is_said
 
 
 def test_floor_that_the_first_photo_cannot_see_is_free():
