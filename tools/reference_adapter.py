@@ -186,17 +186,15 @@ def real_placements(folder: Path, num_seeds: int) -> dict[str, Any]:
 # RadHAR -------------------------------------------------------------------------------------------------------------
 def make_window(path: Path, label: str, index: int, seed: int) -> None:
     """A generated window of RadHAR's recipe in a file."""
-    from mmweaver.recognition.generated_windows import generate_window, write_window
-    from mmweaver.recognition.radhar import radhar_recipe
+    from studies.recognition.zero_shot_recipe import generate_window, radhar_recipe, write_window
 
     write_window(path, generate_window(radhar_recipe(), label, index, seed))
 
 
 def score_of_windows(paths: list[Path], data: Path, seed: int) -> dict[str, Any]:
     """A recogniser trained on generated windows, evaluated on RadHAR's developed half."""
-    from mmweaver.recognition.generated_windows import read_window
-    from mmweaver.recognition.radhar import radhar_recipe
-    from mmweaver.recognition.zero_shot import featurize
+    from studies.recognition.zero_shot_recipe import radhar_recipe, read_window
+    from studies.recognition.zero_shot_training import featurize
 
     windows = [read_window(path, path.stem.split("_")[0], radhar_recipe()) for path in paths]
     return _score(featurize(windows, seed=seed).train(), data, radhar_recipe().window_s)
@@ -204,18 +202,18 @@ def score_of_windows(paths: list[Path], data: Path, seed: int) -> dict[str, Any]
 
 def score_of_frozen(name: str, data: Path) -> dict[str, Any]:
     """The frozen recogniser on the same."""
-    from mmweaver.recognition.frozen_activity import load_frozen
+    from studies.recognition.zero_shot_training import load_frozen
 
     frozen = load_frozen(name)
     return _score(frozen.train(), data, frozen.window_s)
 
 
 def _score(model: Any, data: Path, window_s: float) -> dict[str, Any]:
-    from mmweaver.recognition.point_recording_files import read_point_recordings
-    from mmweaver.recognition.scoring import evaluate_recogniser, report
-    from studies.recognition.zero_shot_anew import developed
+    from mmweaver.recognition.scoring import report
+    from studies.recognition.zero_shot_anew import developed, radhar_recordings
+    from studies.recognition.zero_shot_training import evaluate_recogniser
 
-    people = developed(read_point_recordings(data / "pointclouds" / "radhar", RADHAR_LABELS))
+    people = developed(radhar_recordings(data / "pointclouds" / "radhar"))
     window = report(evaluate_recogniser(model, people, window_s))["window"]
     return {name: window[name] for name in ("balanced_accuracy", "interval_95", "n")}
 
