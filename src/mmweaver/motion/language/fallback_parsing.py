@@ -184,7 +184,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
             return parsed
     if any(word.is_activity and word.lemma not in _IN_PLACE for word in clause.words):
         return None
-    step, how = _of_a_limb(clause)
+    step, how = _limb_step(clause)
     if step is None:
         return None
     rough = ParsedClause(clause.link, clause.text, number=clause.number, words=list(clause.words), form="s")
@@ -193,7 +193,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
     return rough
 
 
-def _of_a_limb(clause: Clause) -> tuple[Step | None, str]:
+def _limb_step(clause: Clause) -> tuple[Step | None, str]:
     """The step that stands for what arms, legs or hands do in a clause, and how that is said."""
     texts, side = {word.text for word in clause.words}, _side_of(clause.words)
     raises = any(word.lemma in _RAISING for word in clause.words)
