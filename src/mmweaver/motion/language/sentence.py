@@ -39,8 +39,8 @@ from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.words import Word, words_of
 
-LONGEST_TEXT = 1000
-MOST_STEPS = 24
+MAX_CHARACTERS = 1000
+MAX_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 JUMPING = ("jump", "leap", "hop")
@@ -65,8 +65,8 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
     if _LONG_NUMBER.search(text):
         raise InputError("a number in the sentence has more than 9 digits; say a smaller one")
-    if len(text) > LONGEST_TEXT:
-        raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
+    if len(text) > MAX_CHARACTERS:
+        raise InputError(f"the text has {len(text)} characters, {MAX_CHARACTERS} are allowed; say it shorter")
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
@@ -92,9 +92,9 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
 
 def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> MotionPlan:
     """A plan done as often as the sentence says; raises InputError for too many steps."""
-    if len(plan.steps) * repeated.times > MOST_STEPS:
+    if len(plan.steps) * repeated.times > MAX_STEPS:
         raise InputError(
-            f"{len(plan.steps)} movements {repeated.times} times are more than {MOST_STEPS}; say fewer, or none and ask"
+            f"{len(plan.steps)} movements {repeated.times} times are more than {MAX_STEPS}; say fewer, or none and ask"
             " for more --seconds"
         )
     number, first = len(plan.clauses), plan.steps[0]
@@ -138,8 +138,8 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     for number, how in lost:
         records[number] = records[number].lowered_to(APPROXIMATED, how)
     record_uncovered(given_text, every_clause, steps, records)
-    if len(steps) > MOST_STEPS:
-        raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
+    if len(steps) > MAX_STEPS:
+        raise InputError(f"the text asks for {len(steps)} movements, {MAX_STEPS} are allowed; say fewer")
     room = room_of(given_text)
     if room:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
