@@ -5,7 +5,7 @@ import re
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.approximations import APPROXIMATIONS, with_approximations
+from mmweaver.motion.language.approximations import APPROXIMATIONS, apply_approximations
 from mmweaver.motion.language.plan import DONE, ClauseRecord
 from mmweaver.motion.language.sentence import parse
 
@@ -56,7 +56,7 @@ def test_each_turn_is_turned():
 
 def test_known_sentences_are_left_alone_and_unknown_ones_refused():
     text = "A person walks to the left, then waves."
-    assert with_approximations(text, only_always=True) == text
+    assert apply_approximations(text, only_always=True) == text
     for unknown in ("a person does a handstand", "a person teleports", "a person does a cartwheel"):
         with pytest.raises(InputError, match=r"names no activity|cannot be shown"):
             parse(unknown)

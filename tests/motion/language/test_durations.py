@@ -2,7 +2,7 @@
 
 import pytest
 
-from mmweaver.motion.language.durations import in_seconds
+from mmweaver.motion.language.durations import durations_in_seconds
 from mmweaver.motion.language.timing import plan_motion
 
 
@@ -30,7 +30,7 @@ def test_a_sentence_lasts_as_long_as_its_words_say(words: str, seconds: float):
 
 def test_points_in_time_and_ordinal_numbers_are_no_durations():
     for text in ("bows a second time", "waves, two seconds later", "after ten seconds waves", "with one hand"):
-        assert in_seconds(text) == text
+        assert durations_in_seconds(text) == text
 
 
 def test_each_movement_that_stands_for_another_takes_its_share():

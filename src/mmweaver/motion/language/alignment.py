@@ -68,7 +68,7 @@ def given_words(text: str, records: Records) -> dict[int, str]:
     for i in range(1, len(tokens)):  # "for a while" and "back and forth" link nothing
         is_pair = tokens[i] == "and" and tuple(tokens[i - 1 : i + 2 : 2]) in _PAIRS
         tokens[i] = "_" if is_pair or tokens[i - 1 : i + 1] == ["a", "while"] else tokens[i]
-    numbers = _of_whole_parts(tokens, records) or clause_of_each(tokens, records)[0]
+    numbers = _part_numbers(tokens, records) or clause_of_each(tokens, records)[0]
     words = {}
     for number in records:
         parts = []
@@ -83,7 +83,7 @@ def given_words(text: str, records: Records) -> dict[int, str]:
     return words
 
 
-def _of_whole_parts(tokens: list[str], records: Records) -> list[int]:
+def _part_numbers(tokens: list[str], records: Records) -> list[int]:
     """The number of the clause of each token where the sentence has as many parts between links as clauses; else []."""
     numbers, part, is_open = [], -1, False
     for token in tokens:

@@ -54,7 +54,7 @@ def _is_adjective(found: re.Match[str]) -> bool:
     return re.fullmatch("[a-z]+ing", found[0]) is not None and is_described and follows_article
 
 
-def with_approximations(
+def apply_approximations(
     text: str,
     *,
     only_always: bool = False,
@@ -118,7 +118,7 @@ def _filled(found: re.Match[str], instead: str) -> str:
 
 
 def approximation_of(token: str) -> tuple[str, bool]:
-    """What a token of `with_approximations` says, and whether that is that movements are shown one after the other."""
+    """What a token of `apply_approximations` says, and whether that is that movements are shown one after the other."""
     words, _, number = token.removeprefix(MARK).rpartition("_")
     one = APPROXIMATIONS[int(number)]
     return one.how.replace(_THESE, repr(words.replace("_", " "))), one.in_turn

@@ -223,7 +223,7 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return False
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
-    if _is_plain_noun(word, _before_adjectives(words, i) if found else before, after_a_verb=bool(found)):
+    if _is_plain_noun(word, _word_before_adjectives(words, i) if found else before, after_a_verb=bool(found)):
         return True
     if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
         return True  # "jumps onto it with one large step"
@@ -234,7 +234,7 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     return bool(same) and same[-1] == found[-1]  # "walks a walk", not "walks to the left, turns around walk back"
 
 
-def _before_adjectives(words: list[Word], i: int) -> str:
+def _word_before_adjectives(words: list[Word], i: int) -> str:
     """The word before word `i`, or before an adjective of it that follows an article: "a" of 'a heavy box'."""
     at = i - 1
     if at > 0 and words[at - 1].text in ("a", "an", "the", *OWN) and not (words[at].is_verb or words[at].text in OWN):

@@ -81,7 +81,7 @@ def described_person(text: str) -> DescribedPerson:
     >>> described_person("a tall old woman walks")
     DescribedPerson(words='tall old woman', sex='female', age='old', stature=1, build=0, height_m=0.0)
     """
-    folded, height_m, (before, after) = _without_height(text.lower())
+    folded, height_m, (before, after) = _strip_height(text.lower())
     found = _person(folded)
     subject = re.search(r"\b(?:he|she)\b", folded)
     if found is not None and subject is not None and subject.start() < found.start():
@@ -108,13 +108,13 @@ def described_person(text: str) -> DescribedPerson:
     )
 
 
-def without_stature(text: str) -> str:
+def strip_stature(text: str) -> str:
     """The sentence without what says how tall its person is, which is shown by the body and by no step.
 
-    >>> without_stature("a 1.6 m tall man waves to a small boy")
+    >>> strip_stature("a 1.6 m tall man waves to a small boy")
     'a man waves to a small boy'
     """
-    text = _without_height(text)[0]
+    text = _strip_height(text)[0]
     found = _person(text)
     if found is None:
         return text
@@ -131,7 +131,7 @@ def _person(text: str) -> re.Match[str] | None:
     return None
 
 
-def _without_height(text: str) -> tuple[str, float, tuple[str, str]]:
+def _strip_height(text: str) -> tuple[str, float, tuple[str, str]]:
     """The sentence without a height next to its person's noun; its metres, and its words before and after that."""
     for number, pattern in enumerate(_HEIGHTS):
         for found in pattern.finditer(text):

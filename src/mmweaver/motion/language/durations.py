@@ -31,12 +31,12 @@ _NO_DURATION = re.compile(
 _VAGUE = {"a couple of": 2.0, "a couple": 2.0, "a few": 3.0, "several": 3.0}
 
 
-def in_seconds(text: str) -> str:
+def durations_in_seconds(text: str) -> str:
     """The sentence with each duration as a number of seconds; the sentence itself where there is none.
 
-    >>> in_seconds("waves for one minute and a half, then rests for half an hour")
+    >>> durations_in_seconds("waves for one minute and a half, then rests for half an hour")
     'waves for 90 seconds, then rests for 1800 seconds'
-    >>> in_seconds("bows a second time, two seconds later")
+    >>> durations_in_seconds("bows a second time, two seconds later")
     'bows a second time, two seconds later'
     """
     found = list(_PART.finditer(text))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mmweaver.motion.language.alignment import given_words
-from mmweaver.motion.language.described_person import without_stature
+from mmweaver.motion.language.described_person import strip_stature
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
@@ -23,15 +23,13 @@ _ALIKE = {  # one limb either way; a knee is not kneeling
 }  # fmt: skip
 
 
-def saying_what_is_shown(
-    records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool
-) -> list[ClauseRecord]:
+def add_explanations(records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool) -> list[ClauseRecord]:
     """The records with what each is shown as, done or not, where its words do not say just that.
 
     Of a sentence that is read `roughly` no clause is done whose words do not say what is shown.
     """
     of_each = steps_of_each(len(records), steps)
-    records = [_of_a_part(record) if own else record for record, own in zip(records, of_each, strict=True)]
+    records = [_partly_done(record) if own else record for record, own in zip(records, of_each, strict=True)]
     said: list[ClauseRecord] = []
     for number, (record, own) in enumerate(zip(records, of_each, strict=True)):
         if record.status == NOT_DONE or not record.shown:
@@ -48,7 +46,7 @@ def saying_what_is_shown(
                 how.replace("an unsteady gait is shown as staggering", "the unsteady gait is not shown") for how in hows
             ]
         more = [how for how in hows if not (_ROUGHLY.fullmatch(how) or _is_within(how, shown))]
-        hows = _without_repeats([*whole, *more] or hows)
+        hows = _merged_reasons([*whole, *more] or hows)
         otherwise = (goes_on and _is_another(said[-1])) or (roughly and not is_plain)
         status = APPROXIMATED if otherwise else record.status
         said.append(replace(record, status=status, how="; ".join(hows)))
@@ -68,7 +66,7 @@ def _is_another(record: ClauseRecord) -> bool:
     return record.status == APPROXIMATED and alike <= _NO_WORDS | _OF_NUMBERS | _OF_SIDES
 
 
-def _of_a_part(record: ClauseRecord) -> ClauseRecord:
+def _partly_done(record: ClauseRecord) -> ClauseRecord:
     """The record of a clause that has steps; of one that is not done, a part is that patterns have made a clause of."""
     if record.status != NOT_DONE:
         return record
@@ -85,7 +83,7 @@ def _is_within(how: str, shown: str) -> bool:
     return generally or found["how"] == shown
 
 
-def _without_repeats(hows: list[str]) -> list[str]:
+def _merged_reasons(hows: list[str]) -> list[str]:
     """Reasons without those that only say again which words are not shown; all that is not shown in one reason."""
     lost = [words for how in hows if (found := _LOST.fullmatch(how)) for words in re.findall("'([^']+)'", found[1])]
     others = [how for how in dict.fromkeys(hows) if not _LOST.fullmatch(how)]
@@ -149,14 +147,14 @@ _TELLING = _stems(
 _WORSE = (DONE, APPROXIMATED, NOT_DONE)
 
 
-def note_what_is_not_shown(
+def record_uncovered(
     given_text: str, every_clause: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord]
 ) -> None:
     """Records what of each clause its steps do not show: what parsing has found, then each word without a field."""
     parts = [part for step in steps for part in step.each]
     lost = [(parsed.number, how) for parsed in every_clause for how in parsed.lost]
     approximated = {parsed.number for parsed in every_clause if parsed.approximations}
-    lost += not_covered(without_stature(given_text.lower()), parts, records, approximated)
+    lost += not_covered(strip_stature(given_text.lower()), parts, records, approximated)
     for number, how in lost:
         quoted = how.split("'")[1:2]
         is_reported = how in records[number].how or any(
@@ -166,7 +164,7 @@ def note_what_is_not_shown(
             records[number] = records[number].lowered_to(APPROXIMATED, how)
 
 
-def in_the_given_words(
+def explain_clauses(
     given_text: str, steps: Sequence[Step], records: dict[int, ClauseRecord], *, roughly: bool
 ) -> tuple[list[Step], list[ClauseRecord], list[str]]:
     """Steps and records with the clauses as they were given, in the sentence's order, and a note for each not done so.
@@ -184,19 +182,19 @@ def in_the_given_words(
         hows = [how.replace(repr(part.clause), repr(words)) for part in parts for how in part.how.split("; ") if how]
         clauses.append(ClauseRecord(words, status, "; ".join(hows)))
     index = {number: given.index(of_given[number]) for number in records}
-    steps = [_in_own_words(step, index, clauses) for step in steps]
-    clauses = saying_what_is_shown(with_what_is_shown(clauses, steps), steps, roughly=roughly)
+    steps = [_quote_clauses(step, index, clauses) for step in steps]
+    clauses = add_explanations(with_what_is_shown(clauses, steps), steps, roughly=roughly)
     return steps, clauses, [record.sentence for record in clauses if record.status != DONE]
 
 
-def _in_own_words(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
+def _quote_clauses(step: Step, index: dict[int, int], clauses: Sequence[ClauseRecord]) -> Step:
     numbers = tuple(dict.fromkeys(index[number] for number in step.clauses))
     words = ", ".join(clauses[number].clause for number in numbers) or step.clause
-    other_hand = None if step.other_hand is None else _in_own_words(step.other_hand, index, clauses)
+    other_hand = None if step.other_hand is None else _quote_clauses(step.other_hand, index, clauses)
     return replace(step, clauses=numbers, clause=words, other_hand=other_hand)
 
 
-def in_own_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
+def quote_given_words(message: str, given_text: str, clauses: dict[int, str]) -> str:
     """A message that quotes clauses as they were taken, with the sentence's own words instead."""
     if not clauses:
         return message

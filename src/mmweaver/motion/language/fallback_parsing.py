@@ -44,7 +44,7 @@ _WHOLE_BODY = MANY | NOT_HUMAN | WHOLE_BODY
 _HOW = words_in("with without using by because since that which where like as if for in showing supported")
 _BEFORE_HOW = words_in("and then thereby always a bit little maybe perhaps possibly quite almost kind of")
 _SUBJECTS = PRONOUNS | words_in("person man woman human user guy girl boy subject figure")
-_MOST_PHRASES = 2
+_MAX_CUTS = 2
 
 
 def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
@@ -124,7 +124,7 @@ def _cuts(words: list[Word]) -> Iterator[tuple[list[Word], list[list[Word]]]]:
     phrases = [span for span in _phrases(words, verb) if _may_go(words[span[0] : span[1]])]
     early = [(i, i + 1) for i in range(verb) if is_odd(words[i]) and words[i].text not in _OPENING]
     late = [(i, i + 1) for i in range(verb + 1, len(words)) if is_odd(words[i]) and words[i].text.endswith("ly")]
-    for count in range(1, _MOST_PHRASES + 1):
+    for count in range(1, _MAX_CUTS + 1):
         for chosen in combinations((*phrases, *late, *early), count):
             gone = {i for start, end in chosen for i in range(start, end)}
             if any(words[i].text in _WHOLE_BODY for i in gone):
@@ -184,7 +184,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
             return parsed
     if any(word.is_activity and word.lemma not in _IN_PLACE for word in clause.words):
         return None
-    step, how = _of_a_limb(clause)
+    step, how = _limb_step(clause)
     if step is None:
         return None
     rough = ParsedClause(clause.link, clause.text, number=clause.number, words=list(clause.words), form="s")
@@ -193,7 +193,7 @@ def read_roughly(clause: Clause) -> ParsedClause | None:
     return rough
 
 
-def _of_a_limb(clause: Clause) -> tuple[Step | None, str]:
+def _limb_step(clause: Clause) -> tuple[Step | None, str]:
     """The step that stands for what arms, legs or hands do in a clause, and how that is said."""
     texts, side = {word.text for word in clause.words}, _side_of(clause.words)
     raises = any(word.lemma in _RAISING for word in clause.words)

@@ -9,7 +9,7 @@ from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.words import Word
 
 OPPOSITE = {"left": "right", "right": "left"}
-MOST_TIMES = 60
+MAX_COUNT = 60
 _WHOM = frozenset({"it", "them", "someone", "somebody", "you", "him", "her", "then", "and", "person", "front"})
 _LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", "move", "sidestep", "squat", "skip"})
 _OF_A_LEG = frozenset({"ankle", "thigh", "calf", "shin", "heel", "toe", "toes"})
@@ -124,8 +124,8 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
     )
     if not counted or text == "another":
         return about
-    if value != int(value) or not 1 <= value <= MOST_TIMES:
-        raise InputError(f"{text} times is not possible; say a whole number from 1 to {MOST_TIMES}")
+    if value != int(value) or not 1 <= value <= MAX_COUNT:
+        raise InputError(f"{text} times is not possible; say a whole number from 1 to {MAX_COUNT}")
     return replace(about, count=int(value))
 
 

@@ -60,7 +60,7 @@ class ParsedClause:
         comes_back = more.link == "and" and about.direction == "back" and last.direction in ("", "seat")
         if comes_back and last.lower in GAITS and last.moves:  # "walks to the door and back"
             back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
-            self.steps.append(_as_far_as(about, back))
+            self.steps.append(_same_length(about, back))
             self.forms.append("s")
             return
         if last.direction and about.direction and last.direction != about.direction:
@@ -117,7 +117,7 @@ class ParsedClause:
             other_way = {"direction": about.direction}
         else:
             return False
-        self.steps.append(_as_far_as(about, replace(last, **other_way, clauses=(*last.clauses, number))))
+        self.steps.append(_same_length(about, replace(last, **other_way, clauses=(*last.clauses, number))))
         self.forms.append("s")
         return True
 
@@ -129,7 +129,7 @@ def _count_of(last: Step, more: ParsedClause) -> int:
     return last.count or more.about.count
 
 
-def _as_far_as(about: Step, walk: Step) -> Step:
+def _same_length(about: Step, walk: Step) -> Step:
     """A walk with the speed and the length of a clause that says more of it; as long as before where it says none."""
     says_how_far = bool(about.count or about.seconds or about.distance_m)
     own = about if says_how_far else walk

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from mmweaver.motion.language.plan import MotionPlan, Step
-from mmweaver.motion.language.postures import STILL, with_postures
+from mmweaver.motion.language.postures import STILL, insert_transitions
 from mmweaver.motion.language.timing import is_elastic
 
 HELD_FIRST_S, HELD_LAST_S = 0.6, 0.8  # long enough to blend from the last motion, and to come to rest
@@ -25,7 +25,7 @@ def continued(plan: MotionPlan, before: Step | None, *, seat_m: float | None = N
     if before is not None:
         goes_to_seat = before.posture == "feet" and steps[0].lower in _SEATED and seat_m is not None
         way = [Step(lower="walk", direction="seat", distance_m=seat_m or 0.0, clause=steps[0].clause)]
-        steps = with_postures([before, *(way if goes_to_seat else []), *steps])
+        steps = insert_transitions([before, *(way if goes_to_seat else []), *steps])
     last = steps[-1]
     rest = posture_held(last.posture, seconds=HELD_LAST_S, style=last.style, foot=last.foot)
     return replace(plan, steps=(*steps, rest))

@@ -37,7 +37,7 @@ _SETTLING_S = 1.2  # into a posture that is held for a given time
 Lost = list[tuple[int, str]]
 
 
-def with_what_is_held(
+def persist_postures(
     steps: Sequence[Step], clauses: Mapping[int, str], afterwards: Collection[int] = ()
 ) -> tuple[list[Step], Lost]:
     """The steps with postures that last, and (number of the clause, what is not shown) where they cannot.
@@ -50,7 +50,7 @@ def with_what_is_held(
     for given in steps:
         given = _lowered_from_there(result, given, lost)
         before = result[-1] if result else None
-        step = _with_the_raised_hand(before, _kept_up(given, clauses))
+        step = _inherited_hand(before, _kept_up(given, clauses))
         own = words_in(" ".join(clauses.get(number, "") for number in step.clauses))
         if before is None or _comes_back(before, step, clauses):
             result.append(step)
@@ -61,9 +61,9 @@ def with_what_is_held(
             result[-1] = held
         elif _stays_raised(before, step) and not _follows(step, afterwards) and not own & ARMS:
             raised = replace(before, upper="raise_hold")
-            result[-1:] = _with_the_arms(raised, step, moves_arms=False)
+            result[-1:] = _kept_arms(raised, step, moves_arms=False)
         elif before.upper in ARM_POSTURES and before.other_hand is None and not step.upper:
-            result[-1:] = _with_the_arms(before, step, moves_arms=bool(own & ARMS))
+            result[-1:] = _kept_arms(before, step, moves_arms=bool(own & ARMS))
         else:
             if step.clauses and before.upper in ARM_POSTURES and step.upper in _OF_THE_HEAD:
                 lost.append((step.clauses[0], f"{BY_KEY[before.upper].name} ends before it"))
@@ -133,7 +133,7 @@ def _stays_raised(before: Step, step: Step) -> bool:
     return lifted and free and not step.upper
 
 
-def _with_the_raised_hand(before: Step | None, step: Step) -> Step:
+def _inherited_hand(before: Step | None, step: Step) -> Step:
     """The hand that was raised, held out or took something is the one that does what comes next."""
     if before is None or before.hand not in OPPOSITE or step.hand or step.other_hand:
         return step
@@ -183,7 +183,7 @@ def _held_pose(before: Step, step: Step) -> Step | None:
     return None
 
 
-def _with_the_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
+def _kept_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
     """The two steps, the arms staying as they are in the second one; one step where nothing else happens."""
     if moves_arms or step.lower in _NO_ARMS_FREE or BY_KEY[step.lower].posture == "floor":
         return [before, step]

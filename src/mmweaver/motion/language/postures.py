@@ -19,25 +19,25 @@ _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forw
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
-def with_postures(steps: list[Step]) -> list[Step]:
+def insert_transitions(steps: list[Step]) -> list[Step]:
     """The steps with transitions (sitting down, kneeling, lying down, getting up) inserted where they are needed."""
     result: list[Step] = []
     posture = ""  # not known yet
     for step in steps:
-        for one in _with_transitions(step, posture, result):
+        for one in _transitions_to(step, posture, result):
             result.append(one)
             posture = one.posture
     return merged(_styled(_falling_on(result)))
 
 
-def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step]:
+def _transitions_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
     """The step as it is carried out from this posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
     if posture in STILL and step.lower == "stand" and not step.on_feet:  # "sits down, stays for two seconds"
         return [replace(step, lower=STILL[posture])]
     if step.posture == "feet":
-        return [*_up_from(posture, step), step] if step.lower != "fall" else [step]
+        return [*_rising_steps(posture, step), step] if step.lower != "fall" else [step]
     return _going_down(step, posture, before)
 
 
@@ -60,16 +60,16 @@ def _going_down(step: Step, posture: str, before: list[Step]) -> list[Step]:
         "couch",
         "seat",
     ):
-        return _by_the_seat(step, posture, anything_before)
+        return _seat_transitions(step, posture, anything_before)
     if step.lower in LYING:
         is_there = posture == "floor" and LYING[step.lower] in ("", _lies_on(before))
         down = Step(lower="lie_down", style=LYING[step.lower] or "back", clause=step.clause)
-        return [step] if is_there or not before else [*_up_from(posture, step), down, step]
+        return [step] if is_there or not before else [*_rising_steps(posture, step), down, step]
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
             step = replace(step, lower=STILL[posture])
         return [step]
-    first = _up_from(posture, step)
+    first = _rising_steps(posture, step)
     if step.lower == "crawl":
         return [*first, Step(lower="kneel_down", clause=step.clause), step] if before else [step]
     down = ENTERING.get(step.lower, step.lower)
@@ -103,7 +103,7 @@ def _is_done_once(step: Step) -> bool:
     return activity is not None and (activity.once or activity.counted_s is not None)
 
 
-def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:
+def _seat_transitions(step: Step, posture: str, anything_before: bool) -> list[Step]:
     """Lying on furniture and falling off it, both from sitting there; sitting up from lying."""
     if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
         return [replace(step, lower="lie_on_seat")]
@@ -127,10 +127,10 @@ def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:
     if posture == "seat":
         return entered
     sits = "sit" if not anything_before and step.lower == "fall_off" else "sit_down"
-    return [*_up_from(posture, step), replace(about, lower=sits), *entered]
+    return [*_rising_steps(posture, step), replace(about, lower=sits), *entered]
 
 
-def _up_from(posture: str, step: Step) -> list[Step]:
+def _rising_steps(posture: str, step: Step) -> list[Step]:
     return [Step(lower=lower, clause=step.clause) for lower in RISING.get(posture, ())]
 
 

@@ -7,12 +7,12 @@ from functools import cache
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.approximations import with_approximations
+from mmweaver.motion.language.approximations import apply_approximations
 from mmweaver.motion.language.clause_parser import parse_clause
 from mmweaver.motion.language.clauses import Clause, split_clauses
 from mmweaver.motion.language.described_person import described_person
-from mmweaver.motion.language.durations import in_seconds
-from mmweaver.motion.language.explanations import in_own_words, in_the_given_words, note_what_is_not_shown
+from mmweaver.motion.language.durations import durations_in_seconds
+from mmweaver.motion.language.explanations import explain_clauses, quote_given_words, record_uncovered
 from mmweaver.motion.language.fallback_parsing import (
     EXACT,
     LEAVING_OUT,
@@ -28,19 +28,19 @@ from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.posture_persistence import ARM_POSTURES, with_what_is_held
-from mmweaver.motion.language.postures import carried_over, with_postures
+from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
+from mmweaver.motion.language.postures import carried_over, insert_transitions
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
-from mmweaver.motion.language.simultaneous import going_on, in_sequence
+from mmweaver.motion.language.simultaneous import going_on, sequence_steps
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.step_names import with_what_is_shown
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.words import Word, words_of
 
-LONGEST_TEXT = 1000
-MOST_STEPS = 24
+MAX_CHARACTERS = 1000
+MAX_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 _YOUR = re.compile(r"\byour\b", re.IGNORECASE)  # "raise your hand", said to the person
 JUMPING = ("jump", "leap", "hop")
@@ -65,19 +65,19 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
     if _LONG_NUMBER.search(text):
         raise InputError("a number in the sentence has more than 9 digits; say a smaller one")
-    if len(text) > LONGEST_TEXT:
-        raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
+    if len(text) > MAX_CHARACTERS:
+        raise InputError(f"the text has {len(text)} characters, {MAX_CHARACTERS} are allowed; say it shorter")
     repeated = repetition_of(text)
     if repeated.times > 1 and len(repeated.text.split()) > 1:
         return _several_times(parse(repeated.text, in_part=in_part), repeated, given_text)
-    text = rewritten(in_seconds(_YOUR.sub("his", text)), "first")
+    text = rewritten(durations_in_seconds(_YOUR.sub("his", text)), "first")
     try:
-        return _parsed(with_approximations(text, only_always=True), given_text)
+        return _parsed(apply_approximations(text, only_always=True), given_text)
     except InputError as error:
         other_words = rewritten(text.lower(), "last")
-        normal = with_approximations(other_words, only_always=True)
-        similar = with_approximations(other_words, is_understood=cache(_is_understood_alone))
-        partly = with_approximations(other_words, in_part=in_part)
+        normal = apply_approximations(other_words, only_always=True)
+        similar = apply_approximations(other_words, is_understood=cache(_is_understood_alone))
+        partly = apply_approximations(other_words, in_part=in_part)
         attempts = (
             (normal, EXACT), (similar, EXACT), (normal, LEAVING_OUT), (similar, LEAVING_OUT), (similar, MISSING),
             (partly, EXACT), (partly, ROUGH), (normal, ROUGH),
@@ -92,9 +92,9 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
 
 def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> MotionPlan:
     """A plan done as often as the sentence says; raises InputError for too many steps."""
-    if len(plan.steps) * repeated.times > MOST_STEPS:
+    if len(plan.steps) * repeated.times > MAX_STEPS:
         raise InputError(
-            f"{len(plan.steps)} movements {repeated.times} times are more than {MOST_STEPS}; say fewer, or none and ask"
+            f"{len(plan.steps)} movements {repeated.times} times are more than {MAX_STEPS}; say fewer, or none and ask"
             " for more --seconds"
         )
     number, first = len(plan.clauses), plan.steps[0]
@@ -103,7 +103,7 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
         steps = [first]
     else:
         more = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-        steps = carried_over(with_postures([*plan.steps, *more]))
+        steps = carried_over(insert_transitions([*plan.steps, *more]))
     again = ClauseRecord(repeated.words)
     if any(clause.status == NOT_DONE for clause in plan.clauses):
         again = again.lowered_to(APPROXIMATED, "what is not shown once is not shown again")
@@ -124,28 +124,28 @@ def _parsed(text: str, given_text: str, leaving: int = EXACT) -> MotionPlan:
     try:
         return _planned(words, notes, given_text, leaving)
     except InputError as error:
-        raise InputError(in_own_words(str(error), given_text, clauses)) from None
+        raise InputError(quote_given_words(str(error), given_text, clauses)) from None
 
 
 def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int) -> MotionPlan:
     parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leaving)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
-    sequence = in_sequence(parsed_clauses, leaving)
-    steps = carried_over(with_postures(going_on(sequence)))
+    sequence = sequence_steps(parsed_clauses, leaving)
+    steps = carried_over(insert_transitions(going_on(sequence)))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
-    steps, lost = with_what_is_held(steps, said, {one.number for one in every_clause if one.link == "then"})
+    steps, lost = persist_postures(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
         records[number] = records[number].lowered_to(APPROXIMATED, how)
-    note_what_is_not_shown(given_text, every_clause, steps, records)
-    if len(steps) > MOST_STEPS:
-        raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
+    record_uncovered(given_text, every_clause, steps, records)
+    if len(steps) > MAX_STEPS:
+        raise InputError(f"the text asks for {len(steps)} movements, {MAX_STEPS} are allowed; say fewer")
     room = room_of(given_text)
     if room:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
     if leaving and all(step.lower == "stand" and not step.upper for step in steps):
         raise InputError(not_known(given_text.strip()))
-    steps, clauses, how_shown = in_the_given_words(given_text, steps, records, roughly=bool(leaving))
+    steps, clauses, how_shown = explain_clauses(given_text, steps, records, roughly=bool(leaving))
     return MotionPlan(
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
         person=described_person(given_text),
@@ -252,7 +252,7 @@ def _fill_in(before: ParsedClause, parsed: ParsedClause) -> None:
 
 def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
     """The next step that a clause without a verb asks for: the last one with the other hand, or to another side."""
-    other_side = _with_the_other_one(last, parsed)
+    other_side = _repeated_with_other_limb(last, parsed)
     if other_side is not None or _goes_elsewhere(last, parsed):
         return other_side
     if not _once_more(last, parsed):
@@ -274,7 +274,7 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
 
 
-def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
+def _repeated_with_other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
     about = parsed.about
     aimed = parsed.link == "and" and not (about.hand or about.foot)  # "to the left and to the right"

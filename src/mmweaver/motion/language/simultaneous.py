@@ -35,7 +35,7 @@ _PLAYED = {"guitar", "violin"}
 _LOW = {"bend", "lean", "crouch", "squat", "one_leg", "raise_leg"}
 
 
-def in_sequence(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
+def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Step]:
     """Joins clauses that happen at the same time, and puts all others one after the other.
 
     Where phrases may be left out, two movements that cannot be shown at once follow each other, which is said.
@@ -87,7 +87,7 @@ def going_on(steps: list[Step]) -> list[Step]:
             at_rest = [replace(before, upper="", hand="", seconds=_REST_S)] if step.upper and len(result) == 1 else []
             result[-1:] = [*at_rest, replace(step, hand=hand, clause=clause, clauses=clauses)]
         else:
-            result.append(_as_the_body_faces(before, step))
+            result.append(_facing_onward(before, step))
     return result
 
 
@@ -101,7 +101,7 @@ def _only_begins(before: Step, step: Step) -> bool:
     return lifted and step.hand in ("", before.hand) and before.other_hand is None
 
 
-def _as_the_body_faces(before: Step, step: Step) -> Step:
+def _facing_onward(before: Step, step: Step) -> Step:
     """Who turns, opens a door or 'walks on', goes ahead."""
     both_turn = before.lower == step.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
     if both_turn and step.direction == "around" and "back" in step.clause.split():  # as far as the turn before
@@ -206,11 +206,11 @@ def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause, *, is_last: bo
 def _can_overlay(one: Step, other: Step, *, in_two: bool = True) -> bool:
     lowers = [step.lower for step in (one, other) if step.lower != "stand"]
     uppers = [step.upper for step in (one, other) if step.upper]
-    fits = len(uppers) == 1 or (in_two and len(uppers) == 2 and in_two_hands(one, other) is not None)
+    fits = len(uppers) == 1 or (in_two and len(uppers) == 2 and assign_hands(one, other) is not None)
     return fits and len(lowers) <= 1 and not set(lowers) & ARMS_TAKEN
 
 
-def in_two_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
+def assign_hands(one: Step, other: Step) -> tuple[Step, Step] | None:
     """Two hand activities with a hand each, the one that the head goes with first; None where both need one hand.
 
     A hand that the sentence leaves open is the other one's opposite, of two the right for the first.
@@ -237,7 +237,7 @@ def overlay(one: Step, other: Step) -> Step:
             f"{one.name} and {other.name} cannot be shown at the same time; say 'then' to have one after the other"
         )
     if one.upper and other.upper:
-        hands = in_two_hands(one, other)
+        hands = assign_hands(one, other)
         assert hands is not None  # as `_can_overlay` found
         first, second = hands
         legs = one if one.lower != "stand" else other

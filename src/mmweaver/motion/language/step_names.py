@@ -62,7 +62,7 @@ _ONTO = {
 _LYING = words_in("lie lie_down fall")
 
 
-def of_the_body(step: Step) -> str:
+def body_phrase(step: Step) -> str:
     """A body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'."""
     name = BY_KEY[step.lower].shown or BY_KEY[step.lower].name
     if step.lower == "jog" and step.style != "jog":
@@ -77,7 +77,7 @@ def of_the_body(step: Step) -> str:
     own_side = f"the person's {step.direction} side" if step.direction in _SIDES else "a side"
     name = name.format(foot=f"{which} foot", leg=f"{which} leg", own_side=own_side)
     if step.lower in ("pick_up", "put_down"):
-        name += with_hand(hand_of(step, step.lower))
+        name += hand_suffix(hand_of(step, step.lower))
     paces = f" {steps_said(step.count)}" if step.lower in PACES and step.count and not step.upper else ""
     return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{how_often(step, step.lower)}"
 
@@ -167,7 +167,7 @@ _LIMBS = ("{hand}", "{arm}", "{forearm}")
 _HEIGHTS = {"high": " high up", "up": " upwards", "down": " downwards", "under": " underarm"}
 
 
-def of_a_hand(step: Step, part: Step) -> str:
+def hand_phrase(step: Step, part: Step) -> str:
     """What one activity of the hands shows, with its limb; `step` is the whole of it."""
     key, hand = part.upper, hand_of(part, part.upper)
     name = BY_KEY[key].shown or BY_KEY[key].name
@@ -194,12 +194,12 @@ def of_a_hand(step: Step, part: Step) -> str:
         name = name.format(**{limb: f"{which} {limb}{'s' * (hand == 'both')}" for limb in ("hand", "arm", "forearm")})
         name = name.replace("ing it", "ing them") if hand == "both" else name
     elif hand and key not in ("arms_out", "hips"):
-        name += with_hand(hand) + " in turn" * (hand == "both" and key in _IN_TURN)
+        name += hand_suffix(hand) + " in turn" * (hand == "both" and key in _IN_TURN)
     speed = (part.speed or step.speed) if step.lower == "stand" else 0
     return f"{name}{_HEIGHTS.get(part.style, '')}{SPEEDS_SAID[speed]}{how_often(part, key)}"
 
 
-def with_hand(hand: str) -> str:
+def hand_suffix(hand: str) -> str:
     return {"both": " with both hands", "one": " with one hand"}.get(hand, f" with the {hand} hand")
 
 
@@ -283,8 +283,8 @@ def in_turn(steps: Iterable[Step]) -> str:
 
 def doing(step: Step) -> str:
     """All that a step shows: 'walking three steps backwards', 'sitting on the sofa while waving with one hand'."""
-    body = "" if step.lower == "stand" and step.upper else of_the_body(step)
-    parts = [body, *(of_a_hand(step, part) for part in step.each if part.upper)]
+    body = "" if step.lower == "stand" and step.upper else body_phrase(step)
+    parts = [body, *(hand_phrase(step, part) for part in step.each if part.upper)]
     facing = {"towards": "the radar", "away": "away from the radar"}.get(step.facing) or (
         f"{step.facing} in the photo" if step.facing in _SIDES else f"the {step.facing}"
     )

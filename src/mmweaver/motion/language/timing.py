@@ -107,7 +107,7 @@ def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
             f"nothing of {plan.text.strip()!r} can be shown in {duration_s:.3g} s; {first.name} alone takes at least"
             f" {needed:.1f} s: ask for more --seconds or --frames, or leave them out"
         )
-    return _with_cut_recorded(replace(plan, steps=tuple(kept)), plan.steps, duration_s)
+    return _record_cut(replace(plan, steps=tuple(kept)), plan.steps, duration_s)
 
 
 def _fitting(step: Step, left_s: float, *, is_first: bool) -> Step | None:
@@ -142,7 +142,7 @@ def _shortest_later_s(step: Step) -> float:
     return SHORTEST_SHARE * min(_limits(replace(step, count=count))[0] for count in {0, min(step.count, 1)})
 
 
-def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
+def _record_cut(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
     """Says in notes and clause records what a cut left out."""
     notes, clauses = list(plan.notes), list(plan.clauses)
 
@@ -152,7 +152,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             clauses[number] = clauses[number].lowered_to(status, how)
 
     kept = plan.steps
-    given = _in_words(duration_s)
+    given = _seconds_text(duration_s)
     for k, (before, now) in enumerate(zip(wanted, kept, strict=False)):
         is_begun = k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9 and not _is_held(now)
         hows = [f"only its beginning is shown in {given} s"] * is_begun
@@ -160,7 +160,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
             begun = f"only the beginning of the first of {before.count} times is shown in {given} s"
             hows = [begun if is_begun and now.count == 1 else f"{now.count} of {before.count} times in {given} s"]
         elif now.seconds < before.seconds:
-            hows = hows or [f"{_in_words(now.seconds)} of {before.seconds:.1f} s"]
+            hows = hows or [f"{_seconds_text(now.seconds)} of {before.seconds:.1f} s"]
         for how in hows:
             record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
@@ -168,7 +168,7 @@ def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: f
     return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
 
 
-def _in_words(seconds: float) -> str:
+def _seconds_text(seconds: float) -> str:
     return f"{seconds:.1f}" if seconds >= 1 else f"{seconds:.2g}"
 
 
@@ -179,17 +179,17 @@ def _is_held(step: Step) -> bool:
 
 def _limits(step: Step) -> tuple[float, float]:
     """Least and natural duration of a step, in seconds: longer for 'slowly', shorter for 'quickly' on the spot."""
-    least, natural = _at_usual_speed(step)
+    least, natural = _usual_limits(step)
     if not step.speed or step.seconds or step.moves:  # who travels does so at another speed for the same time
         return least, natural
     slower = 1.0 if step.count and step.speed < 0 else (1.5, 1.0, 0.75)[step.speed + 1]  # counted: it is in the count
     return least, max(slower * natural, least)
 
 
-def _at_usual_speed(step: Step) -> tuple[float, float]:
+def _usual_limits(step: Step) -> tuple[float, float]:
     """Least and natural duration of a step, in seconds; only walks and counted movements take the speed in."""
     if step.other_hand is not None:
-        both = [_at_usual_speed(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
+        both = [_usual_limits(replace(part, lower=step.lower, other_hand=None)) for part in step.each]
         return max(least for least, _ in both), max(natural for _, natural in both)
     if step.seconds:
         return step.seconds, step.seconds
@@ -207,7 +207,7 @@ def _at_usual_speed(step: Step) -> tuple[float, float]:
         way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
         return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
     if step.style == "several" and not step.count:  # "does squats"
-        least, natural = _at_usual_speed(replace(step, count=2, speed=0))
+        least, natural = _usual_limits(replace(step, count=2, speed=0))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
     doing = BY_KEY[step.upper or step.lower]
     if step.upper and BY_KEY[step.lower].once and step.posture != "feet":  # "sits down reading"

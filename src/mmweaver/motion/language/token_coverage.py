@@ -103,15 +103,15 @@ def not_covered(
         checks = _OF_REPLACED if is_replaced and not token.is_kept else _CHECKS if is_replaced else (*_CHECKS, _noun)
         how = next(filter(None, (check(token) for check in checks)), "")
         lost += [(token.clause, how)] if how else []
-    lost += [(after.clauses[0], f"{after.name} is shown after getting up") for after in _after_rising(steps)]
+    lost += [(after.clauses[0], f"{after.name} is shown after getting up") for after in _steps_after_rising(steps)]
     reported = {how for _, how in lost}
-    for token in _without_own_step(tokens, steps):
+    for token in _unmatched_tokens(tokens, steps):
         if token.clause not in approximated and f"{token.text!r} is not shown" not in reported:
             lost.append((token.clause, f"{token.text!r} has no movement of its own"))
     return list(dict.fromkeys(lost))
 
 
-def _after_rising(steps: Sequence[Step]) -> Iterator[Step]:
+def _steps_after_rising(steps: Sequence[Step]) -> Iterator[Step]:
     """Steps before which somebody gets up only because the library does the movement standing."""
     for before, after in pairwise(steps):
         on_feet = after.lower in ("walk", "jog", "turn", "sidestep", "leap", "stand") and not after.upper
@@ -359,7 +359,7 @@ _OF_REPLACED = (_limb_side, _side, _number, _turn, _verb)
 _CHECKS = (_limb_side, _side, _number, _turn, _way, _verb, _manner)
 
 
-def _without_own_step(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_Token]:
+def _unmatched_tokens(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_Token]:
     """Verbs and ways that are named more often than steps show them, by bipartite matching."""
     mentions = _distinct([(token, _movement(token), _way_named(token)) for token in tokens])
     slots: list[set[int]] = []

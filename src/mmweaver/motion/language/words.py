@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA
-from mmweaver.motion.language.described_person import without_stature
+from mmweaver.motion.language.described_person import strip_stature
 from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT
 from mmweaver.motion.language.places import mark_places
 from mmweaver.motion.language.rewrite_rules import rewritten
@@ -37,7 +37,7 @@ class Word:
 def words_of(text: str) -> list[Word]:
     """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
-    folded = rewritten(mark_places(without_stature(folded)), "phrases")
+    folded = rewritten(mark_places(strip_stature(folded)), "phrases")
     return [word_of(token) for token in _TOKEN.findall(folded)]
 
 
