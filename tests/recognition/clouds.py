@@ -1,11 +1,18 @@
 """Point-cloud recordings from columns."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.recognition.quantisation import Quantisation
+
+RADAR = Quantisation(
+    range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=0.96, removes_static=False, groups_range=True,
+    groups_velocity=True, knows_place=False,
+)  # fmt: skip
 
 
 def recording_of(
@@ -25,3 +32,10 @@ def in_all_frames(places: Any, frames: int, **more: Any) -> PointRecording:
     """Points at (right, ahead, velocity) in each of `frames` frames."""
     x, y, velocity = np.repeat(np.asarray(places, float), frames, axis=0).T
     return recording_of(np.tile(np.arange(frames), len(places)), x_m=x, y_m=y, velocity_mps=velocity, **more)
+
+
+def with_others(recording: PointRecording, *others: PointCloud) -> PointRecording:
+    """The recording with other points after those of the person in each of its frames."""
+    clouds = [recording.cloud, *(cloud.select(cloud.frame < recording.num_frames) for cloud in others)]
+    columns = {name: np.concatenate([getattr(cloud, name) for cloud in clouds]) for name in vars(recording.cloud)}
+    return replace(recording, cloud=PointCloud(**columns).select(np.argsort(columns["frame"], kind="stable")))

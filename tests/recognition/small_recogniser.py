@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.task_file import RecordingSettings, read_task
 from mmweaver.recognition.train_recogniser import fitted
 from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
+from tests.recognition.clouds import recording_of
 
 OPTIONS = TrainingOptions(sequences=6, copies=1, trees=15)
 SECONDS = 8.0
@@ -22,15 +22,12 @@ def drawn_recording(settings: RecordingSettings, label: str, person: int, second
     frame = np.repeat(np.arange(frames), 6)
     speed = 0.7 * settings.labels.index(label)
     phase = 2 * np.pi * (frame / settings.frame_rate_hz / 2 + rng.random())
-    cloud = PointCloud(
-        frame=frame, x_m=rng.normal(0, 0.2, len(frame)), z_m=rng.normal(0, 0.3, len(frame)),
-        y_m=2 + 0.3 * speed * np.sin(phase) + rng.normal(0, 0.05, len(frame)),
-        radial_velocity_mps=np.round((speed * np.cos(phase) + rng.normal(0, 0.15, len(frame))) / 0.356) * 0.356,
-        snr_db=np.full(len(frame), np.nan),
+    x, z, y = (rng.normal(0, spread, len(frame)) for spread in (0.2, 0.3, 0.05))
+    velocity = speed * np.cos(phase) + rng.normal(0, 0.15, len(frame))
+    return recording_of(
+        frame, x_m=x, y_m=2 + 0.3 * speed * np.sin(phase) + y, z_m=z, velocity_mps=np.round(velocity / 0.356) * 0.356,
+        num_frames=frames, rate_hz=settings.frame_rate_hz, name=f"{label}_{person}", label=label,
     )  # fmt: skip
-    return PointRecording(
-        name=f"{label}_{person}", cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label
-    )
 
 
 def drawn_sequences(settings: RecordingSettings, people: int = 6, first: int = 0) -> list[PointRecording]:

@@ -8,8 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.recognition.mars_data import cloud_of, joints_from_kinect, read_mars
-from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
+from mmweaver.recognition.mars_data import joints_from_kinect, read_mars
 from tests.rooms import STANDING_M
 
 KINECT = (
@@ -57,17 +56,6 @@ def test_stretches_end_at_long_gaps(tmp_path: Path):
     assert [stretch.frame.tolist() for stretch in stretches] == [[0, 1, 2, 4], [0, 1, 2, 3]]
     assert [len(cloud.x_m) for cloud in stretches[0].clouds] == [2, 1, 2, 2]
     assert stretches[0].clouds[0].intensity[0] == 25
-    pose = pose_of(stretches[0], (0.1, 0.2, 0.3), 1.7)
-    assert pose.time_s == pytest.approx([0, 0.1, 0.2, 0.4])
-    assert pose.joints_m - stretches[0].joints_m == pytest.approx(np.broadcast_to((0.1, 0.2, 0.3), (4, 22, 3)))
-    assert body_height_m(stretches) == pytest.approx(STANDING_M["neck"][2] + 0.16 - STANDING_M["left_foot"][2] + 0.11)
-
-
-def test_pieces_begin_and_end_with_a_measured_pose(tmp_path: Path):
-    write_split(tmp_path, "test", [*range(12), *range(13, 31)])
-    pieces = cut(read_mars(tmp_path, "test"), 6, 10)
-    assert [piece.frame.tolist() for piece in pieces] == [[0, 1, 2, 3, 4, 5]] * 2 + [[0, 1, 2, 3, 4, 5]] * 2
-    assert len(cut(read_mars(tmp_path, "test"), 6, 2)) == 2
 
 
 def test_what_is_no_recording_is_refused(tmp_path: Path):
@@ -84,9 +72,3 @@ def test_what_is_no_recording_is_refused(tmp_path: Path):
     (tmp_path / "kinect_data_test.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match="2 columns, 75"):
         read_mars(tmp_path, "test")
-
-
-def test_clouds_are_cut_to_the_recordings_box():
-    places = [(0.9, 2.0, 0.9), (1.1, 2.0, 0.0), (0.0, 2.0, 1.1), (0.0, 3.1, 0.0), (-1.0, 3.0, -1.0), (0.0, 2.0, -1.2)]
-    rows = np.array([[0, 1, *place, 0.0, 20 + index, 1.6e9] for index, place in enumerate(places)])
-    assert as_published(cloud_of(rows)).intensity.tolist() == [20, 24]

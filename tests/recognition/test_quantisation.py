@@ -1,16 +1,14 @@
 """Firmware that groups and firmware that does not give about the same points once neighbours are grouped here."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
-from tests.recognition.clouds import recording_of
+from tests.recognition.clouds import RADAR, recording_of
 
-STEP_M, STEP_MPS = 0.05, 0.12
-RADAR = Quantisation(
-    range_step_m=STEP_M, velocity_step_mps=STEP_MPS, max_velocity_mps=8 * STEP_MPS, removes_static=False,
-    groups_range=True, groups_velocity=True, knows_place=False,
-)  # fmt: skip
+STEP_M, STEP_MPS = RADAR.range_step_m, RADAR.velocity_step_mps
 
 
 def window(cells: list[tuple[int, int, int, float]]) -> PointRecording:
@@ -52,8 +50,8 @@ def test_velocities_are_cyclic():
 
 def test_only_the_directions_that_the_firmware_groups():
     both = window(block(0, 40, 3, 30.0))
-    range_alone = Quantisation(**{**vars(RADAR), "groups_velocity": False})
-    neither = Quantisation(**{**vars(range_alone), "groups_range": False})
+    range_alone = replace(RADAR, groups_velocity=False)
+    neither = replace(range_alone, groups_range=False)
     assert cells_of(group_neighbours(both, range_alone)) == [(0, 40, 2), (0, 40, 3), (0, 40, 4)]
     assert group_neighbours(both, neither) is both
 

@@ -6,16 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
-from tests.recognition.clouds import in_all_frames, recording_of
+from tests.recognition.clouds import RADAR, in_all_frames, recording_of, with_others
 
-RADAR = Quantisation(
-    range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=1.0, removes_static=False, groups_range=False,
-    groups_velocity=False, knows_place=False,
-)  # fmt: skip
+UNGROUPED = replace(RADAR, max_velocity_mps=1.0, groups_range=False, groups_velocity=False)
 RATE_HZ, FRAMES = 10.0, 100
 
 
@@ -29,13 +24,6 @@ def walker(*, rate_hz: float = RATE_HZ) -> PointRecording:
     velocity = np.concatenate([np.round((speed[body] + rng.normal(0, 0.1, len(body))) / 0.12) * 0.12, still])
     frame = np.concatenate([body, np.repeat(np.arange(FRAMES), 2)])
     return recording_of(frame, x_m=rng.normal(0, 0.1, len(frame)), y_m=y, velocity_mps=velocity)
-
-
-def joined(*clouds: PointCloud) -> PointCloud:
-    """The points of both, in the order of frames."""
-    columns = {name: np.concatenate([getattr(cloud, name) for cloud in clouds]) for name in vars(clouds[0])}
-    order = np.argsort(columns["frame"], kind="stable")
-    return PointCloud(**{name: column[order] for name, column in columns.items()})
 
 
 def changed(**columns: np.ndarray) -> PointRecording:
@@ -58,41 +46,42 @@ WRONG: dict[str, Callable[[], PointRecording]] = {
 
 @pytest.mark.parametrize("words", WRONG)
 def test_what_cannot_be_is_said(words: str):
-    assert any(words in line for line in contradictions([WRONG[words]()], RADAR))
+    assert any(words in line for line in contradictions([WRONG[words]()], UNGROUPED))
 
 
 def test_a_recording_that_fits_is_not_doubted():
-    assert contradictions([walker()], RADAR) == []
+    assert contradictions([walker()], UNGROUPED) == []
 
 
 def test_static_points_are_doubted_where_the_radar_removes_them():
     at_rest = changed(radial_velocity_mps=np.where(np.arange(len(CLOUD.frame)) % 4, 0.0, CLOUD.radial_velocity_mps))
     assert any(
-        "removes static clutter" in line for line in contradictions([at_rest], replace(RADAR, removes_static=True))
+        "removes static clutter" in line for line in contradictions([at_rest], replace(UNGROUPED, removes_static=True))
     )
 
 
 def test_neighbours_that_firmware_groups_are_doubted_and_so_is_that_there_are_none():
-    grouping = replace(RADAR, groups_range=True, groups_velocity=True)
+    grouping = replace(RADAR, max_velocity_mps=1.0)
     first = CLOUD.select(np.diff(CLOUD.frame, prepend=-1) > 0)
-    behind = replace(first, y_m=first.y_m + RADAR.range_step_m)
-    faster = replace(first, radial_velocity_mps=first.radial_velocity_mps + RADAR.velocity_step_mps)
-    several, alone = (replace(walker(), cloud=cloud) for cloud in (joined(first, behind, faster), joined(first, WALL)))
+    behind = replace(first, y_m=first.y_m + UNGROUPED.range_step_m)
+    faster = replace(first, radial_velocity_mps=first.radial_velocity_mps + UNGROUPED.velocity_step_mps)
+    alone = with_others(replace(walker(), cloud=first), WALL)
+    several = with_others(replace(walker(), cloud=first), behind, faster)
     said = contradictions([several], grouping)
     assert ["in range" in line for line in said] == [True, False]
     assert ["in velocity" in line for line in said] == [False, True]
     assert contradictions([alone], grouping) == []
-    assert sum("as if these were grouped" in line for line in contradictions([alone], RADAR)) == 2
+    assert sum("as if these were grouped" in line for line in contradictions([alone], UNGROUPED)) == 2
 
 
 def test_something_else_that_moves_asks_for_a_recording_of_the_empty_place():
     fan = in_all_frames([(2.0, 3.0, 0.24)], FRAMES).cloud
-    with_fan = replace(walker(), cloud=joined(CLOUD, fan))
-    assert any("record the empty place" in line for line in contradictions([with_fan], RADAR))
-    assert not any("empty place" in line for line in contradictions([with_fan], replace(RADAR, knows_place=True)))
+    with_fan = with_others(walker(), fan)
+    assert any("record the empty place" in line for line in contradictions([with_fan], UNGROUPED))
+    assert not any("empty place" in line for line in contradictions([with_fan], replace(UNGROUPED, knows_place=True)))
 
 
 def test_too_few_points_tell_nothing():
     few = replace(walker(), cloud=CLOUD.select(np.arange(len(CLOUD.frame)) < 50))
-    assert contradictions([few], RADAR) == []
-    assert contradictions([], RADAR) == []
+    assert contradictions([few], UNGROUPED) == []
+    assert contradictions([], UNGROUPED) == []

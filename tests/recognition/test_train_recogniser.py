@@ -16,11 +16,19 @@ from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
-from mmweaver.recognition.recogniser import Recogniser, load_recogniser, outside_share, quantiles_of, save_recogniser
+from mmweaver.recognition.recogniser import (
+    Recogniser,
+    Recognition,
+    load_recogniser,
+    outside_share,
+    quantiles_of,
+    save_recogniser,
+)
 from mmweaver.recognition.scoring import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
 from mmweaver.recognition.window_filter import WindowFilter
+from tests.recognition.clouds import in_all_frames, with_others
 from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
 
 TASK = """radar = "iwr1443_mars"
@@ -47,10 +55,6 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         training, "generate_sequences", lambda recipe, each, *_: drawn_sequences(recipe.task.recordings, each)
     )
-
-
-def shifted(recording: PointRecording, metres: float) -> PointRecording:
-    return replace(recording, cloud=replace(recording.cloud, y_m=recording.cloud.y_m + metres))
 
 
 @pytest.mark.usefixtures("drawn")
@@ -113,21 +117,15 @@ def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(tas
 @pytest.mark.usefixtures("drawn")
 def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Path, tmp_path: Path):
     """A fan that the recording of the empty place shows changes no label, live or not."""
-    frame = np.repeat(np.arange(200), 3)
-    fan = PointCloud(
-        frame=frame, x_m=np.full(600, 1.5), y_m=np.full(600, 4.0), z_m=np.zeros(600),
-        radial_velocity_mps=np.tile([0.712, -0.712, 1.068], 200), snr_db=np.full(600, np.nan),
-    )  # fmt: skip
-    settings = read_task(task_file).recordings
-    empty = PointRecording(name="empty", cloud=fan, num_frames=200, frame_rate_hz=settings.frame_rate_hz)
-    write_recordings(tmp_path / "place", [replace(empty, label="rest")])
+    empty = in_all_frames([(1.5, 4.0, speed) for speed in (0.712, -0.712, 1.068)], 200, label="rest", name="empty")
+    write_recordings(tmp_path / "place", [empty])
     task_file.write_text(TASK.format(more='background = "place/rest/empty.npz"'))
     model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     again = load_recogniser(tmp_path / "model")
     assert len(model.points.busy) == len(again.points.busy) == 9
     assert again.points.radar == Quantisation.of(read_task(task_file))
     people = drawn_sequences(model.settings, 2, first=50)
-    with_fan = [_in_front(one, fan) for one in people]
+    with_fan = [with_others(one, empty.cloud) for one in people]
     assert [again.recognise(one) for one in with_fan] == [again.recognise(one) for one in people]
     assert score_recordings(again, with_fan)["window"]["balanced_accuracy"] == 1.0
 
@@ -136,34 +134,21 @@ def test_what_moves_in_the_empty_place_is_left_out_of_all_windows(task_file: Pat
 def test_what_moves_all_the_time_is_left_out_by_scores_and_training(task_file: Path, tmp_path: Path):
     """A fan in all recordings, while people walk elsewhere, changes no score; `unlabelled` teaches it to the model."""
     model = small_recogniser(task_file)
-    frame = np.arange(200)
-    fan = PointCloud(
-        frame=frame, x_m=np.full(200, 1.6), y_m=np.full(200, 4.1), z_m=np.zeros(200),
-        radial_velocity_mps=np.full(200, 0.712), snr_db=np.full(200, np.nan),
-    )  # fmt: skip
+    fan = in_all_frames([(1.6, 4.1, 0.712)], 200).cloud
     people = [
         replace(one, cloud=replace(one.cloud, y_m=2 + 3 * (one.cloud.y_m - 2)) if one.label != "rest" else one.cloud)
         for one in drawn_sequences(model.settings, 6, first=50)
     ]
-    scores = score_recordings(model, [_in_front(one, fan) for one in people])
+    scores = score_recordings(model, [with_others(one, fan) for one in people])
     (line,) = scores["left_out"]
     assert "4.1 m ahead and 1.6 m to the right" in line
     assert scores["window"] == score_recordings(model, people)["window"]
     assert score_recordings(model, people)["left_out"] == []
-    write_recordings(tmp_path / "some", [_in_front(one, fan) for one in people])
+    write_recordings(tmp_path / "some", [with_others(one, fan) for one in people])
     task_file.write_text(TASK.format(more='unlabelled = "some"'))
     taught = train_recogniser(task_file, tmp_path / "model", OPTIONS)
     assert taught.meta["left_out"] == [line]
     assert len(load_recogniser(tmp_path / "model").points.busy) == 9
-
-
-def _in_front(recording: PointRecording, cloud: PointCloud) -> PointRecording:
-    """The recording with other points behind those of the person."""
-    other = cloud.select(cloud.frame < recording.num_frames)
-    names = ("frame", "x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
-    columns = {name: np.concatenate([getattr(recording.cloud, name), getattr(other, name)]) for name in names}
-    order = np.argsort(columns["frame"], kind="stable")
-    return replace(recording, cloud=PointCloud(**{name: column[order] for name, column in columns.items()}))
 
 
 @pytest.mark.usefixtures("drawn")
@@ -195,16 +180,15 @@ def test_labelled_recordings_train_along(task_file: Path, tmp_path: Path):
 
 
 def slowed(recordings: list[PointRecording]) -> list[PointRecording]:
-    moving = [one for one in recordings if one.label == "to_and_fro"]
-    return [
-        replace(
-            one,
-            cloud=replace(
-                one.cloud, radial_velocity_mps=one.cloud.radial_velocity_mps / 10, y_m=2 + (one.cloud.y_m - 2) / 10
-            ),
-        )
-        for one in moving
-    ]
+    def slower(cloud: PointCloud) -> PointCloud:
+        return replace(cloud, radial_velocity_mps=cloud.radial_velocity_mps / 10, y_m=2 + (cloud.y_m - 2) / 10)
+
+    return [replace(one, cloud=slower(one.cloud)) for one in recordings if one.label == "to_and_fro"]
+
+
+def live_labels(model: Recogniser, recording: PointRecording) -> list[Recognition]:
+    live = LiveRecogniser(model)
+    return [one for points in frames(recording) for one in live.push(points)] + live.finish()
 
 
 @pytest.mark.parametrize("gap_frames", [None, 3])
@@ -214,10 +198,8 @@ def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_fil
     recording = drawn_sequences(model.settings, 1, first=9)[1].part(0, 71)
     kept = ~np.isin(recording.cloud.frame, [0, 1, 30, 31, 32, 33, 34, 60])  # gaps, and a sample shorter than a window
     recording = replace(recording, cloud=recording.cloud.select(kept))
-    live, found = LiveRecogniser(model), []
-    for points in frames(recording):
-        found += live.push(points)
-    assert found + live.finish() == model.recognise(recording)
+    found = live_labels(model, recording)
+    assert found == model.recognise(recording)
     assert len(found) >= 2
 
 
@@ -230,10 +212,8 @@ def test_gaps_are_windows_of_an_empty_place_where_a_label_is_one(gap_frames: int
     length = model.settings.window_frames
     kept = ~np.isin(recording.cloud.frame, [*range(2), *range(20, 20 + 2 * length + 3)])
     recording = replace(recording, cloud=recording.cloud.select(kept))
-    live, found = LiveRecogniser(model), []
-    for points in frames(recording):
-        found += live.push(points)
-    assert found + live.finish() == model.recognise(recording)
+    found = live_labels(model, recording)
+    assert found == model.recognise(recording)
     assert sum(one.first_frame in (20, 20 + length) for one in model.recognise(recording)) == 2
     nothing = replace(recording, cloud=recording.cloud.select(np.zeros(len(kept[kept]), bool)), num_frames=2 * length)
     assert [one.first_frame for one in model.recognise(nothing)] == [0, length]

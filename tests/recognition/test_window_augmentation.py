@@ -6,15 +6,11 @@ import numpy as np
 import pytest
 
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.window_augmentation import PerformanceVariation, WindowAugmentation, augmented, varied
-from tests.recognition.clouds import recording_of
+from tests.recognition.clouds import RADAR, recording_of
 
 STEP_MPS, LARGEST_MPS, FRAMES = 0.25, 2.0, 40
-RADAR = Quantisation(
-    range_step_m=0.05, velocity_step_mps=STEP_MPS, max_velocity_mps=LARGEST_MPS, removes_static=False,
-    groups_range=False, groups_velocity=False, knows_place=False,
-)  # fmt: skip
+COARSE = replace(RADAR, velocity_step_mps=STEP_MPS, max_velocity_mps=LARGEST_MPS)
 AS_IT_WAS = PerformanceVariation(
     tempo=0.0, size=0.0, shift_m=0.0, turn_rad=0.0, cut_share=0.0, most_cut=0.0, hidden_share=0.0
 )
@@ -31,7 +27,7 @@ def receding() -> PointRecording:
 
 def copy_of(how: PerformanceVariation, seed: int = 0, first: int = 5, *, once: bool = False) -> PointRecording:
     rng = np.random.default_rng(seed)
-    return varied(receding(), first, 20, rng, RADAR, how, once=once)
+    return varied(receding(), first, 20, rng, COARSE, how, once=once)
 
 
 @pytest.mark.parametrize("once", [False, True])
@@ -88,7 +84,7 @@ def test_an_empty_window_stays_empty():
     nobody = recording_of([], num_frames=20)
     for once in (False, True):
         rng = np.random.default_rng(0)
-        copy = varied(nobody, 0, 20, rng, RADAR, PerformanceVariation(), once=once)
+        copy = varied(nobody, 0, 20, rng, COARSE, PerformanceVariation(), once=once)
         assert (len(copy.cloud.frame), copy.num_frames) == (0, 20)
 
 

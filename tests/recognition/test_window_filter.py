@@ -5,9 +5,8 @@ import pytest
 
 from mmweaver.recognition.background_mask import background_cells
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.window_filter import WindowFilter, without_multipath
-from tests.recognition.clouds import in_all_frames, recording_of
+from tests.recognition.clouds import RADAR, in_all_frames, recording_of
 
 FRAMES = 20
 Group = tuple[float, float, float, int]  # right, ahead, velocity, points per frame within 0.2 m
@@ -54,13 +53,9 @@ def test_something_farther_counts_while_the_person_is_away():
 
 
 def test_of_a_person_with_all_disturbances_one_point_per_frame_stays():
-    radar = Quantisation(
-        range_step_m=0.05, velocity_step_mps=0.12, max_velocity_mps=0.96, removes_static=False, groups_range=True,
-        groups_velocity=True, knows_place=True,
-    )  # fmt: skip
     person, flank, echo, fan = (0.0, 2.0, 0.36), (0.0, 2.0, 0.48), (1.5, 3.5, 0.36), (-2.0, 1.0, 0.6)
     snr_db = np.repeat([20.0, 10.0, 20.0, 10.0], FRAMES)
     window = in_all_frames([person, flank, echo, fan], FRAMES, snr_db=snr_db)
     busy = background_cells([in_all_frames([fan], FRAMES)])
-    for points, left in ((WindowFilter(busy=busy, radar=radar), 1), (WindowFilter(busy=busy), 3), (WindowFilter(), 4)):
+    for points, left in ((WindowFilter(busy=busy, radar=RADAR), 1), (WindowFilter(busy=busy), 3), (WindowFilter(), 4)):
         assert len(points(window).cloud.frame) == left * FRAMES

@@ -25,8 +25,8 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
     if "labelled_windows" in meta:
         text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
     if "unlabelled_windows" in meta:
-        done = meta.get("self_training", {})
-        why = "" if done.get("used") else f", without self-training: {done.get('why', 'it is off')}"
+        done = meta["self_training"]
+        why = "" if done["used"] else f", without self-training: {done['why']}"
         text.append(f"adapted to {meta['unlabelled_windows']} unlabelled windows{why}")
     return text + contradiction_lines(meta.get("contradictions", [])) + [f"  {one}" for one in meta.get("left_out", [])]
 

@@ -18,7 +18,7 @@ from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser, Recognition
 
 FramePoints = Float[np.ndarray, "point 5"]  # x right, y ahead, z up in m, radial velocity (away +) in m/s, SNR in dB
-MOST_EMPTY = 100_000  # frames that may be missing between two
+MAX_EMPTY = 100_000  # frames that may be missing between two
 
 
 class LiveRecogniser:
@@ -50,11 +50,10 @@ class LiveRecogniser:
         return [*self._end_sample(), *self._silence()]
 
     def _end_sample(self) -> list[Recognition]:
-        settings = self.model.settings
-        found: list[Recognition] = []
-        if settings.has_single_performances and self._start is not None and not self._given:
-            found = [self._window(self._start)]
+        settings, found = self.model.settings, list[Recognition]()
         if self._start is not None:
+            if settings.has_single_performances and not self._given:
+                found = [self._window(self._start)]
             self._silent = self._last + 1
         self._start, self._given = None if settings.gap_frames is not None else self._frame, 0
         self._points.clear()
@@ -62,18 +61,15 @@ class LiveRecogniser:
 
     def _silence(self) -> list[Recognition]:
         """Windows of a gap, where one of the labels is an empty place."""
-        found: list[Recognition] = []
-        settings = self.model.settings
-        if settings.gap_frames is None or settings.empty_label is None:
-            return found
-        while self._frame - self._silent >= settings.window_frames:
-            found.append(self._window(self._silent))
-            self._silent += settings.window_frames
+        settings, found = self.model.settings, list[Recognition]()
+        if settings.gap_frames is not None and settings.empty_label is not None:
+            while self._frame - self._silent >= settings.window_frames:
+                found.append(self._window(self._silent))
+                self._silent += settings.window_frames
         return found
 
     def _complete(self, end: int) -> list[Recognition]:
-        found: list[Recognition] = []
-        length = self.model.settings.window_frames
+        length, found = self.model.settings.window_frames, list[Recognition]()
         while self._start is not None and end - self._start >= (self._given + 1) * length:
             found.append(self._window(self._start + self._given * length))
             self._given += 1
@@ -81,18 +77,16 @@ class LiveRecogniser:
 
     def _window(self, first: int) -> Recognition:
         """Labels the window that begins at a frame, and forgets its points."""
-        length = self.model.settings.window_frames
-        rows = [np.column_stack([np.full(len(points), frame - first), points])
-                for frame, points in self._points if first <= frame < first + length]  # fmt: skip
-        while self._points and self._points[0][0] < first + length:
-            self._points.popleft()
-        table = np.concatenate(rows) if rows else np.zeros((0, 6))
-        cloud = PointCloud(
-            frame=table[:, 0].astype(int), x_m=table[:, 1], y_m=table[:, 2], z_m=table[:, 3],
-            radial_velocity_mps=table[:, 4], snr_db=table[:, 5],
-        )  # fmt: skip
+        settings = self.model.settings
+        end, rows = first + settings.window_frames, [np.zeros((0, 6))]
+        while self._points and self._points[0][0] < end:
+            frame, points = self._points.popleft()
+            if frame >= first:
+                rows.append(np.column_stack([np.full(len(points), frame - first), points]))
+        frame, x, y, z, velocity, snr_db = np.concatenate(rows).T
+        cloud = PointCloud(frame=frame.astype(int), x_m=x, y_m=y, z_m=z, radial_velocity_mps=velocity, snr_db=snr_db)
         window = PointRecording(
-            name="live", cloud=cloud, num_frames=length, frame_rate_hz=self.model.settings.frame_rate_hz,
+            name="live", cloud=cloud, num_frames=settings.window_frames, frame_rate_hz=settings.frame_rate_hz,
             first_frame=first,
         )  # fmt: skip
         return self.model.recognise_windows([window])[0]
@@ -132,7 +126,7 @@ def _frames_of_csv(lines: Iterator[str]) -> Iterator[FramePoints]:
             snr_db = float(row[at["snr"]]) if "snr" in at else float("nan")
         except (ValueError, IndexError):
             raise InputError(f"the stream holds a line that is no point: {','.join(row)[:60]!r}") from None
-        if not np.isfinite([frame, *values]).all() or (number is not None and not 0 <= frame - number < MOST_EMPTY):
+        if not np.isfinite([frame, *values]).all() or (number is not None and not 0 <= frame - number < MAX_EMPTY):
             raise InputError(f"the stream holds values that cannot be, or frames out of order: {','.join(row)[:60]!r}")
         if number is not None and int(frame) > number:
             yield np.array(points)

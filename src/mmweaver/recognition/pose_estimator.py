@@ -119,13 +119,8 @@ def load_estimator(place: Path | str) -> PoseEstimator:
 
 def _settings(card: WeightsCard, file: Path) -> RecordingSettings:
     """How recordings are read, from the header of the weights."""
-    held = card.settings
-    window_s, rate_hz, columns = (held.get(name) for name in ("window_s", "frame_rate_hz", "columns"))
-    if not all(isinstance(value, float) and 0 < value < 1000 for value in (window_s, rate_hz)):
-        raise InputError(f"{file} does not say for which recordings it was trained; train it again")
-    assert isinstance(window_s, float)
-    assert isinstance(rate_hz, float)
-    return RecordingSettings(
-        labels=(), window_s=window_s, frame_rate_hz=rate_hz,
-        columns=None if columns is None else RecordedColumns.of(columns, str(file)),
-    )  # fmt: skip
+    window_s, rate_hz, columns = (card.settings.get(name) for name in ("window_s", "frame_rate_hz", "columns"))
+    if isinstance(window_s, float) and isinstance(rate_hz, float) and 0 < window_s < 1000 and 0 < rate_hz < 1000:
+        named = None if columns is None else RecordedColumns.of(columns, str(file))
+        return RecordingSettings(labels=(), window_s=window_s, frame_rate_hz=rate_hz, columns=named)
+    raise InputError(f"{file} does not say for which recordings it was trained; train it again")

@@ -151,9 +151,9 @@ def perform(
     now, person = who.surroundings, person_of(who.subject, plan.person)
     tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
     usual = who.on_way if moves else prior.single if once else prior.on_spot
-    tempo = who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own)
-    usual_amplitude = prior.single_amplitude if once else prior.usual_amplitude
-    amplitude = usual_amplitude * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
+    tempo = float(who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own))
+    usual = prior.single_amplitude if once else prior.usual_amplitude
+    amplitude = float(usual * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own))
     late_s = 0.0 if once else float(rng.uniform(0.0, LATEST_S))
     lead_s = 0.0 if once or is_event else LEAD_S + late_s
     needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
@@ -174,7 +174,7 @@ def perform(
         pose = _rested(pose, before_s, (seconds + 0.3) * tempo * 1.1)
     if moves and not is_event and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
-    joints_m = scaled_excursion(pose.joints_m, float(amplitude))
+    joints_m = scaled_excursion(pose.joints_m, amplitude)
     if not moves and who.wider_m:
         joints_m = with_feet_apart(joints_m, who.wider_m)
     is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
@@ -186,9 +186,8 @@ def perform(
         even_s = slow_at_turns(pose.time_s, joints_m, who.at_turns)
     elif not (once or is_event):
         even_s = lingering(pose.time_s, joints_m, who.linger)
-    time_s = time_warped(
-        even_s - np.interp(lead_s, pose.time_s, even_s), float(tempo), now.hurry if moves else 0.0, rng
-    )
+    even_s = even_s - np.interp(lead_s, pose.time_s, even_s)
+    time_s = time_warped(even_s, tempo, now.hurry if moves else 0.0, rng)
     pose = replace(pose, time_s=time_s, joints_m=joints_m)
     if not once:
         return Performance(pose=pose, lasts_s=seconds, surroundings=now)
@@ -257,19 +256,15 @@ def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
     feet = joints_m[:, [joint("left_ankle"), joint("right_ankle")]]
     apart_m = float(np.median(((feet[:, 0] - feet[:, 1]) * across).sum(axis=-1)))
     half_m = 0.5 * wider_m * float(np.clip((FAR_APART_M - apart_m) / (FAR_APART_M - CLOSE_M), 0.0, 1.0))
-    wider = joints_m.copy()
-    for side, sign in (("left", 1.0), ("right", -1.0)):
-        for part, share in (("knee", 0.5), ("ankle", 1.0), ("foot", 1.0)):
-            wider[:, joint(f"{side}_{part}")] += sign * share * half_m * across
     height_m = feet[..., 2] - feet[..., 2].min(axis=0)
     lifted = rise(height_m / LIFTED_M)  # (frame, side)
-    over_m = half_m * (lifted[:, 1] - lifted[:, 0])
-    feet_of = [joint(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
-    knees = [joint("left_knee"), joint("right_knee")]
-    share = np.ones(joints_m.shape[1])
-    share[knees] = 0.5
-    share[feet_of] = 0.0
-    return wider + share[:, None] * (over_m[:, None] * across)[:, None]
+    over_m = (half_m * (lifted[:, 1] - lifted[:, 0]))[:, None] * across  # of the body over the foot that stands
+    moved = joints_m + over_m[:, None]
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        for part, share in (("knee", 0.5), ("ankle", 1.0), ("foot", 1.0)):
+            own = joint(f"{side}_{part}")
+            moved[:, own] = joints_m[:, own] + sign * share * half_m * across + (1 - share) * over_m
+    return moved
 
 
 def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray:

@@ -54,8 +54,7 @@ def posed_frames(recording: PointRecording) -> PosedFrames:
     assert recording.joints_m is not None, "a recording with joints"
     joints_m = recording.joints_m.copy()
     measured = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
-    flat = joints_m.reshape(len(joints_m), -1)
-    for column in flat.T:
+    for column in joints_m.reshape(len(joints_m), -1).T:
         column[:] = np.interp(np.arange(len(column)), measured, column[measured])
     return PosedFrames(frames=point_frames(recording.cloud, recording.num_frames), joints_m=joints_m)
 
@@ -80,17 +79,18 @@ def generated_frames(
 
 def split_people(recordings: Sequence[PointRecording], window_frames: int) -> tuple[PoseWindows, PoseWindows]:
     """Windows of generated people to train on, and of those held out, undisturbed."""
-    held = [(int(one.name.rpartition("_")[2]) % HELD_OUT == HELD_OUT - 1) for one in recordings]
+    person = [int(one.name.rpartition("_")[2]) for one in recordings]
+    held = [number % HELD_OUT == HELD_OUT - 1 for number in person]
     if not any(held):
-        last = max(int(one.name.rpartition("_")[2]) for one in recordings)
-        held = [int(one.name.rpartition("_")[2]) == last for one in recordings]
-    frames = [posed_frames(one) for one in recordings]
-    trained = [one for one, is_held in zip(frames, held, strict=True) if not is_held]
-    unseen = [one for one, is_held in zip(frames, held, strict=True) if is_held]
-    return (
-        PoseWindows(recordings=trained, window_frames=window_frames),
-        PoseWindows(recordings=unseen, window_frames=window_frames, disturbance=None),
+        held = [number == max(person) for number in person]
+    trained, unseen = (
+        PoseWindows(
+            recordings=[posed_frames(one) for one, is_held in zip(recordings, held, strict=True) if is_held == wanted],
+            window_frames=window_frames,
+        )
+        for wanted in (False, True)
     )
+    return trained, replace(unseen, disturbance=None)
 
 
 def train_pose_of_task(

@@ -135,11 +135,10 @@ def fitted(
         meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
     trees = made.trees(options)
     if unlabelled:
-        meta["unlabelled_windows"] = len(unlabelled)
-        if options.self_training:
-            features = recognition_features([made.points(window) for window in unlabelled], made.names)
-            follows = None if task.recordings.has_single_performances else following(unlabelled)
-            trees, meta["self_training"] = self_trained(made, features, trees, options, follows)
+        features = recognition_features([made.points(window) for window in unlabelled], made.names)
+        follows = None if task.recordings.has_single_performances else following(unlabelled)
+        trees, note = self_trained(made, features, trees, options, follows)
+        meta |= {"unlabelled_windows": len(unlabelled), "self_training": note}
     return Recogniser(
         settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
         outside_above=outside_above, points=made.points, meta=meta,

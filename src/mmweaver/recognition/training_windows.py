@@ -38,7 +38,6 @@ class TrainingOptions:
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
-    self_training: bool = True
     labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
 
     def __post_init__(self) -> None:
