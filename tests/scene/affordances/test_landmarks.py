@@ -46,16 +46,6 @@ def test_approaches_are_free_and_face_the_landmark(office: ProceduralRoom):
         assert np.angle(np.exp(1j * (np.arctan2(gap[1], gap[0]) - mark.facing_rad))) == pytest.approx(0, abs=1e-6)
 
 
-def test_a_mask_excludes_boxes_from_the_seats():
-    room = next(
-        room for room in (make_room("workshop", layout, 300) for layout in range(8)) if "carton" in room.boxes.names
-    )
-    scene = reconstruct(room.photo())
-    cartons = np.array([name == "carton" for name in room.boxes.names])
-    for seat in scene.seats:
-        assert room.boxes.distance_m(seat.position_m[None])[0][cartons].min() > 0.05
-
-
 def test_given_landmarks_replace_those_found(office: ProceduralRoom):
     scene = reconstruct(office.photo("lamps"))
     given = with_given_landmarks(scene, [("door", (0.2, 2.0))])

@@ -37,15 +37,6 @@ def test_holes_and_points_behind_are_put_on_the_walls_plane(behind_m: float, nam
     assert sentences[0].startswith("1 windows or mirrors")
 
 
-def test_a_vase_before_the_window_stays():
-    photo, wall_m, _ = wall_with_pane(9.0)
-    vase = photo.depth_m.copy()
-    vase[60:80, 70:80] = 1.9
-    closed, _ = fill_panes(replace(photo, depth_m=vase))
-    assert (closed.depth_m[60:80, 70:80] == 1.9).all()
-    assert closed.depth_m[35:55, 65:105] == pytest.approx(wall_m[35:55, 65:105], rel=0.01)
-
-
 def test_a_curtain_next_to_a_pane_does_not_shift_its_plane():
     photo, wall_m, pane = wall_with_pane(9.0)
     assert photo.classes is not None

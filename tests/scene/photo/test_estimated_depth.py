@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.scene.photo.estimated_depth import AUTO, EXAMPLE, estimate_depth, scale_note
+from mmweaver.scene.photo.estimated_depth import estimate_depth
 from tests.scene import models
 
 pytest.importorskip("transformers")
@@ -31,19 +31,6 @@ def test_models_of_relative_depth_are_refused(tmp_path: Path):
         estimate_depth(RGB, models.depth_anything(tmp_path / "relative", "relative"))
     with pytest.raises(InputError, match="no metric depth"):
         estimate_depth(RGB, models.segformer(tmp_path / "segformer"))
-
-
-def test_auto_is_one_model(monkeypatch: pytest.MonkeyPatch):
-    asked: list[str] = []
-
-    def none(source: str, *_: Any) -> None:
-        asked.append(source)
-        raise InputError("not here")
-
-    monkeypatch.setattr("mmweaver.scene.photo.estimated_depth.load_pretrained", none)
-    with pytest.raises(InputError, match="not here"):
-        estimate_depth(RGB, AUTO)
-    assert asked == [EXAMPLE]
 
 
 def test_measured_depth_is_for_models_that_take_it(tmp_path: Path):
@@ -70,8 +57,3 @@ def test_moge_gives_depth_and_focal_length(monkeypatch: pytest.MonkeyPatch):
     assert found.focal_px == pytest.approx(0.8 * RGB.shape[1])
     assert np.isnan(found.depth_m[0, 0])
     assert found.depth_m[1, 1] == 2.5
-
-
-def test_a_camera_in_the_sky_is_noticed():
-    assert scale_note(1.4) is None
-    assert "4.00 m above the floor" in str(scale_note(4.0))

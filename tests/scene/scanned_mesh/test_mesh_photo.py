@@ -12,7 +12,6 @@ pytest.importorskip("trimesh", reason="the extra 'mesh' is not installed")
 import trimesh
 
 from mmweaver import Weaver
-from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
@@ -134,13 +133,3 @@ def test_an_obj_reads_nothing_outside_its_folder(tmp_path: Path):
     path = furnished(inside / "room.obj", np.eye(4))
     path.write_text("mtllib ../secret.mtl\n" + path.read_text().replace("mtllib", "# mtllib"))
     assert "stolen" not in read_mesh(path).names
-
-
-def test_the_command_line_takes_a_mesh(tmp_path: Path):
-    path = furnished(tmp_path / "room.glb", Y_UP)
-    arguments = ["generate", "--mesh", str(path), "--mesh-eye", "2.5,1.1,-0.5", "--mesh-look", "90", "--no-pictures"]
-    assert main([*arguments, "--text", "a person waves", "--seed", "1", "--quiet", "--out", str(tmp_path / "out")]) == 0
-    assumed = json.loads((tmp_path / "out" / "meta.json").read_text())["assumed"]
-    assert any("looks at 90 degrees" in one for one in assumed)
-    assert main([*arguments, "--rgb", "a.png", "--text", "a person waves", "--out", str(tmp_path / "no")]) == 2
-    assert not (tmp_path / "no").exists()

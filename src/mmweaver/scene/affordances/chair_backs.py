@@ -13,9 +13,9 @@ from mmweaver.scene.layout.connected_components import label_components
 from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 
 _BACK_TOP_M, _LONG_M, _THICK_M = (0.78, 1.05), (0.3, 0.62), 0.22  # as seen: squares are 5 cm
-_LEVEL_M, _LEAST_SQUARES = 0.05, 7  # between the quartiles of a back's height: plants and laptops slope
+_LEVEL_M, _MIN_SQUARES = 0.05, 7  # between the quartiles of a back's height: plants and laptops slope
 _AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # where a table is, and where none is: a laptop stands on one
-_LEAST_AHEAD, _MOST_ELSEWHERE = 0.3, 0.05  # shares of table there
+_MIN_AHEAD, _MAX_ELSEWHERE = 0.3, 0.05  # shares of table there
 _TO_SEAT_M, _SEAT_HEIGHT_M, _SEAT_SIZE_M = 0.18, 0.45, (0.42, 0.4)  # of usual chairs, as nothing of the seat is seen
 _APART_M = 0.45  # from seats that are found
 
@@ -31,7 +31,7 @@ def chairs_behind_tables(
         is_back &= evidence >= 0
     labels, _ = label_components(is_back)
     found: list[Seat] = []
-    for label in np.nonzero(np.bincount(labels.ravel())[1:] >= _LEAST_SQUARES)[0] + 1:
+    for label in np.nonzero(np.bincount(labels.ravel())[1:] >= _MIN_SQUARES)[0] + 1:
         seat = _seat_of_back(height_map, labels == label, tables)
         if seat is not None and not any(_are_near(seat, other) for other in (*seats, *found)):
             found.append(seat)
@@ -48,7 +48,7 @@ def _seat_of_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Se
     middle, across = places.mean(axis=0), axes[:, 0]
     shares = [_share_of_table(tables, middle, sign * across, _AHEAD_M) for sign in (-1.0, 1.0)]
     nearby = [_share_of_table(tables, middle, sign * across, _NEAR_M) for sign in (-1.0, 1.0)]
-    if max(min(shares), *nearby) > _MOST_ELSEWHERE or max(shares) < _LEAST_AHEAD:
+    if max(min(shares), *nearby) > _MAX_ELSEWHERE or max(shares) < _MIN_AHEAD:
         return None
     ahead = across if shares[1] > shares[0] else -across
     row, column = middle + ahead * _TO_SEAT_M / CELL_M

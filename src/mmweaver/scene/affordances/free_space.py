@@ -9,7 +9,7 @@ from mmweaver.core.records import FreeSpace, Plane
 from mmweaver.core.shapes import Array, GridMask
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.layout.connected_components import bounding_slices
-from mmweaver.scene.layout.height_map import CELL_M, HeightMap, surface_behind_m
+from mmweaver.scene.layout.height_map import CELL_M, HeightMap, nearest_squares, surface_behind_m
 
 _EDGE_ON_M, _TABLE_DEPTH_M = 0.13, 0.85
 _TABLE_HEIGHTS_M = (0.3, 1.1)
@@ -45,11 +45,9 @@ def behind_edges(height_map: HeightMap) -> GridMask:
     x, y = height_map.x_m[column], height_map.y_m[row]
     distance = np.maximum(np.hypot(x, y), 1e-6)
     occluded = np.zeros_like(is_edge, dtype=bool)
-    rows, columns = height_map.top_m.shape
     for behind in np.arange(CELL_M / 2, _TABLE_DEPTH_M, CELL_M / 2):
-        a = np.floor((x * (1 + behind / distance) - height_map.x_m[0]) / CELL_M + 0.5).astype(int)
-        b = np.floor((y * (1 + behind / distance) - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
-        inside = (a >= 0) & (a < columns) & (b >= 0) & (b < rows)
+        farther = 1 + behind / distance
+        b, a, inside = nearest_squares(x * farther, y * farther, height_map.x_m, height_map.y_m)
         occluded[b[inside], a[inside]] = True
     return occluded
 

@@ -1,5 +1,6 @@
 """Where a person could sit: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from mmweaver.core.shapes import Array, GridMask
 from mmweaver.scene.affordances.chair_backs import chairs_behind_tables
 from mmweaver.scene.layout.class_evidence import GridClass
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
-from mmweaver.scene.layout.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
+from mmweaver.scene.layout.height_map import CELL_M, SEAT_LEVELS_M, HeightMap, nearest_squares
 
 # Heights are above the floor unless they are relative to the seat.
 _SEAT_HEIGHTS_M = (0.33, 0.60)
@@ -32,7 +33,7 @@ _STOOL_SIZE_M = (0.30, 0.60)
 _MAX_STOOL_HEIGHT_M = 0.52
 # A bench is a narrow plank through under which one sees: a cabinet's front reaches down, a low table is wider.
 _BENCH_LENGTH_M, _BENCH_WIDTH_M, _BENCH_HEIGHT_M = (0.75, 2.1), (0.2, 0.46), (0.38, 0.52)
-_PLANK_M, _MOST_BELOW = 0.15, 0.5  # what is seen farther below its top is no plank; on so much of its length at most
+_PLANK_M, _MAX_BELOW = 0.15, 0.5  # what is seen farther below its top is no plank; on so much of its length at most
 _GAP_SQUARES, _EDGE_NOISE_M = np.ones((7, 7), bool), 0.04  # of a plank that is seen at a flat angle
 _TABLE_SQUARES = np.ones((7, 7), bool)
 
@@ -58,17 +59,7 @@ class _Candidates:
     height_m: PerCandidate
 
     def select(self, chosen: CandidateMask) -> "_Candidates":
-        return _Candidates(
-            x_m=self.x_m[chosen],
-            y_m=self.y_m[chosen],
-            facing_rad=self.facing_rad[chosen],
-            height_m=self.height_m[chosen],
-        )
-
-    def cells(self, height_map: HeightMap) -> tuple[Int[Array, " candidate"], Int[Array, " candidate"]]:
-        """Row and column of the square of each place."""
-        row = np.round((self.y_m - height_map.y_m[0]) / CELL_M).astype(int)
-        return row, np.round((self.x_m - height_map.x_m[0]) / CELL_M).astype(int)
+        return _Candidates(**{name: values[chosen] for name, values in vars(self).items()})
 
     def at(self, height_map: HeightMap, offsets: Offsets) -> "_Squares":
         """The squares of the map at the offsets from each place."""
@@ -76,14 +67,10 @@ class _Candidates:
         cosine, sine = np.cos(self.facing_rad)[:, None, None], np.sin(self.facing_rad)[:, None, None]
         x = self.x_m[:, None, None] + cosine * forward - sine * left
         y = self.y_m[:, None, None] + sine * forward + cosine * left
-        column = np.floor((x - height_map.x_m[0]) / CELL_M + 0.5).astype(int)
-        row = np.floor((y - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
-        rows, columns = height_map.top_m.shape
-        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        row, column, inside = nearest_squares(x, y, height_map.x_m, height_map.y_m)
         return _Squares(
-            height_map=height_map, seat_m=self.height_m[:, None, None], inside=inside,
-            row=np.where(inside, row, 0), column=np.where(inside, column, 0),
-        )  # fmt: skip
+            height_map=height_map, seat_m=self.height_m[:, None, None], inside=inside, row=row, column=column
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,10 +131,7 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
     if evidence is not None:  # on a bed the duvet may be called something that is no furniture
         labelled = (evidence > 0) | (labelled & (evidence >= 0))
     is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
-    on_stool, on_bench = (
-        _is_on_stool(height_map, is_seat_height, candidates),
-        _is_on_bench(height_map, is_seat_height, candidates),
-    )
+    on_stool, on_bench = (_is_on(kind, height_map, is_seat_height, candidates) for kind in (_is_stool, _is_plank))
     inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
     is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
     narrow = is_contrary[:, inner].mean(axis=(1, 2)) < _MAX_CONTRARY  # a bench is no deeper than a stool
@@ -284,28 +268,32 @@ def _back_share(height_map: HeightMap, candidates: _Candidates) -> PerCandidate:
     return np.where(is_table, 0.0, share)
 
 
-def _is_on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
-    """Whether a candidate is on an isolated patch of a stool's size and height."""
+def _is_on(
+    kind: Callable[[HeightMap, GridMask], bool], height_map: HeightMap, squares: GridMask, candidates: _Candidates
+) -> CandidateMask:
+    """Whether a candidate is on a patch of these squares that is of a kind."""
     labels, count = label_components(squares)
-    is_stool = np.zeros(count + 1, bool)
-    for label, (rows, columns) in enumerate(bounding_slices(labels), start=1):
-        sizes = ((rows.stop - rows.start) * CELL_M, (columns.stop - columns.start) * CELL_M)
-        has_size = min(sizes) >= _STOOL_SIZE_M[0] and max(sizes) <= _STOOL_SIZE_M[1]
-        is_stool[label] = has_size and np.median(height_map.top_m[labels == label]) <= _MAX_STOOL_HEIGHT_M
-    row, column = candidates.cells(height_map)
-    return is_stool[labels[row, column]]
+    is_kind = np.array([False, *(kind(height_map, labels == label) for label in range(1, count + 1))])
+    row, column, _ = nearest_squares(candidates.x_m, candidates.y_m, height_map.x_m, height_map.y_m)
+    return is_kind[labels[row, column]]
 
 
-def _is_on_bench(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
-    """Whether a candidate is on a plank of a bench's length, width and height, with little below it."""
-    labels, count = label_components(squares)
-    is_bench = np.zeros(count + 1, bool)
-    for label, (rows, columns) in enumerate(bounding_slices(labels), start=1):
-        if max(rows.stop - rows.start, columns.stop - columns.start) * CELL_M >= 0.7 * _BENCH_LENGTH_M[0]:
-            patch = labels == label
-            is_bench[label] = _is_bench(height_map, patch, float(np.median(height_map.top_m[patch])))
-    row, column = candidates.cells(height_map)
-    return is_bench[labels[row, column]]
+def _sizes_m(patch: GridMask) -> Float[Array, "2"]:
+    """Extents of a patch along y and x, metres."""
+    return (np.ptp(np.argwhere(patch), axis=0) + 1) * CELL_M
+
+
+def _is_stool(height_map: HeightMap, patch: GridMask) -> bool:
+    """Whether an isolated patch has a stool's size and height."""
+    sizes_m = _sizes_m(patch)
+    has_size = sizes_m.min() >= _STOOL_SIZE_M[0] and sizes_m.max() <= _STOOL_SIZE_M[1]
+    return bool(has_size and np.median(height_map.top_m[patch]) <= _MAX_STOOL_HEIGHT_M)
+
+
+def _is_plank(height_map: HeightMap, patch: GridMask) -> bool:
+    """Whether a patch is a plank of a bench's length, width and height, with little below it."""
+    is_long = _sizes_m(patch).max() >= 0.7 * _BENCH_LENGTH_M[0]
+    return bool(is_long) and _is_bench(height_map, patch, float(np.median(height_map.top_m[patch])))
 
 
 def _is_bench(height_map: HeightMap, patch: GridMask, height_m: float) -> bool:
@@ -320,7 +308,7 @@ def _is_bench(height_map: HeightMap, patch: GridMask, height_m: float) -> bool:
     around = np.asarray(ndimage.binary_dilation(patch, np.ones((3, 3), bool)), bool)
     is_low = around & (height_map.bottom_m < height_m - _PLANK_M)
     along = [np.unique(np.floor(np.argwhere(mask) @ axes[:, 1])) for mask in (is_low, around)]
-    return len(along[0]) < _MOST_BELOW * len(along[1])
+    return len(along[0]) < _MAX_BELOW * len(along[1])
 
 
 def _best_seats(height_map: HeightMap, candidates: _Candidates, score: PerCandidate) -> tuple[Seat, ...]:

@@ -58,6 +58,18 @@ def square_index(points_m: Points, shape: tuple[int, int]) -> Int[Array, " point
     return np.where(inside, row * shape[1] + column, -1)
 
 
+def nearest_squares(
+    x: Float[Array, "*places"], y: Float[Array, "*places"], x_m: Float[Array, " x"], y_m: Float[Array, " y"]
+) -> tuple[Int[Array, "*places"], Int[Array, "*places"], Bool[Array, "*places"]]:
+    """Rows and columns of the squares, with centres at `x_m` and `y_m`, of places, metres; 0 outside the map, and
+    which places are inside.
+    """
+    column = np.floor((x - x_m[0]) / CELL_M + 0.5).astype(int)
+    row = np.floor((y - y_m[0]) / CELL_M + 0.5).astype(int)
+    inside = (row >= 0) & (row < len(y_m)) & (column >= 0) & (column < len(x_m))
+    return np.where(inside, row, 0), np.where(inside, column, 0), inside
+
+
 def make_height_map(view: AlignedPhoto) -> HeightMap:
     """Bins the measured points into squares, and traces lines of sight through the squares without points."""
     view = _subsampled(view)

@@ -39,10 +39,11 @@ def make_mesh(
     return points.reshape(-1, 3)[used], compact.reshape(-1, 3), face_material
 
 
-def rectangle_corners_m(plane: Plane) -> Float[Array, "4 3"]:
-    """The corners of a rectangle, counterclockwise seen from its free side, metres."""
+def rectangle_corners_m(plane: Plane, set_back_m: float = 0.0) -> Float[Array, "4 3"]:
+    """The corners of a rectangle moved against its normal, counterclockwise seen from its free side, metres."""
+    centre_m = plane.centre_m - set_back_m * plane.normal
     u, v = plane.half_size_m[0] * plane.axis_u, plane.half_size_m[1] * plane.axis_v
-    return np.stack([plane.centre_m - u - v, plane.centre_m + u - v, plane.centre_m + u + v, plane.centre_m - u + v])
+    return np.stack([centre_m - u - v, centre_m + u - v, centre_m + u + v, centre_m - u + v])
 
 
 def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
@@ -50,8 +51,7 @@ def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
 
     All but the floor lie slightly behind their measured surfaces.
     """
-    set_back_m = [(plane.kind != "floor") * SET_BACK_M * plane.normal for plane in planes]
-    corners = [rectangle_corners_m(plane) - back for plane, back in zip(planes, set_back_m, strict=True)]
+    corners = [rectangle_corners_m(plane, 0.0 if plane.kind == "floor" else SET_BACK_M) for plane in planes]
     faces = 4 * np.arange(len(planes))[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
     material = np.repeat([MATERIAL_NAMES.index(plane.material) for plane in planes], 2)
     return np.concatenate(corners), faces.reshape(-1, 3), material

@@ -14,7 +14,7 @@ EXAMPLE = "depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
 AUTO = "auto"  # stands for EXAMPLE, downloaded once and kept in the Hub's cache
 PROMPTED = "prompt_depth_anything"
 MOGE = "Ruicheng/moge-2-vitl-normal"
-USUAL_HEIGHT_M = (0.6, 2.2)  # of a hand-held or mounted camera above the floor
+PLAUSIBLE_HEIGHT_M = (0.6, 2.2)  # of a hand-held or mounted camera above the floor
 ALWAYS_METRIC = {"zoedepth", "depth_pro"}
 SOMETIMES_METRIC = {"depth_anything", PROMPTED}
 
@@ -73,7 +73,7 @@ def estimate_depth(
 
 def scale_note(camera_height_m: float) -> str | None:
     """A sentence where estimated depth puts the camera at a height at which nobody holds one; None elsewhere."""
-    low_m, high_m = USUAL_HEIGHT_M
+    low_m, high_m = PLAUSIBLE_HEIGHT_M
     if low_m <= camera_height_m <= high_m:
         return None
     return (

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.scene.procedural.furniture import Size, make_piece
+from mmweaver.scene.procedural.builder import Size
+from mmweaver.scene.procedural.furniture import make_piece
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, PlacedPiece, bounding_boxes
 

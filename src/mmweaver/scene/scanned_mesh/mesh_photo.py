@@ -24,8 +24,8 @@ from mmweaver.scene.scanned_mesh.viewpoint import Viewpoint, find_viewpoint
 
 WIDTH, HEIGHT, VIEW_DEG = 640, 480, 100.0
 UPWARDS_RAD = np.deg2rad(40.0)
-MOST_NAMES = 12  # that a note lists
-FEWEST_SEEN = 0.2  # share of a picture's pixels
+MAX_NAMES = 12  # that a note lists
+MIN_SEEN = 0.2  # share of a picture's pixels
 TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
 
 
@@ -56,12 +56,10 @@ def read_mesh_photo(
     classes = _classes(mesh, given)
     first_axes = _camera_axes(view.azimuth_rad)
     photo, share = _photo(mesh, caster, view.eye_m, first_axes, classes)
-    if share < FEWEST_SEEN:
+    if share < MIN_SEEN:
         raise InputError(f"{path}: from the radar's place hardly anything of the mesh is seen; give another place")
     around = [(axes, *_photo(mesh, caster, view.eye_m, axes, classes)) for axes in _axes_around(view.azimuth_rad)]
-    others = [
-        PosedPhoto(photo=one, pose=_pose(first_axes, axes)) for axes, one, share in around if share >= FEWEST_SEEN
-    ]
+    others = [PosedPhoto(photo=one, pose=_pose(first_axes, axes)) for axes, one, share in around if share >= MIN_SEEN]
     place = ", ".join(f"{value:.2f}" for value in view.eye_m)
     chosen = "given" if eye is not None else "chosen"
     notes = (
@@ -140,8 +138,8 @@ def _unused(mesh: ColouredMesh, given: dict[str, str]) -> tuple[str, ...]:
     unused = [name for name in given if name not in mesh.names]
     if not unused:
         return ()
-    has = ", ".join(repr(name[:40]) for name in mesh.names[:MOST_NAMES] if name) or "no names at all"
-    return (f"The mesh has no {', '.join(repr(name[:40]) for name in unused[:MOST_NAMES])}; it has {has}.",)
+    has = ", ".join(repr(name[:40]) for name in mesh.names[:MAX_NAMES] if name) or "no names at all"
+    return (f"The mesh has no {', '.join(repr(name[:40]) for name in unused[:MAX_NAMES])}; it has {has}.",)
 
 
 def _table(path: Path) -> dict[str, str]:

@@ -14,9 +14,9 @@ UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
 GUESSED = ("m", "cm", "mm")  # of files that say none; glTF is in metres
 HEIGHT_M, WIDTH_M = (1.6, 12.0), (1.5, 80.0)  # of rooms
 LEVEL = np.cos(np.deg2rad(12))  # cosine between up and the normals of level surfaces, at least
-FEWEST_LEVEL = 0.08  # share of the area: of floors, and tops of furniture
+MIN_LEVEL = 0.08  # share of the area: of floors, and tops of furniture
 FLOOR_BIN_M = 0.05
-THICKEST_FLOOR_M, SLAB_SHARE = 0.4, 0.7  # of a modelled slab: its top has nearly the area of its underside
+MAX_FLOOR_M, SLAB_SHARE = 0.4, 0.7  # of a modelled slab: its top has nearly the area of its underside
 CLEARLY_MORE = 1.2  # level area with another axis up, before it is said
 UPWARDS = {"y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -50,7 +50,7 @@ def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str 
     level = {name: float(area[np.abs(normals @ along) > LEVEL].sum()) for name, along in UPWARDS.items()}
     axis = up or named or max(level, key=lambda name: level[name])
     direction, is_level = _refined(np.array(UPWARDS[axis]), normals, area)
-    if area[is_level].sum() < FEWEST_LEVEL * area.sum():
+    if area[is_level].sum() < MIN_LEVEL * area.sum():
         raise InputError(f"{path}: no level surfaces with {axis} up; say which axis is up, or turn the mesh upright")
     to_mesh = _axes(direction)
     turned = mesh.vertices @ to_mesh.T
@@ -119,7 +119,7 @@ def _floor(height: np.ndarray, faces: np.ndarray, area: np.ndarray, unit_m: floa
     bins = np.floor((middle - middle.min()) / FLOOR_BIN_M).astype(int)
     held = np.bincount(bins, weights=area)
     lowest = int(np.flatnonzero(held > 0.15 * held.max())[0])
-    slab = held[lowest : lowest + round(THICKEST_FLOOR_M / FLOOR_BIN_M) + 1]
+    slab = held[lowest : lowest + round(MAX_FLOOR_M / FLOOR_BIN_M) + 1]
     top = lowest + int(np.flatnonzero(slab > SLAB_SHARE * held[lowest])[-1])
     chosen = np.abs(bins - top) <= 1
     order = np.argsort(middle[chosen])

@@ -9,12 +9,12 @@ from mmweaver.core.shapes import Vec3
 from mmweaver.geometry.ray_caster import RayCaster
 
 EYE_HEIGHT_M = 1.2
-STEP_M, FEWEST_FREE = 0.4, 4  # between candidates; free neighbours of a place
+STEP_M, MIN_FREE = 0.4, 4  # between candidates; free neighbours of a place
 HEAD_M, FOOT_M = 1.9, 0.12
 FAR_M = 6.0  # what lies farther is of no use
 _DIRECTIONS = 48
 _HALF_VIEW = 6  # directions to either side: 45 degrees
-_MOST_CANDIDATES = 400
+_MAX_CANDIDATES = 400
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ def find_viewpoint(caster: RayCaster, vertices_m: np.ndarray, place_m: Vec3 | No
 def _free_places(caster: RayCaster, vertices_m: np.ndarray) -> np.ndarray:
     """Places at eye height over a grid of free floor, (place, 3)."""
     low, high = np.percentile(vertices_m[:, :2], [1, 99], axis=0)
-    step_m = max(STEP_M, float(np.sqrt(np.prod(high - low) / _MOST_CANDIDATES)))
+    step_m = max(STEP_M, float(np.sqrt(np.prod(high - low) / _MAX_CANDIDATES)))
     x, y = np.meshgrid(*(np.arange(a + step_m / 2, b, step_m) for a, b in zip(low, high, strict=True)))
     above = np.stack([x, y, np.full(x.shape, HEAD_M)], axis=-1)
     flat = above.reshape(-1, 3)
@@ -54,7 +54,7 @@ def _free_places(caster: RayCaster, vertices_m: np.ndarray) -> np.ndarray:
     is_free = (np.abs(caster.distance_m(flat, down) - HEAD_M) < FOOT_M).reshape(x.shape)
     padded = np.pad(is_free, 1)
     around = sum(padded[1 + r : 1 + r + len(x), 1 + c : 1 + c + x.shape[1]].astype(int) for r, c in _AROUND)
-    chosen = is_free & (around >= min(FEWEST_FREE, 2)) if is_free.any() else is_free
+    chosen = is_free & (around >= min(MIN_FREE, 2)) if is_free.any() else is_free
     return np.stack([x[chosen], y[chosen], np.full(chosen.sum(), EYE_HEIGHT_M)], axis=-1)
 
 
