@@ -92,7 +92,7 @@ REVIEWED: dict[str, str] = {
             "cannot listen on □ port",
             "cannot be shared by □ processes evenly",
             "train some with mmweaver train pose",
-            "give --frozen development",
+            "give a model of mmweaver recognise train by --model",
             "needs the package moge",
         ),
         CANNOT,

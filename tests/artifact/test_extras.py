@@ -40,7 +40,6 @@ FEATURES = (
     ("train weaver --data data/ --out out/", "dataset"),
     ("train pose TASK.toml --out out/ --tensorboard", "training"),
     ("recognise train TASK.toml --out out/", "evaluate"),
-    ("evaluate zero-shot-activity --frozen development --recordings results/", "evaluate"),
     ("completion bash", "completion"),
     ("studio --port 0 --no-browser", "studio"),
     ("view result.rrd", "rerun"),
@@ -50,7 +49,6 @@ FEATURES = (
     ("python 'from mmweaver.conversions import to_dataset; to_dataset(None, None, (), None, {})'", "xarray"),
     ("python 'from mmweaver.playback.notebook import player_widget; player_widget(None, None)'", "notebook"),
     ("python 'import mmweaver.compression.zarr_codec'", "dataset"),
-    ("python 'from mmweaver.compression.rivals.codec_interface import library; library(\"pywt\")'", "codecs"),
 )  # fmt: skip
 NOT_IN_AN_EXTRA = {"moge", "liblzfse"}  # one is not on PyPI, one has no wheels; their messages say what to install
 

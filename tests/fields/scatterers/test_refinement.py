@@ -83,16 +83,19 @@ def test_a_step_equals_that_of_the_explicit_jacobian():
     Ours leaves out the slow turns (TDM, migration, squint), so it is near, not equal.
     """
 
+    half_bins = [float(axis[-1] - axis[0]) / 2 for axis in (AXES.range_bin, AXES.doppler_bin)]
+
     def packed(points: Points) -> torch.Tensor:
-        """Scatterers (frame, point) as vectors of their parameters; bins in tens, so that all are of order 1."""
-        bins = [points.range_bin / 10, points.doppler_bin / 10]
+        """Scatterers (frame, point) as vectors of their parameters; bins in half axes, so that all are of order 1."""
+        bins = [points.range_bin / half_bins[0], points.doppler_bin / half_bins[1]]
         parts = [*bins, *points.direction.unbind(-1), points.amplitude.real, points.amplitude.imag]
         return torch.stack(parts, dim=-1).flatten(-2)
 
     def points_of(row: torch.Tensor) -> Points:
         parts = row.unflatten(-1, (3, 6))
         return Points(
-            range_bin=10 * parts[..., 0], doppler_bin=10 * parts[..., 1], direction=parts[..., 2:4],
+            range_bin=half_bins[0] * parts[..., 0], doppler_bin=half_bins[1] * parts[..., 1],
+            direction=parts[..., 2:4],
             amplitude=torch.complex(parts[..., 4], parts[..., 5]),
         )  # fmt: skip
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core import optional_packages
 from mmweaver.core.errors import InputError
 from studies.baselines.codec_interface import library, merged, split
 from studies.fields.codecs import CODECS
@@ -54,6 +55,7 @@ def test_planes_come_back():
     assert np.array_equal(merged(split(crowd().values)), crowd().values)
 
 
-def test_a_missing_library_is_named():
-    with pytest.raises(InputError, match=r"mmweaver\[codecs\]"):
-        library("no_such_library_anywhere")
+def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(optional_packages, "is_installed", lambda _: False)
+    with pytest.raises(InputError, match=r"pywavelets.*mmweaver\[codecs\]"):
+        library("pywt")
