@@ -71,7 +71,7 @@ def test_a_result_folder_is_a_recording_of_all_its_frames(tmp_path: Path):
         assert (found.name, found.num_frames) == ("result", 25)
     (one,) = read_task_recordings(tmp_path, SETTINGS)
     assert (one.label, one.num_frames) == ("walk", 25)
-    with pytest.raises(InputError, match=r"10 frames a second, the recogniser's recordings 30; .* \(--fps\)"):
+    with pytest.raises(InputError, match=r"10 frames per second, the recogniser's recordings 30; .* \(--fps\)"):
         read_task_recording(folder, replace(SETTINGS, frame_rate_hz=30.0))
     with pytest.raises(InputError, match=r"holds no points\.npz; give a result folder"):
         read_task_recording(tmp_path, SETTINGS)

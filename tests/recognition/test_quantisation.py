@@ -56,11 +56,6 @@ def test_only_the_directions_that_the_firmware_groups():
     assert group_neighbours(both, neither) is both
 
 
-def test_nothing_of_nothing():
-    empty = window([(0, 40, 0, 1.0)]).part(1, 1)
-    assert group_neighbours(empty, RADAR) is empty
-
-
 def test_values_of_meta_files_are_checked_and_older_models_have_none():
     assert Quantisation.read(vars(RADAR)) == RADAR
     for values in (None, {"velocity_step_mps": 0.1}, vars(RADAR) | {"velocity_step_mps": 0.0}, [1]):

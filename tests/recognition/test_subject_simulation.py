@@ -73,6 +73,17 @@ def test_what_is_counted_goes_on():
         assert np.ptp(did.pose.joints_m[last, joint("pelvis"), 2]) > 0.05
 
 
+def test_a_walk_goes_on_for_as_long_as_asked_and_a_gesture_is_done_once():
+    walk = performance("a person walks", 3, 4.0)
+    lift = performance("a person lifts both arms straight up", 3, 4.0, once=True)
+    assert np.linalg.norm(np.diff(walk.pose.joints_m[:, 0, :2], axis=0), axis=1).sum() > 1.0
+    assert walk.lasts_s == 4.0
+    assert np.ptp(lift.pose.joints_m[[0, -1], joint("right_wrist"), 2]) > 0.5
+    for one in (walk, lift):
+        assert one.pose.time_s[0] <= 0.0 < one.lasts_s <= one.pose.time_s[-1]
+        assert (np.diff(one.pose.time_s) > 0).all()
+
+
 def test_a_gesture_done_once_is_brisk():
     assert np.median(speeds_mps("a person pushes the right hand forward", "right_wrist", once=True)) > 1.2
 

@@ -38,7 +38,12 @@ def background_cells(empty_place: Sequence[PointRecording]) -> Cells:
 def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantisation | None = None) -> Cells:
     """Cells, and those around, in which something moves that is certainly nobody; none if unsure.
 
-    `radar` says how neighbours are grouped: flanks of static echoes move, if these are not.
+    Args:
+        recordings: Ten or more, in some of which somebody walks; labels are not used.
+        radar: How neighbours are grouped: flanks of static echoes move, if these are not. None: as they are.
+
+    Returns:
+        Cells (cell, 2), right and ahead in steps of CELL_M.
     """
     if len(recordings) < FEWEST:
         return NO_CELLS

@@ -33,7 +33,7 @@ from mmweaver.recognition.subject_simulation import (
 )
 from mmweaver.recognition.task_file import RecognitionTask, RecordingSettings
 
-WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
+WINDOWS_PER_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2
 REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
 SKIN_POINTS = 1000
@@ -66,7 +66,7 @@ class SequenceRecipe:
     @property
     def seconds(self) -> float:
         """How long a sequence of something that goes on lasts."""
-        return float(np.clip(WINDOWS_A_SEQUENCE * self.task.recordings.window_s, SHORTEST_S, LONGEST_S))
+        return float(np.clip(WINDOWS_PER_SEQUENCE * self.task.recordings.window_s, SHORTEST_S, LONGEST_S))
 
     def as_json(self) -> str:
         """All that decides the bits of a sequence; equal recipes give equal text."""

@@ -20,7 +20,7 @@ from mmweaver.recognition.point_recordings import PointRecording
 FRAME_S = 0.1
 LONGEST_GAP = 3  # frames; joints are interpolated over shorter gaps, a longer one begins another recording
 RADAR_COLUMNS, KINECT_COLUMNS = 8, 75
-MOST_BYTES = 200 * MEGABYTE
+MAX_BYTES = 200 * MEGABYTE
 
 # Our joints as mixtures of the Kinect's: (joint, joint, share of the second).
 SPINE_BASE, SPINE_MID, NECK, HEAD, SPINE_SHOULDER = 0, 1, 2, 3, 20
@@ -118,7 +118,7 @@ def cloud_of(rows: Float[np.ndarray, "point 8"]) -> FirmwareCloud:
 def _table(path: Path, columns: int) -> Float[np.ndarray, "row column"]:
     if not path.is_file():
         raise InputError(f"cannot read {path}; give the folder of a MARS subject")
-    rows = [line.split(",") for line in read_text(path, max_bytes=MOST_BYTES).splitlines()[1:] if line.strip()]
+    rows = [line.split(",") for line in read_text(path, max_bytes=MAX_BYTES).splitlines()[1:] if line.strip()]
     try:
         values = np.array(rows, float).reshape(len(rows), -1)
     except ValueError as error:

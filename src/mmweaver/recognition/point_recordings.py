@@ -66,8 +66,18 @@ def read_task_recordings(
 ) -> list[PointRecording]:
     """All recordings in a folder and its subfolders, sorted by name; a file is one recording.
 
-    The activity is the name of a folder, or a word of the file's name (`Train_walk_3.npz`). Raises InputError where
-    there are none, one names no activity or several, or cannot be read.
+    The activity is the name of a folder, or a word of the file's name (`Train_walk_3.npz`).
+
+    Args:
+        place: A folder, or one file.
+        settings: How a task's recordings are read.
+        labelled: Whether each must name its activity; else labels are empty.
+
+    Returns:
+        The recordings; frames without points count.
+
+    Raises:
+        InputError: Where there are none, one names no activity or several, or cannot be read.
     """
     place = Path(place)
     check_exists(place, "a folder of recordings")
@@ -138,7 +148,7 @@ def _frames_of_signal(file: Path, settings: RecordingSettings) -> int:
     rate_hz = (len(time_s) - 1) / (time_s[-1] - time_s[0]) if len(time_s) > 1 else settings.frame_rate_hz
     if abs(rate_hz / settings.frame_rate_hz - 1) > SAME_RATE:
         raise InputError(
-            f"{file.parent} has {rate_hz:.3g} frames a second, the recogniser's recordings"
+            f"{file.parent} has {rate_hz:.3g} frames per second, the recogniser's recordings"
             f" {settings.frame_rate_hz:.3g}; generate it at that rate (--fps)"
         )
     return len(time_s)
@@ -183,7 +193,15 @@ def windows_of(
 
     Where recordings are never cut, what is left over at the end is dropped. Where one of the labels is an empty place,
     gaps are samples of it, but for those of recordings of other labels; else a recording without any point is one
-    sample, unless samples are single performances. `step_s`: every so often a window begins.
+    sample, unless samples are single performances.
+
+    Args:
+        recording: Frames of one recording.
+        settings: Length of a window, and when a gap ends a sample.
+        step_s: A window begins every so many seconds; None: where the one before it ends.
+
+    Returns:
+        Windows in the order of their first frames.
     """
     windows: list[PointRecording] = []
     samples = samples_of(recording, settings.gap_frames)

@@ -1,7 +1,7 @@
 """Poses from point clouds: weights of `mmweaver train pose` applied to recordings.
 
 estimator = load_estimator("model/")
-pose = estimator.estimate(cloud, num_frames)  # a PoseSequence, one pose a frame
+pose = estimator.estimate(cloud, num_frames)  # a PoseSequence, one pose per frame
 """
 
 import itertools
@@ -23,7 +23,7 @@ from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 if TYPE_CHECKING:
     from mmweaver.models.pose_network import PoseNetwork
 
-STEPS_A_WINDOW = 8  # windows overlap by seven eighths, and their poses are averaged
+STEPS_PER_WINDOW = 8  # windows overlap by seven eighths, and their poses are averaged
 EVENED_S = 0.1  # standard deviation of the Gaussian that joints are smoothed with over time
 AT_ONCE = 64
 CROWN_OVER_HEAD_M = 0.11
@@ -62,7 +62,7 @@ class PoseEstimator:
         length, num_frames = self.settings.window_frames, len(frames.values)
         if num_frames < length:
             raise InputError(f"{num_frames} frames are fewer than a window of {length}; give a longer recording")
-        first = np.unique([*range(0, num_frames - length, max(length // STEPS_A_WINDOW, 1)), num_frames - length])
+        first = np.unique([*range(0, num_frames - length, max(length // STEPS_PER_WINDOW, 1)), num_frames - length])
         weight = np.hanning(length + 2)[1:-1]
         total, weights = np.zeros((num_frames, NUM_JOINTS, 3)), np.zeros(num_frames)
         for begin in range(0, len(first), AT_ONCE):

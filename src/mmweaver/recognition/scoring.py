@@ -19,7 +19,7 @@ LONG_WINDOWS = 3  # windows that are averaged: 6 s
 LISTED = 10  # features that differ most
 MISTAKEN = 0.3  # of generated windows of a label, that are taken for another label
 FAR = 0.5  # Kolmogorov-Smirnov distance above which a feature lies elsewhere
-MOST_FAR, MOST_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is due
+MAX_FAR, MAX_OUTSIDE = 0.25, 0.3  # shares of features and of windows above which a warning is due
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,7 +195,7 @@ def feature_distances(features: Features, generated: Quantiles, names: tuple[str
 
 def warning(found: dict[str, Any]) -> str | None:
     """What to say where recordings lie outside what was generated; None where they do not."""
-    if found["features_far"] <= MOST_FAR and found["windows_outside"] <= MOST_OUTSIDE:
+    if found["features_far"] <= MAX_FAR and found["windows_outside"] <= MAX_OUTSIDE:
         return None
     largest = ", ".join(found["largest"][:3])
     named = f" (most of all {largest})" if largest else ""

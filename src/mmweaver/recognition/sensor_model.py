@@ -36,9 +36,17 @@ class PointRadar:
 def observed_cloud(
     board: PointRadar, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
 ) -> PointCloud:
-    """Points of `frames` frames of one person, or of nobody (an empty tuple), under the sampled conditions.
+    """Points of one person, or of nobody, under the sampled conditions.
 
-    Points are in the axes of the board, which looks down by `tilt_deg`.
+    Args:
+        board: Radar and firmware.
+        now: Room, mount, noise and skin.
+        pose: Motion in the radar's level axes; an empty tuple is nobody.
+        frames: Number of frames, from time 0.
+        seed: Of noise, speckle and clutter.
+
+    Returns:
+        Points in the axes of the board, which looks down by `tilt_deg`.
     """
     radar = replace(
         board.radar,

@@ -42,7 +42,7 @@ HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in
 REST_S = (0.2, 0.8)  # before and after a single performance
 LATEST_EVENT = 0.7  # of the time that a sequence has more than what happens in it takes
 CLOSE_M, FAR_APART_M = 0.2, 0.5  # between the ankles of who stands, and of who stands with the legs apart
-LIFTED_M, LEAST_MOVED_M = 0.06, 0.03
+LIFTED_M, MIN_MOVED_M = 0.06, 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,8 +142,19 @@ def perform(
 ) -> Performance:
     """The person carries out a sentence: `once`, with a short rest before and after, or for this many seconds.
 
-    What ends by itself and cannot be repeated (a fall) happens somewhere in these seconds. Raises InputError where the
-    sentence cannot be carried out there.
+    Args:
+        who: The person, with radar and room.
+        prior: How performances differ.
+        sentence: What is done.
+        seconds: How long; what ends by itself and cannot be repeated (a fall) happens somewhere in them.
+        once: A single performance, as long as it takes.
+        rng: Of this performance.
+
+    Returns:
+        The motion from the first frame on, in the radar's level axes.
+
+    Raises:
+        InputError: Where the sentence cannot be carried out there.
     """
     plan = parse_sentence(sentence) if once else lasting(parse_sentence(sentence))
     is_event = not once and happens_once(plan)
@@ -276,7 +287,7 @@ def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray
     local = joints_m - joints_m[:, :1] * (1.0, 1.0, 0.0)
     far_m = np.sqrt(((local - local[0]) ** 2).sum(axis=-1).mean(axis=-1))
     near, most = np.percentile(far_m[time_s >= LEAD_S], (5, 95))
-    if most - near < LEAST_MOVED_M:
+    if most - near < MIN_MOVED_M:
         return time_s
     slower = 1 / (1 + linger * ((far_m - near) / (most - near)).clip(0, 1))
     gone = _integral(slower, time_s)

@@ -118,7 +118,15 @@ def fitted(
 ) -> Recogniser:  # fmt: skip
     """Trees on all generated windows and the labelled ones, adapted to unlabelled ones.
 
-    With the accuracy on generated people who were held out.
+    Args:
+        made: Generated windows with their copies.
+        unlabelled: Recorded windows whose activity is unknown; may be empty.
+        task: The task, for its labels and windows.
+        options: How trees are grown.
+        labelled: Recorded windows with their activity; not every activity needs one.
+
+    Returns:
+        The recogniser, with the accuracy on generated people who were held out in `meta`.
     """
     generated = quantiles_of(made.features)
     outside_above = float(np.quantile(outside_share(made.features, generated), INSIDE_SHARE))

@@ -108,8 +108,18 @@ def generated_windows(
 ) -> TrainingWindows:  # fmt: skip
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
-    Points that do not count are left out, also those that move in the cells `persistent`. Raises InputError where an
-    activity gave no window.
+    Args:
+        sequences: Generated recordings of the task.
+        task: Radar, firmware, and how windows are cut.
+        options: Number of copies, their variation, and the seed.
+        background: Recordings of the empty place.
+        persistent: Cells whose moving points are left out, as those of the background are.
+
+    Returns:
+        Features of the windows, followed by those of the first copy of each, the second, and so on.
+
+    Raises:
+        InputError: Where an activity gave no window.
     """
     shows_room, once = not (task.firmware.static_removal or background), task.recordings.has_single_performances
     how = WindowAugmentation(
