@@ -1,0 +1,98 @@
+"""Each mutant in a copy of the tree: do the tests that cover its line notice it? Verdicts are kept as they come."""
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Protocol
+
+from tools.mutants.copies import run_tests
+from tools.mutants.places import Place
+
+MOST_S = 240.0  # CPU seconds of tests for one mutant; what they do not notice counts as survived
+FIRST_S = 5.0  # of the first run; most are noticed here, before the modules of farther tests are imported
+START_S = 30.0
+SLOWER = 4.0  # a test that takes so many times as long is stopped
+
+
+class TestsOfLines(Protocol):
+    def tests(self, place: Place) -> set[str]: ...
+    def in_order(self, place: Place) -> list[str]: ...
+    def spent_s(self, name: str) -> float: ...
+
+
+class Trials:
+    """Verdicts on mutants, in a file that a second run continues."""
+
+    def __init__(self, copy: Path, covering: TestsOfLines, log: Path) -> None:
+        self.copy, self.covering, self.log = copy, covering, log
+        self.unsound: set[str] = set()  # tests that fail on the unbroken copy
+        kept = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
+        self.verdicts: dict[str, dict[str, Any]] = {line["key"]: line for line in map(json.loads, kept)}
+
+    def verdict(self, place: Place) -> dict[str, Any]:
+        """Of one mutant: `noticed_by` a test, or None; `is_covered` says whether any test executes the line."""
+        source = (self.copy / place.file).read_bytes()
+        mutation = place.mutation
+        text = source.splitlines()[mutation.line - 1].decode().strip()
+        key = f"{place.file}:{mutation.start}:{mutation.before}:{mutation.after}:{text}"
+        if key in self.verdicts:
+            return self.verdicts[key]
+        tests = [name for name in self.covering.in_order(place) if name not in self.unsound]
+        noticed_by = None
+        with _broken(self.copy / place.file, mutation.apply(source)):
+            for batch, spent_s in self._batches(tests):
+                failed = run_tests(self.copy, batch, START_S + SLOWER * spent_s)
+                if failed:
+                    noticed_by = failed[0]
+                    break
+        verdict = {
+            "key": key, "part": place.part, "file": place.file, "line": mutation.line, "kind": mutation.kind,
+            "text": text, "before": mutation.before, "after": mutation.after,
+            "is_covered": bool(self.covering.tests(place)), "noticed_by": noticed_by,
+        }  # fmt: skip
+        self._keep(verdict)
+        return verdict
+
+    def confirm(self) -> bool:
+        """Runs the tests that noticed something on the unbroken copy; verdicts of those that fail there are dropped."""
+        noticing = sorted(
+            {verdict["noticed_by"] for verdict in self.verdicts.values() if "::" in (verdict["noticed_by"] or "")}
+        )
+        failed = set(run_tests(self.copy, noticing, 3600.0, stops_at_first=False)) if noticing else set()
+        self.unsound |= failed
+        for key in [key for key, verdict in self.verdicts.items() if verdict["noticed_by"] in failed]:
+            del self.verdicts[key]
+        self.log.write_text("".join(json.dumps(verdict) + "\n" for verdict in self.verdicts.values()), encoding="utf-8")
+        return not failed
+
+    def _batches(self, tests: list[str]) -> Iterator[tuple[list[str], float]]:
+        for limit_s in (FIRST_S, MOST_S - FIRST_S):
+            batch, spent_s = [], 0.0
+            while tests and spent_s < limit_s:
+                batch.append(tests.pop(0))
+                spent_s += self.covering.spent_s(batch[-1])
+            if batch:
+                yield batch, spent_s
+
+    def _keep(self, verdict: dict[str, Any]) -> None:
+        self.verdicts[verdict["key"]] = verdict
+        with self.log.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(verdict) + "\n")
+
+
+class _broken:  # noqa: N801  (reads as a statement)
+    """A file with other contents, restored with its date, so that no compiled module of one is taken for the other."""
+
+    def __init__(self, path: Path, contents: bytes) -> None:
+        self.path, self.contents = path, contents
+
+    def __enter__(self) -> None:
+        self.original, self.times = self.path.read_bytes(), self.path.stat()
+        self.path.write_bytes(self.contents)
+        changed_ns = self.times.st_mtime_ns + 10**9 * (1 + hash(self.contents) % 10**6)
+        os.utime(self.path, ns=(changed_ns, changed_ns))
+
+    def __exit__(self, *_: object) -> None:
+        self.path.write_bytes(self.original)
+        os.utime(self.path, ns=(self.times.st_atime_ns, self.times.st_mtime_ns))
