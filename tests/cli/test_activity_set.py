@@ -3,10 +3,13 @@
 import json
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from mmweaver.activity_sets import build_set
 from mmweaver.cli.main import main
+from mmweaver.core.errors import InputError
 from mmweaver.datasets.activity_store import read_activity_set
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
@@ -25,6 +28,35 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     assert stored.label_names == ("wave", "stand")
     assert stored.iq_scale is None
     assert len(stored) == 2
+
+
+@pytest.mark.parametrize(("iq", "too_small"), [("float16", 0.6), ("float32", 0.6), ("none", 0.1)])
+def test_a_disk_needs_room_for_the_set_and_its_parts(
+    iq: str, too_small: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    """Measured while the parts are there, too; without signals most of so small a set is the room, which is once."""
+    (tmp_path / "a.toml").write_text(ACTIVITIES)
+    words = ["--room", str(SAMPLE), "--activities", str(tmp_path / "a.toml"), "--each", "2", "--seconds", "1"]
+    most: list[int] = []
+    remove = build_set.remove
+
+    def measured(folder: Path) -> None:
+        most.append(sum(file.stat().st_size for file in folder.parent.rglob("*") if file.is_file()))
+        remove(folder)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(build_set, "remove", measured)
+        assert main(["dataset", str(tmp_path / "set"), *words, "--iq", iq, "--quiet"]) == 0
+
+    def begun(*_: object) -> None:
+        raise InputError("there is room for it")
+
+    monkeypatch.setattr(build_set.SetBuilder, "make", begun)
+    for share, shown in ((too_small, "free"), (1.6, "there is room for it")):
+        free = share * max(most)
+        monkeypatch.setattr("shutil.disk_usage", lambda _, free=free: SimpleNamespace(free=free))
+        assert main(["dataset", str(tmp_path / "other"), *words, "--iq", iq, "--quiet"]) == 2
+        assert shown in capsys.readouterr().err
 
 
 def test_a_dry_run_says_the_cost_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -49,3 +49,18 @@ def test_a_full_disk_is_refused_beforehand(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1e6))
     with pytest.raises(InputError, match="--geometry-only"):
         check_for_space(cost, tmp_path)
+
+
+@pytest.mark.parametrize("geometry_only", [False, True])
+def test_a_disk_that_holds_what_is_written_is_enough_and_a_smaller_one_is_refused(
+    geometry_only: bool, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+):
+    """The estimate that is compared with the disk, within a factor of 1.5 of bytes that were measured."""
+    made = request.getfixturevalue("tiny_geometry" if geometry_only else "tiny_signals")
+    measured = sum(file.stat().st_size for file in made.rglob("*") if file.is_file())
+    cost = estimate_cost(replace(TINY_PLAN, geometry_only=geometry_only), AWR1843, tmp_path)
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1.5 * measured))
+    check_for_space(cost, tmp_path)
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=0.9 * measured))
+    with pytest.raises(InputError, match="free"):
+        check_for_space(cost, tmp_path)

@@ -73,8 +73,8 @@ def summary(seed: int, verdicts: list[dict[str, Any]]) -> dict[str, Any]:
     noticed = [verdict for verdict in verdicts if verdict["noticed_by"]]
     by_commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True)
     return {
-        "definition": "lines of the package broken one at a time; noticed: a test of `make test` that executes the line "
-        f"fails (at most {MOST_S:.0f} CPU seconds of tests per line; a line that no test executes is not noticed)",
+        "definition": "lines of the package broken one at a time; noticed: a test of `make test` that executes the "
+        f"line fails (at most {MOST_S:.0f} CPU seconds of tests per line; a line that no test executes is not noticed)",
         "seed": seed,
         "commit": by_commit.stdout.strip(),
         "count": len(verdicts),

@@ -65,7 +65,7 @@ class Covering:
         return {name: (self.copy / name).read_text(encoding="utf-8").splitlines() for name in self.measured}
 
     def tests(self, place: Place) -> set[str]:
-        """Those that execute the statement; of one executed at import, those that execute a line with a name it binds."""
+        """Those that execute the statement; of one executed at import, those that read a name it binds."""
         found = set().union(*(self._of(place.file).get(line, ()) for line in place.mutation.lines))
         for name in () if found else place.mutation.bound:
             word = re.compile(rf"\b{name}\b")

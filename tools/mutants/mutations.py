@@ -5,6 +5,7 @@ Annotations, docstrings, decorators, subscripts, logging and `__repr__` are left
 
 import ast
 import re
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -90,7 +91,7 @@ class _Finder(ast.NodeVisitor):
         self._add_at(kind, self._start(node), self._text(node), after)
 
     def _add_at(self, kind: str, start: int, before: str, after: str) -> None:
-        line = self.source.count(b"\n", 0, start) + 1
+        line = bisect_right(self.line_starts, start)
         self.found.append(Mutation(line, self.lines, kind, start, before, after, self.bound))
 
     def _add_between(self, kind: str, left: ast.expr, right: ast.expr, before: str, after: str) -> None:
