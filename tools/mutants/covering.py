@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from coverage import CoverageData
 
@@ -23,7 +24,7 @@ def measured(copy: Path) -> "Covering":
     files = tracked_files()
     sources = digest(copy, [name for name in files if name.startswith("src/") and name.endswith(".py")])
     tests = {name: digest(copy, [name]) for name in files if re.fullmatch(r"tests/.*test_\w+\.py", name)}
-    state = json.loads(_STATE.read_text()) if _STATE.exists() else {}
+    state: dict[str, Any] = json.loads(_STATE.read_text()) if _STATE.exists() else {}
     if state.get("sources") != sources:
         _DATA.unlink(missing_ok=True)
         state = {"sources": sources, "tests": {}, "cpu_s": {}}

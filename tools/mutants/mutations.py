@@ -21,7 +21,7 @@ _PAIRS = (
     "min max", "minimum maximum", "fmin fmax", "amin amax", "nanmin nanmax", "argmin argmax", "any all",
     "floor ceil", "sin cos", "radians degrees", "deg2rad rad2deg", "cumsum cumprod",
 )  # fmt: skip
-TURNED = {a: b for pair in _PAIRS for a, b in (pair.split(), pair.split()[::-1])}
+TURNED: dict[str, str] = {a: b for pair in _PAIRS for a, b in (pair.split(), pair.split()[::-1])}
 GUARDS = re.compile(r"fsync|flush|check|verify|validate|require|ensure|warn|print|unlink|rmtree|rename|replace|refuse")
 UNITS = re.compile(r"_(m|mm|s|us|hz|rad|deg|mps|db|dbm|bytes|mb|px|rows?|columns?|frames?|index|axis)$")
 SYMMETRIC = {"isinstance", "hypot", "isclose", "allclose", "array_equal", "zip", "gcd", "dot", *TURNED}
@@ -119,6 +119,12 @@ class _Finder(ast.NodeVisitor):
         self.lines, self.bound = kept
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        self._function(node)
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> None:
+        self._function(node)
+
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         if node.name in UNSEEN:
             return
         kept = self.lines, self.is_called
@@ -130,8 +136,6 @@ class _Finder(ast.NodeVisitor):
         for statement in node.body:
             self.visit(statement)
         self.lines, self.is_called = kept
-
-    visit_AsyncFunctionDef = visit_FunctionDef  # noqa: N815  (the name that ast asks for)
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
         for statement in node.body:
