@@ -38,14 +38,19 @@ def measured(copy: Path) -> "Covering":
 
 
 def _run(copy: Path, files: list[str]) -> dict[str, float]:
-    settings = BUILD / "coverage.ini"
-    settings.write_text("[run]\nrelative_files = true\n")
+    """Adds what these files execute, all files where none is named; returns the CPU seconds of their tests."""
+    new = BUILD / "coverage.new"
     arguments = [
-        "-n2", "--dist=loadfile", "--no-loadscope-reorder", f"--cov={PACKAGE}", "--cov-append", "--cov-context=test",
-        f"--cov-config={settings}", "--cov-report=", *files,
+        "-n2", "--dist=loadfile", "--no-loadscope-reorder", f"--cov={PACKAGE}", "--cov-context=test", "--cov-report=",
+        *files,
     ]  # fmt: skip
-    printed = run_command(copy, arguments, COVERAGE_FILE=str(_DATA), CPU_LINES="1000000")
+    printed = run_command(copy, arguments, COVERAGE_FILE=str(new), CPU_LINES="1000000")
     (BUILD / "coverage.log").write_text(printed)
+    added, data = CoverageData(str(new)), CoverageData(str(_DATA))
+    for one in (added, data):
+        one.read()  # else it would be begun anew
+    data.update(added)
+    data.close()
     return {name: float(seconds) for seconds, name in _SPENT.findall(printed)}
 
 
@@ -57,7 +62,10 @@ class Covering:
         self.cpu_s: dict[str, float] = json.loads(_STATE.read_text())["cpu_s"]
         self.data = CoverageData(str(_DATA))
         self.data.read()
-        self.names = {name for context in self.data.measured_contexts() if (name := context.rpartition("|")[0])}
+        if not self.data.measured_contexts():
+            raise SystemExit(f"{_DATA} is empty: see {BUILD / 'coverage.log'}, and delete {_STATE}")
+        contexts = {context.rpartition("|")[0] for context in self.data.measured_contexts()}
+        self.names = (contexts | set(self.cpu_s)) - {""}  # those too that run the package in child processes alone
         self.measured = {name[name.index(str(PACKAGE)) :]: name for name in self.data.measured_files()}
         self._lines: dict[str, dict[int, set[str]]] = {}
 
@@ -74,6 +82,8 @@ class Covering:
                 if file == place.file or not name.startswith("_"):
                     read = [number for number, line in enumerate(lines, 1) if word.search(line)]
                     found |= set().union(*(self._of(file).get(number, ()) for number in read))
+        if place.mutation.bound and not found:  # read at import too, as a default or within another constant
+            found = set().union(*self._of(place.file).values())
         return found
 
     def _of(self, file: str) -> dict[int, set[str]]:

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from tools.mutants.copies import run_tests
 from tools.mutants.places import Place
 
-MOST_S = 240.0  # CPU seconds of tests for one mutant; what they do not notice counts as survived
+MOST_S = 60.0  # CPU seconds of tests for one mutant; what they do not notice counts as survived
 FIRST_S = 5.0  # of the first run; most are noticed here, before the modules of farther tests are imported
 START_S = 30.0
 SLOWER = 4.0  # a test that takes so many times as long is stopped
