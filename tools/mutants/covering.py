@@ -54,19 +54,25 @@ def _run(copy: Path, files: list[str]) -> dict[str, float]:
     return {name: float(seconds) for seconds, name in _SPENT.findall(printed)}
 
 
+def _kept() -> CoverageData:
+    """Opened anew each time: what another process opened before it forked would be emptied."""
+    data = CoverageData(str(_DATA))
+    data.read()
+    return data
+
+
 class Covering:
     """Which tests run a line, and in which order they are likely to notice that it is broken."""
 
     def __init__(self, copy: Path) -> None:
         self.copy = copy
         self.cpu_s: dict[str, float] = json.loads(_STATE.read_text())["cpu_s"]
-        self.data = CoverageData(str(_DATA))
-        self.data.read()
-        if not self.data.measured_contexts():
+        data = _kept()
+        if not data.measured_contexts():
             raise SystemExit(f"{_DATA} is empty: see {BUILD / 'coverage.log'}, and delete {_STATE}")
-        contexts = {context.rpartition("|")[0] for context in self.data.measured_contexts()}
+        contexts = {context.rpartition("|")[0] for context in data.measured_contexts()}
         self.names = (contexts | set(self.cpu_s)) - {""}  # those too that run the package in child processes alone
-        self.measured = {name[name.index(str(PACKAGE)) :]: name for name in self.data.measured_files()}
+        self.measured = {name[name.index(str(PACKAGE)) :]: name for name in data.measured_files()}
         self._lines: dict[str, dict[int, set[str]]] = {}
 
     @cached_property
@@ -88,7 +94,7 @@ class Covering:
 
     def _of(self, file: str) -> dict[int, set[str]]:
         if file not in self._lines:
-            contexts = self.data.contexts_by_lineno(self.measured[file]) if file in self.measured else {}
+            contexts = _kept().contexts_by_lineno(self.measured[file]) if file in self.measured else {}
             self._lines[file] = {
                 line: {name for context in found if (name := context.rpartition("|")[0])}
                 for line, found in contexts.items()
