@@ -99,6 +99,15 @@ def test_every_chirp_of_a_short_frame_counts():
     assert levels[0] / levels[1] == pytest.approx(2.0, rel=0.05)
 
 
+def test_a_rate_in_noise_is_not_clear():
+    """As large as breathing, but with power at all frequencies: most recordings of 30 s do not seem to breathe."""
+    rng = np.random.default_rng(3)
+    found = [breathing_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
+    hearts = [heart_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
+    assert sum(rate.is_clear for rate in found) < 50
+    assert sum(rate.is_clear for rate in hearts) < 10
+
+
 def test_nothing_is_invented():
     rng = np.random.default_rng(2)
     noise = np.cumsum(rng.standard_normal(400)) * 1e-6
