@@ -55,6 +55,9 @@ def test_json_gives_the_same_radar_back(name: str):
         ({"num_loops": 0}, "num_loops"),
         ({"idle_time_s": -1e-6}, "idle_time_s must be 0 to"),
         ({"rx_position_m": ()}, "receiver"),
+        ({"frequency_limits_hz": (76e9, float("inf"))}, "frequency_limits_hz"),
+        ({"frequency_limits_hz": (float("-inf"), 81e9)}, "frequency_limits_hz"),
+        ({"frequency_limits_hz": (float("nan"), 81e9)}, "frequency_limits_hz"),
     ],
 )
 def test_an_impossible_radar_is_refused(change: dict, word: str):
