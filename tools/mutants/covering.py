@@ -106,15 +106,17 @@ class Covering:
         return self.cpu_s.get(name, _LITTLE_S)
 
     def in_order(self, place: Place) -> list[str]:
-        """The mirrored file first, then the fastest of each file by turns, files of the same package first."""
+        """The mirrored file first, then the others of its folder, then the fastest test of each other file by turns."""
         within = Path(place.file).relative_to(PACKAGE)
-        mirror = (Path("tests") / within.parent / f"test_{within.name}").as_posix()
-        by_file: dict[str, list[str]] = {mirror: []}
-        mirrored = {name for name in self.names if name.startswith(f"{mirror}::")}
-        for name in sorted(self.tests(place) | mirrored, key=lambda name: (self.spent_s(name), name)):
-            by_file.setdefault(name.partition("::")[0], []).append(name)
-        first = by_file.pop(mirror)
-        package = within.parts[0].removesuffix(".py")
-        near = sorted(by_file, key=lambda file: (file.split("/")[1] != package, self.spent_s(by_file[file][0])))
-        turns: Iterator[tuple[str | None, ...]] = zip_longest(*(by_file[file] for file in near))
-        return first + [name for turn in turns for name in turn if name is not None]
+        folder = Path("tests") / within.parent
+        mirror = f"{(folder / f'test_{within.name}').as_posix()}::"
+        tests = self.tests(place) | {name for name in self.names if name.startswith(mirror)}
+        fastest = sorted(tests, key=lambda name: (self.spent_s(name), name))
+        near = [name for name in fastest if Path(name.partition("::")[0]).parent == folder]
+        by_file: dict[str, list[str]] = {}
+        for name in fastest:
+            if name not in near:
+                by_file.setdefault(name.partition("::")[0], []).append(name)
+        turns: Iterator[tuple[str | None, ...]] = zip_longest(*by_file.values())
+        far = [name for turn in turns for name in turn if name is not None]
+        return sorted(near, key=lambda name: not name.startswith(mirror)) + far
