@@ -117,6 +117,11 @@ def test_a_loop_read_twice_as_long_names_the_likelier_radar():
     assert any("3 TX x 4 RX x 256 samples (presets: awr1843" in text for text in found)
 
 
+def test_frames_that_are_right_are_not_called_parts_of_others():
+    adc = room(replace(RADAR, frame_period_s=0.07), 16)
+    assert implausible(adc, radar_cube(adc)) == []
+
+
 def test_frames_that_came_at_another_rate():
     adc = room(RADAR, 3)
     own_s, slow_s = (period_s * np.arange(3) for period_s in (RADAR.frame_period_s, 0.4))

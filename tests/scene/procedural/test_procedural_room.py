@@ -47,6 +47,11 @@ def test_nothing_overlaps(room: ProceduralRoom):
     assert not cut.any(), [(room.boxes.names[a], room.boxes.names[b]) for a, b in np.argwhere(cut)[:4]]
 
 
+def test_every_part_has_a_volume(room: ProceduralRoom):
+    """A board that is turned inside out or has no thickness would be a hole for rays."""
+    assert room.boxes.half_m.min() > 1e-3
+
+
 def test_nothing_floats(room: ProceduralRoom):
     """Every box is connected to floor, walls or ceiling by boxes that touch."""
     boxes, (w, d, h) = room.boxes, room.shell.size_m
