@@ -138,6 +138,7 @@ def test_who_sat_and_walked_away_in_one_sentence_is_on_the_feet():
     assert pelvis_m[1].min() > pelvis_m[0].max() - 0.15, "waves on the feet"
     assert pelvis_m[2][-1] < pelvis_m[1].min() - 0.2
     assert {step.lower for step in parts[1].motion.plan.steps} == {"stand"}
+    assert "walk" in [step.lower for step in parts[2].motion.plan.steps], "back to the sofa: there is no seat here"
 
 
 def test_the_body_is_one_person_throughout():

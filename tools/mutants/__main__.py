@@ -79,7 +79,7 @@ def summary(seed: int, verdicts: list[dict[str, Any]]) -> dict[str, Any]:
         "commit": by_commit.stdout.strip(),
         "count": len(verdicts),
         "noticed": len(noticed),
-        "uncovered": sum(not verdict["is_covered"] for verdict in verdicts),
+        "uncovered": sum(not (verdict["is_covered"] or verdict["noticed_by"]) for verdict in verdicts),
         "interval_percent": [round(100 * bound, 1) for bound in wilson(len(noticed), len(verdicts))],
         "by_kind": _shares(verdicts, "kind"),
         "by_part": _shares(verdicts, "part"),

@@ -149,6 +149,9 @@ class _Finder(ast.NodeVisitor):
         if "TYPE_CHECKING" in self._text(node.test) or "__name__" in self._text(node.test):
             return
         self._negate(node.test)
+        if isinstance(node.body[0], ast.Raise) and "sorted(" in self._text(node.test):
+            self.visit(node.body[0])  # which of several is refused first is promised nowhere
+            return
         self.generic_visit(node)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
@@ -210,6 +213,8 @@ class _Finder(ast.NodeVisitor):
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
         if isinstance(node.op, ast.MatMult):
+            if self._text(node.left).partition("[")[0] == self._text(node.right).partition("[")[0]:
+                return  # parts of one signal: a sum that does not depend on their order
             self._add("order", node, f"({self._text(node.right)}) @ ({self._text(node.left)})")
         elif type(node.op) in OPERATORS and not (_is_sequence(node.left) or _is_sequence(node.right)):
             kind, before, after = OPERATORS[type(node.op)]
