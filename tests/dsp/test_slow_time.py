@@ -65,6 +65,13 @@ def test_displacement_and_rates_of_somebody_who_sits(sitter: RadarCube):
     assert heart.frequency_hz == pytest.approx(HEART_HZ, abs=0.02)
 
 
+def test_noise_far_from_what_moves_is_no_cell_of_movement(sitter: RadarCube):
+    cells = moving_cells(sitter, count=50)
+    assert cells
+    assert max(abs(cell.range_m - 1.2) for cell in cells) < 4 * SLOW.range_resolution_m
+    assert [cell.moving_power for cell in cells] == sorted((cell.moving_power for cell in cells), reverse=True)
+
+
 def test_slow_time_doppler_has_the_right_velocity_and_sign():
     cube = recorded(SLOW, lambda time_s: 1.4 + 6e-3 * time_s, 64)
     power, velocity_mps = slow_time_doppler(cube)
