@@ -41,6 +41,8 @@ FORKS = pytest.mark.skipif(os.name == "nt", reason="forks")
 
 
 class _BothTests:
+    state = "one"
+
     def tests(self, place: Place) -> set[str]:
         return set(self.in_order(place))
 
@@ -76,8 +78,10 @@ def test_what_a_test_holds_is_noticed(tmp_path: Path):
 
 
 @FORKS
-def test_what_no_test_looks_at_survives(tmp_path: Path):
+def test_what_no_test_looks_at_survives_until_tests_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     assert _toy_verdict(tmp_path / "copy", 13, "sign")["noticed_by"] is None
+    monkeypatch.setattr(_BothTests, "state", "another")
+    assert not Trials(tmp_path / "copy", _BothTests(), tmp_path / "log.jsonl").verdicts
 
 
 def test_kinds_of_mutations():

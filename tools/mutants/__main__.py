@@ -84,7 +84,9 @@ def summary(seed: int, verdicts: list[dict[str, Any]]) -> dict[str, Any]:
         "by_kind": _shares(verdicts, "kind"),
         "by_part": _shares(verdicts, "part"),
         "pages": {name: part.pages for name, part in PARTS.items()},
-        "mutants": [{name: value for name, value in verdict.items() if name != "key"} for verdict in verdicts],
+        "mutants": [
+            {name: value for name, value in verdict.items() if name not in ("key", "tests")} for verdict in verdicts
+        ],
     }
 
 

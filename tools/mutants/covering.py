@@ -1,5 +1,6 @@
 """Which tests execute a line: one run of the fast tests with a coverage context per test, kept until a file changes."""
 
+import hashlib
 import json
 import re
 from collections.abc import Iterator
@@ -66,7 +67,9 @@ class Covering:
 
     def __init__(self, copy: Path) -> None:
         self.copy = copy
-        self.cpu_s: dict[str, float] = json.loads(_STATE.read_text())["cpu_s"]
+        state = json.loads(_STATE.read_text())
+        self.cpu_s: dict[str, float] = state["cpu_s"]
+        self.state = hashlib.sha256(json.dumps([state["sources"], state["tests"]]).encode()).hexdigest()[:16]
         data = _kept()
         if not data.measured_contexts():
             raise SystemExit(f"{_DATA} is empty: see {BUILD / 'coverage.log'}, and delete {_STATE}")

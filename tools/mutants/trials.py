@@ -16,19 +16,23 @@ SLOWER = 4.0  # a test that takes so many times as long is stopped
 
 
 class TestsOfLines(Protocol):
+    state: str  # another one where tests have changed
+
     def tests(self, place: Place) -> set[str]: ...
     def in_order(self, place: Place) -> list[str]: ...
     def spent_s(self, name: str) -> float: ...
 
 
 class Trials:
-    """Verdicts on mutants, in a file that a second run continues."""
+    """Verdicts on mutants, in a file that a second run continues; what survived is tried again with other tests."""
 
     def __init__(self, copy: Path, covering: TestsOfLines, log: Path) -> None:
         self.copy, self.covering, self.log = copy, covering, log
         self.unsound: set[str] = set()  # tests that fail on the unbroken copy
         kept = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
-        self.verdicts: dict[str, dict[str, Any]] = {line["key"]: line for line in map(json.loads, kept)}
+        self.verdicts: dict[str, dict[str, Any]] = {
+            line["key"]: line for line in map(json.loads, kept) if line["noticed_by"] or line["tests"] == covering.state
+        }
 
     def verdict(self, place: Place) -> dict[str, Any]:
         """Of one mutant: `noticed_by` a test, or None; `is_covered` says whether any test executes the line."""
@@ -49,7 +53,7 @@ class Trials:
         verdict = {
             "key": key, "part": place.part, "file": place.file, "line": mutation.line, "kind": mutation.kind,
             "text": text, "before": mutation.before, "after": mutation.after,
-            "is_covered": bool(self.covering.tests(place)), "noticed_by": noticed_by,
+            "is_covered": bool(self.covering.tests(place)), "noticed_by": noticed_by, "tests": self.covering.state,
         }  # fmt: skip
         self._keep(verdict)
         return verdict
