@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from tests.rooms import floor, scene_of, standing_person
+from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person
 
 NUM_FRAMES = 3
 LAST_S = (NUM_FRAMES - 1) * AWR1843.frame_period_s
@@ -40,6 +40,19 @@ def test_one_of_several_people_is_enough_to_refuse(simulator: Simulator):
 
 def test_a_motion_that_just_covers_them_is_simulated(simulator: Simulator):
     assert simulator.run(_moving(0.0, LAST_S), num_frames=NUM_FRAMES, seed=0).adc.samples.shape[0] == NUM_FRAMES
+
+
+@pytest.mark.parametrize("part", [1, 4])
+def test_frames_are_the_same_bits_in_parts(part: int):
+    """Of somebody who walks through the paths of wall and cupboard, each of which is occluded in some frames alone."""
+    room = scene_of((floor(), back_wall(), side_wall(1.5, "metal")))
+    simulator = Simulator(room, AWR1843)
+    pose = standing_person((-0.7, 1.6, -1.2), (1.4, 0.0, 0.0))
+    whole = simulator.run(pose, num_frames=12, seed=2).adc.samples
+    parts = [
+        simulator.run(pose, num_frames=part, first_frame=first, seed=2).adc.samples for first in range(0, 12, part)
+    ]
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
 
 
 def test_joints_that_are_no_numbers_are_refused(simulator: Simulator):
