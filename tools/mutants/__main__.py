@@ -36,18 +36,22 @@ def main() -> int:
     copies = [BUILD / f"broken_{job}" for job in range(arguments.jobs)]
     for copy in copies:
         copy_tree(copy)
-    is_confirmed, trials = False, Trials(copies[0], covering, log)
-    while not is_confirmed:
+    unsound: set[str] = set()
+    while True:
+        apart = multiprocessing.get_context("spawn")  # what has forked before must not fork again
         workers = [
-            multiprocessing.Process(target=_try_all, args=(Trials(copy, covering, log), places[job :: len(copies)]))
+            apart.Process(target=_try_all, args=(Trials(copy, covering, log, unsound), places[job :: len(copies)]))
             for job, copy in enumerate(copies)
         ]
         for worker in workers:
             worker.start()
         for worker in workers:
             worker.join()
-        trials = Trials(copies[0], covering, log)
-        is_confirmed = trials.confirm()
+        trials = Trials(copies[0], covering, log, unsound)
+        failed = trials.dropped(places)
+        if not failed:
+            break
+        unsound |= failed
     result = summary(arguments.seed, [trials.verdict(place) for place in places])
     arguments.out.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     print(f"{result['noticed']} of {result['count']} noticed; 95 % interval {result['interval_percent']} %")

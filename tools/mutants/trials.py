@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -12,6 +12,7 @@ from tools.mutants.places import Place
 MOST_S = 60.0  # CPU seconds of tests for one mutant; what they do not notice counts as survived
 FIRST_S = 5.0  # of the first run; most are noticed here, before the modules of farther tests are imported
 START_S = 30.0
+CONFIRM_S = 3600.0
 SLOWER = 4.0  # a test that takes so many times as long is stopped
 
 
@@ -26,9 +27,9 @@ class TestsOfLines(Protocol):
 class Trials:
     """Verdicts on mutants, in a file that a second run continues; what survived is tried again with other tests."""
 
-    def __init__(self, copy: Path, covering: TestsOfLines, log: Path) -> None:
-        self.copy, self.covering, self.log = copy, covering, log
-        self.unsound: set[str] = set()  # tests that fail on the unbroken copy
+    def __init__(self, copy: Path, covering: TestsOfLines, log: Path, unsound: Iterable[str] = ()) -> None:
+        """`unsound`: tests that fail on the unbroken copy, which notice nothing."""
+        self.copy, self.covering, self.log, self.unsound = copy, covering, log, set(unsound)
         kept = log.read_text(encoding="utf-8").splitlines() if log.exists() else []
         self.verdicts: dict[str, dict[str, Any]] = {
             line["key"]: line for line in map(json.loads, kept) if line["noticed_by"] or line["tests"] == covering.state
@@ -36,8 +37,7 @@ class Trials:
 
     def verdict(self, place: Place) -> dict[str, Any]:
         """Of one mutant: `noticed_by` a test, or None; `is_covered` says whether any test executes the line."""
-        source = (self.copy / place.file).read_bytes()
-        mutation = place.mutation
+        source, mutation = (self.copy / place.file).read_bytes(), place.mutation
         text = source.splitlines()[mutation.line - 1].decode().strip()
         key = f"{place.file}:{mutation.start}:{mutation.before}:{mutation.after}:{text}"
         if key in self.verdicts:
@@ -58,17 +58,16 @@ class Trials:
         self._keep(verdict)
         return verdict
 
-    def confirm(self) -> bool:
-        """Runs the tests that noticed something on the unbroken copy; verdicts of those that fail there are dropped."""
-        noticing = sorted(
-            {verdict["noticed_by"] for verdict in self.verdicts.values() if "::" in (verdict["noticed_by"] or "")}
-        )
-        failed = set(run_tests(self.copy, noticing, 3600.0, stops_at_first=False)) if noticing else set()
-        self.unsound |= failed
-        for key in [key for key, verdict in self.verdicts.items() if verdict["noticed_by"] in failed]:
-            del self.verdicts[key]
+    def dropped(self, places: Sequence[Place]) -> set[str]:
+        """The tests that noticed a mutant and fail on the unbroken copy, too; their verdicts are dropped."""
+        verdicts = [self.verdict(place) for place in places]
+        noticing = {verdict["noticed_by"] for verdict in verdicts if "::" in (verdict["noticed_by"] or "")}
+        failed = set(run_tests(self.copy, sorted(noticing), CONFIRM_S, stops_at_first=False)) if noticing else set()
+        for verdict in verdicts:
+            if verdict["noticed_by"] in failed:
+                del self.verdicts[verdict["key"]]
         self.log.write_text("".join(json.dumps(verdict) + "\n" for verdict in self.verdicts.values()), encoding="utf-8")
-        return not failed
+        return failed
 
     def _batches(self, tests: list[str]) -> Iterator[tuple[list[str], float]]:
         for limit_s in (FIRST_S, MOST_S - FIRST_S):
