@@ -16,8 +16,8 @@ from typing import Any
 
 from tools.mutants.copies import BUILD, ROOT, copy_tree
 from tools.mutants.covering import measured
-from tools.mutants.places import PARTS, Place, sampled_places
-from tools.mutants.trials import MOST_S, Trials
+from tools.mutants.places import PARTS, sampled_places
+from tools.mutants.trials import MOST_S, Trials, try_all
 
 
 def main() -> int:
@@ -40,7 +40,7 @@ def main() -> int:
     while True:
         apart = multiprocessing.get_context("spawn")  # what has forked before must not fork again
         workers = [
-            apart.Process(target=_try_all, args=(Trials(copy, covering, log, unsound), places[job :: len(copies)]))
+            apart.Process(target=try_all, args=(Trials(copy, covering, log, unsound), places[job :: len(copies)]))
             for job, copy in enumerate(copies)
         ]
         for worker in workers:
@@ -56,21 +56,6 @@ def main() -> int:
     arguments.out.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     print(f"{result['noticed']} of {result['count']} noticed; 95 % interval {result['interval_percent']} %")
     return int(result["noticed"] < arguments.least / 100 * result["count"])
-
-
-def _try_all(trials: Trials, places: list[Place]) -> None:
-    for number, place in enumerate(places, 1):
-        verdict = trials.verdict(place)
-        print(
-            f"{number}/{len(places)} {verdict['file']}:{verdict['line']} {verdict['kind']}: {outcome(verdict)}",
-            flush=True,
-        )
-
-
-def outcome(verdict: dict[str, Any]) -> str:
-    if verdict["noticed_by"]:
-        return f"noticed by {verdict['noticed_by']}"
-    return "SURVIVED" if verdict["is_covered"] else "UNCOVERED"
 
 
 def summary(seed: int, verdicts: list[dict[str, Any]]) -> dict[str, Any]:

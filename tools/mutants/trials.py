@@ -84,6 +84,22 @@ class Trials:
             file.write(json.dumps(verdict) + "\n")
 
 
+def try_all(trials: Trials, places: Sequence[Place]) -> None:
+    """Verdicts on all places, which are printed as they come."""
+    for number, place in enumerate(places, 1):
+        verdict = trials.verdict(place)
+        print(
+            f"{number}/{len(places)} {verdict['file']}:{verdict['line']} {verdict['kind']}: {_outcome(verdict)}",
+            flush=True,
+        )
+
+
+def _outcome(verdict: dict[str, Any]) -> str:
+    if verdict["noticed_by"]:
+        return f"noticed by {verdict['noticed_by']}"
+    return "SURVIVED" if verdict["is_covered"] else "UNCOVERED"
+
+
 class _broken:  # noqa: N801  (reads as a statement)
     """A file with other contents, restored with its date, so that no compiled module of one is taken for the other."""
 
