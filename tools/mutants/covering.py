@@ -3,7 +3,8 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
@@ -98,11 +99,23 @@ class Covering:
     def _of(self, file: str) -> dict[int, set[str]]:
         if file not in self._lines:
             contexts = _kept().contexts_by_lineno(self.measured[file]) if file in self.measured else {}
-            self._lines[file] = {
-                line: {name for context in found if (name := context.rpartition("|")[0])}
-                for line, found in contexts.items()
-            }
+            self._lines[file] = {line: self._tests_of(found) for line, found in contexts.items()}
         return self._lines[file]
+
+    def _tests_of(self, contexts: Iterable[str]) -> set[str]:
+        """What a test sets up, others of its file may share: a fixture runs in the context of the first."""
+        found: set[str] = set()
+        for context in contexts:
+            name, _, phase = context.rpartition("|")
+            found |= {name} if phase != "setup" else self._by_file[name.partition("::")[0]]
+        return found - {""}
+
+    @cached_property
+    def _by_file(self) -> dict[str, set[str]]:
+        found: dict[str, set[str]] = defaultdict(set)
+        for name in self.names:
+            found[name.partition("::")[0]].add(name)
+        return found
 
     def spent_s(self, name: str) -> float:
         """CPU seconds of a test, coverage included."""
