@@ -14,7 +14,7 @@ bench: export PYTHONPATH := .
 bench: export OMP_NUM_THREADS := 1
 bench: export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo wheel studio test test-slow check lint unit bench fuzz faults docs clean
+.PHONY: demo wheel studio test test-slow check lint unit bench fuzz mutants faults docs clean
 
 demo: $(STAMP)  ## the bundled sample, into demo/
 	$(BIN)/mmweaver generate --demo --out demo --overwrite
@@ -44,6 +44,10 @@ SECONDS ?= 600
 SEED ?= 0
 fuzz: $(STAMP)  ## damaged files for every reader, for SECONDS; docs/security.md
 	$(BIN)/python -m tests.fuzz --seconds $(SECONDS) --seed $(SEED)
+
+COUNT ?= 100
+mutants: $(STAMP)  ## breaks COUNT sampled lines one at a time: what do the tests notice? results/mutants.json; an hour or two
+	$(BIN)/python -m tools.mutants --seed $(SEED) --count $(COUNT)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py

@@ -320,8 +320,9 @@ def test_the_network_follows_the_radar(room: Room, tmp_path: Path):
         mmweaver_version="0",
     )  # fmt: skip
     save_weights(tmp_path / "fields.safetensors", PowerNetwork(), card)
-    with pytest.raises(InputError, match="fields of power"):
-        Weaver(weights=tmp_path / "fields.safetensors").request(TEXT, radar_poses=[turned])
+    for poses in ([turned], [mmweaver.RadarPose(), turned]):
+        with pytest.raises(InputError, match="fields of power"):
+            Weaver(weights=tmp_path / "fields.safetensors").request(TEXT, radar_poses=poses)
 
 
 def test_a_background_recording_is_of_one_radar(weaver: Weaver, room: Room, walk: Path):

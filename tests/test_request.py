@@ -62,6 +62,18 @@ def test_memory_is_asked_for_before_it_is_used():
     parse_request(AWR1843, text=TEXT, frames=MAX_FRAMES, keep_adc=False)
 
 
+@pytest.mark.parametrize("keep_adc", [False, True])
+def test_by_default_as_much_is_made_as_may_be_asked_for(keep_adc: bool):
+    """Of a motion that lasts longer than memory allows; a frame more is refused."""
+    long = f"{TEXT} for 590 seconds"
+    made = parse_request(MMMESH, text=long, keep_adc=keep_adc).frames
+    values = MMMESH.num_samples if keep_adc else MMMESH.num_range_bins
+    assert 8 * made * MMMESH.num_loops * MMMESH.num_antennas * values <= 2e9
+    assert parse_request(MMMESH, text=TEXT, frames=made, keep_adc=keep_adc).frames == made
+    with pytest.raises(InputError, match=f"memory; at most {made}|1 to {MAX_FRAMES}"):
+        parse_request(MMMESH, text=TEXT, frames=made + 1, keep_adc=keep_adc)
+
+
 def test_the_frame_rate_is_the_radars_own_unless_given():
     slow = replace(AWR1843, frame_period_s=0.2)
     assert parse_request(slow, text=TEXT).config.frame_period_s == 0.2

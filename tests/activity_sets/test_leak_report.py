@@ -1,6 +1,7 @@
 """A leak that is there is found; matched circumstances are at chance."""
 
 import numpy as np
+import pytest
 
 from mmweaver.activity_sets.leak_report import leak_report
 from mmweaver.core.seeding import stream
@@ -40,6 +41,20 @@ def test_noise_is_inside_its_interval():
     noise = stream(0, "test").normal(size=(120, 3))
     row = leak_report({"start_place": noise}, LABEL, DRAW, NAMES)["of"]["start_place"]
     assert row["interval_99"][0] < 0.25 < row["interval_99"][1]
+    assert not row["leaks"]
+
+
+def test_a_label_that_is_answered_for_all_others_too_does_not_leak():
+    """The first label's places come in pairs; those of the two others lie around such a pair of other draws."""
+    centre = np.repeat(stream(0, "test").normal(size=(15, 2)), 2, axis=0)
+    around = 1e-3 * np.array([[(1, 0), (-1, 0)], [(0, 1), (0, -1)]])  # (draw of a pair, label)
+    places = np.concatenate(
+        [centre[:, None], np.roll(centre, 2, axis=0)[:, None] + np.tile(around, (15, 1, 1))], axis=1
+    )
+    label, draw = np.tile(np.arange(3), 30), np.repeat(np.arange(30), 3)
+    row = leak_report({"start_place": places.reshape(-1, 2)}, label, draw, NAMES[:3])["of"]["start_place"]
+    assert row["accuracy"] == pytest.approx(1 / 3, abs=1e-3)
+    assert row["labels"] == {}
 
 
 def test_one_label_that_faces_its_own_way_leaks():

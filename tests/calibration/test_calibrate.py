@@ -221,6 +221,14 @@ def test_the_elevation_offset_at_one_distance_takes_the_true_height():
     assert found.board.elevation_phase_deg == pytest.approx(-7.0, abs=1.5)
 
 
+def test_a_file_of_points_is_used_as_the_cloud_in_it(tmp_path: Path):
+    cloud = people(np.full(100, 1.8), -7.0, -0.1)
+    points = np.column_stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, np.ones(len(cloud.x_m))])
+    np.savez(tmp_path / "walk.npz", frame=cloud.frame, pts=points)
+    found, direct = (calibrate(one, radar="awr1843", body_z_m=-0.1) for one in (tmp_path / "walk.npz", cloud))
+    assert found.board.elevation_phase_deg == pytest.approx(direct.board.elevation_phase_deg, abs=0.1) != 0.0
+
+
 def test_where_a_skirt_ends():
     range_m = np.arange(100) * 0.05
     falling = 1e4 * 10 ** (-range_m * 8)

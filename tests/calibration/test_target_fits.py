@@ -61,5 +61,5 @@ def test_a_target_that_is_not_there_is_said():
     assert "range bias: no echo stands out within 0.4 m of 9.5 m" in empty.text()
     outside = calibrate(reflector(2.5, 0.0, Board()), target=KnownTarget(50.0))
     assert "the range window does not hold 50 m" in outside.text()
-    with pytest.raises(InputError, match="100 m away"):
+    with pytest.raises(InputError, match=r"100 m away, not 0 m$"):
         KnownTarget(0.0)

@@ -19,6 +19,15 @@ def test_a_stream_is_written_and_read(tmp_path: Path):
     assert "claps" in texts
 
 
+@pytest.mark.parametrize("frames", [7, 23])
+def test_a_stream_has_as_many_frames_as_asked_for(frames: int, tmp_path: Path):
+    """Which end within a part, or are fewer than one has."""
+    out = tmp_path / "live"
+    said = ["--text", "a person waves", "--text", "claps"]
+    assert main(["generate", "--demo", "--stream", *said, "--frames", str(frames), "--out", str(out), "--quiet"]) == 0
+    assert len(read_recording(out).cube.values) == frames
+
+
 @pytest.mark.parametrize(
     ("given", "named"), [([], "--text"), (["--text", "a person waves", "--seconds", "3"], "--seconds")]
 )

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.comparison.compared_sides import RawReading, signals_of
+from mmweaver.comparison.compared_sides import MOST_RECORDINGS, RawReading, signals_of
 from mmweaver.compression.mmw_codec import compress_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, PoseSequence
@@ -51,6 +51,13 @@ def test_files_and_folders_of_every_kind(tmp_path: Path):
     names = [one.name for one in signals_of(tmp_path / "set", RawReading(), "A")]
     assert names == ["one", "stream", "two", "walk.mmw"]
     assert len(signals_of([CUBE, ADC, str(result)], RawReading(), "A")) == 3
+
+
+def test_a_folder_of_too_many_recordings_is_refused_before_one_is_read(tmp_path: Path):
+    for number in range(MOST_RECORDINGS + 1):
+        (tmp_path / f"{number}.mmw").write_bytes(b"not even a recording")
+    with pytest.raises(InputError, match=f"holds {MOST_RECORDINGS + 1} recordings; .* at most {MOST_RECORDINGS}"):
+        signals_of(tmp_path, RawReading(), "A")
 
 
 def test_a_cube_without_its_radar_is_read_by_the_one_that_is_given(tmp_path: Path):

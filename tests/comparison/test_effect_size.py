@@ -16,6 +16,12 @@ def test_intervals_cover_the_median():
     assert 88 <= covered <= 100
 
 
+def test_the_seed_draws_the_interval():
+    values = stream(0, "test").normal(size=200)
+    one, again, other = (spread_of(values, in_order=True, seed=seed).interval_95 for seed in (1, 1, 2))
+    assert one == again != other
+
+
 def test_blocks_widen_the_interval_of_frames_that_resemble_each_other():
     slow = np.repeat(stream(0, "test").normal(size=20), 10)
     spans = [spread_of(slow, in_order=in_order).interval_95 or (0, 0) for in_order in (False, True)]

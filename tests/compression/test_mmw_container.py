@@ -45,6 +45,15 @@ def test_uneven_times_and_an_unknown_scale(time_s: list[float], path: Path):
     assert file.frame_time_s == pytest.approx(time_s, abs=1e-9)
 
 
+@pytest.mark.parametrize("times_s", [[0.0, np.nan, 0.2], [0.0, 0.1, 1e300], [-1e15, 0.1, 0.2]])
+def test_frames_at_impossible_times_are_refused(times_s: list[float], path: Path):
+    """Their checksums are right: a writer at fault, or one who means harm."""
+    header = header_for(AWR1843, 1.0, TIMES_S)
+    path.write_bytes(pack_mmw(header, CHUNKS, [np.array(times_s[:2]), np.array(times_s[2:])]))
+    with pytest.raises(InputError, match="times"):
+        MmwFile(path)
+
+
 def test_the_header_is_short():
     assert len(packed()) < sum(map(len, CHUNKS)) + 75
     assert len(packed(replace(AWR1843, name="mine", num_loops=16))) < sum(map(len, CHUNKS)) + 110

@@ -55,6 +55,15 @@ def test_json_gives_the_same_radar_back(name: str):
         ({"num_loops": 0}, "num_loops"),
         ({"idle_time_s": -1e-6}, "idle_time_s must be 0 to"),
         ({"rx_position_m": ()}, "receiver"),
+        ({"antenna_gain_dbi": 90.0}, "antenna_gain_dbi must be"),
+        ({"antenna_gain_dbi": -90.0}, "antenna_gain_dbi must be"),
+        ({"noise_figure_db": 200.0}, "noise_figure_db must be"),
+        ({"rx_gain_db": 300.0}, "rx_gain_db must be"),
+        ({"tx_power_dbm": 200.0}, "tx_power_dbm must be"),
+        ({"azimuth_beamwidth_deg": 400.0}, "azimuth_beamwidth_deg must be"),
+        ({"frequency_limits_hz": (76e9, float("inf"))}, "frequency_limits_hz"),
+        ({"frequency_limits_hz": (float("-inf"), 81e9)}, "frequency_limits_hz"),
+        ({"frequency_limits_hz": (float("nan"), 81e9)}, "frequency_limits_hz"),
     ],
 )
 def test_an_impossible_radar_is_refused(change: dict, word: str):

@@ -115,6 +115,15 @@ def test_impossible_maps_and_rates_are_refused(cfar):
         cfar(np.ones((1, 2, 2)))
 
 
+@pytest.mark.parametrize("num_doppler", range(1, 20))
+def test_areas_do_not_reach_round_a_short_doppler_axis(num_doppler: int):
+    cells = CfarCells(guard=(2, 3), training=(6, 8)).within(num_doppler)
+    for reach in (cells.guard[1], cells.training[1]):
+        doppler_bins = np.arange(-reach, reach + 1) % num_doppler
+        assert len(set(doppler_bins)) >= len(doppler_bins) - 1, "at most the two ends, half a turn away, are one cell"
+    assert (cells.guard[0], cells.training[0]) == (2, 6)
+
+
 @pytest.mark.parametrize("cfar", CFARS)
 def test_a_narrow_map_uses_no_cell_twice(cfar):
     power = stream(0, "test narrow").gamma(3, 1.0, (400, 32, 8))

@@ -65,6 +65,13 @@ def test_displacement_and_rates_of_somebody_who_sits(sitter: RadarCube):
     assert heart.frequency_hz == pytest.approx(HEART_HZ, abs=0.02)
 
 
+def test_noise_far_from_what_moves_is_no_cell_of_movement(sitter: RadarCube):
+    cells = moving_cells(sitter, count=50)
+    assert cells
+    assert max(abs(cell.range_m - 1.2) for cell in cells) < 4 * SLOW.range_resolution_m
+    assert [cell.moving_power for cell in cells] == sorted((cell.moving_power for cell in cells), reverse=True)
+
+
 def test_slow_time_doppler_has_the_right_velocity_and_sign():
     cube = recorded(SLOW, lambda time_s: 1.4 + 6e-3 * time_s, 64)
     power, velocity_mps = slow_time_doppler(cube)
@@ -97,6 +104,15 @@ def test_every_chirp_of_a_short_frame_counts():
         cube = radar_cube(AdcCube(samples=noise, config=config, scale=1.0))
         levels.append(np.mean(np.abs(cube.values) ** 2))
     assert levels[0] / levels[1] == pytest.approx(2.0, rel=0.05)
+
+
+def test_a_rate_in_noise_is_not_clear():
+    """As large as breathing, but with power at all frequencies: most recordings of 30 s do not seem to breathe."""
+    rng = np.random.default_rng(3)
+    found = [breathing_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
+    hearts = [heart_rate(1e-3 * rng.standard_normal(600), 0.05) for _ in range(100)]
+    assert sum(rate.is_clear for rate in found) < 50
+    assert sum(rate.is_clear for rate in hearts) < 10
 
 
 def test_nothing_is_invented():

@@ -28,7 +28,7 @@ def test_one_and_a_half_times_finer_contains_every_other_cell():
 
 @pytest.mark.parametrize("bad", [0.5, float("nan")])
 def test_a_coarser_grid_is_refused(bad: float):
-    with pytest.raises(InputError, match="at least 1"):
+    with pytest.raises(InputError, match=f"n_d .* at least 1, not {bad}"):
         finer_grid(NATIVE, n_d=bad)
 
 

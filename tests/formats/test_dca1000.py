@@ -212,7 +212,7 @@ def test_unreadable_files_are_refused(tmp_path: Path):
         read_bin(tmp_path / "none.bin", SMALL)
     with pytest.raises(InputError, match="cannot read"):
         read_bin(tmp_path, SMALL)
-    with pytest.raises(InputError, match="iq, qi"):
+    with pytest.raises(InputError, match="order 'q'; known: iq, qi"):
         read_bin(tmp_path / "none.bin", SMALL, iq_order="q")
     with pytest.raises(InputError, match="tx_order"):
         read_bin(tmp_path / "none.bin", SMALL, tx_order=(0, 1))

@@ -90,6 +90,10 @@ def test_nothing_to_compensate(tmp_path: Path):
     assert read_ti_calibration(str(tmp_path / "plain.cfg")) is None
     with pytest.raises(InputError, match="needs 12"):
         read_ti_calibration(str(cfg_with(tmp_path, factors()[:8])))
+    without = factors()
+    without[0] = 0.0
+    with pytest.raises(InputError, match="factor of zero"):
+        read_ti_calibration(str(cfg_with(tmp_path, without)))
 
 
 def test_the_inverse_is_exact(tmp_path: Path):

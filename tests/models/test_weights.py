@@ -7,7 +7,7 @@ import torch
 
 from mmweaver.core.errors import InputError
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.weights import WeightsCard, load_weights, read_card, save_weights
+from mmweaver.models.weights import WeightsCard, load_into, load_weights, read_card, save_weights
 
 CARD = WeightsCard(
     recipe="weaver", licence="MIT", dataset_sha256="0" * 64, radar="awr1843", steps=1, seed=0, validation_loss=1.0,
@@ -49,6 +49,15 @@ def test_damaged_foreign_and_pickled_files_are_refused_in_one_line(file, tmp_pat
         with pytest.raises(InputError, match=told) as caught:
             load_weights(wrong)
         assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "other", [torch.nn.Linear(3, 2), torch.nn.Sequential(WeaverNetwork(), torch.nn.Linear(3, 2))], ids=["less", "more"]
+)
+def test_weights_of_another_network_are_refused_in_one_line(other, file):
+    with pytest.raises(InputError, match="does not fit") as refused:
+        load_into(other, file)
+    assert "\n" not in str(refused.value)
 
 
 def test_values_that_changed_are_found(file, tmp_path):

@@ -71,6 +71,19 @@ def test_with_five_recordings_half_of_their_trees_look_at_what_tells_generated_p
     assert 0 < (first[10:] == 1).mean() < 1
 
 
+def test_every_few_trees_look_at_features_drawn_anew():
+    """Forty features that tell as much: one draw with replacement leaves out a third of them, many leave out few."""
+    rng, label = np.random.default_rng(0), np.tile([0, 1], 50)
+    made = TrainingWindows(
+        features=label[:, None] + rng.normal(0, 0.1, (100, 40)), label=label, person=np.arange(100),
+        is_copy=np.zeros(100, bool), names=tuple(f"f{at}" for at in range(40)),
+    )  # fmt: skip
+    labelled = np.tile([0, 1], 4)[:, None] + rng.normal(0, 0.1, (8, 40))
+    own, _ = own_trees(made, labelled, np.tile([0, 1], 4), 5, TrainingOptions(trees=300))
+    assert own is not None
+    assert len(set(own.feature[own.root][:90].tolist())) > 31
+
+
 def test_joined_trees_vote_as_both_do_and_are_read_back(made: TrainingWindows, tmp_path):
     features, labels = np.tile([[0.0], [1.0]], (10, 1)), np.tile([0, 1], 10)
     own, others = own_trees(made, features, labels, 3, OPTIONS)

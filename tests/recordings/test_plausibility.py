@@ -24,8 +24,8 @@ from mmweaver.recordings.transmitter_order import agreements
 RADAR = replace(AWR1843, num_loops=16, num_samples=64, sample_rate_hz=1.13e6, first_range_bin=0, num_range_bins=64)
 
 
-def room(config: RadarConfig, num_frames: int = 8) -> AdcCube:
-    """Fifteen static points, one that comes nearer at 0.9 m/s, and noise, in counts; held within a chirp."""
+def room(config: RadarConfig, num_frames: int = 8, speed_mps: float = 0.9) -> AdcCube:
+    """Fifteen static points, one that comes nearer, and noise, in counts; held within a chirp."""
     rng = np.random.default_rng(3)
     loop_s = np.arange(config.num_loops) * config.loop_period_s
     time_s = np.arange(num_frames)[:, None] * config.frame_period_s + loop_s
@@ -34,7 +34,7 @@ def room(config: RadarConfig, num_frames: int = 8) -> AdcCube:
     fast = np.arange(config.num_samples) / config.sample_rate_hz - config.num_samples / config.sample_rate_hz / 2
     antennas = config.antenna_position_m.reshape(config.num_tx, config.num_rx, 3)
     for index in range(16):
-        range_m = rng.uniform(0.4, 1.1) + 0 * time_s if index else 1.3 - 0.9 * time_s
+        range_m = rng.uniform(0.4, 1.1) + 0 * time_s if index else 1.3 - speed_mps * time_s
         azimuth, elevation = rng.uniform(-0.7, 0.7), rng.uniform(-0.2, 0.2)
         towards = np.array([np.sin(azimuth), np.cos(azimuth), np.sin(elevation)])
         path_m = 2 * range_m[..., None] - antennas @ towards
@@ -123,6 +123,12 @@ def test_a_loop_read_twice_as_long_names_the_likelier_radar():
     again = adc_of_words(words.reshape(-1), twice)
     found = implausible(again, radar_cube(again))
     assert any("3 TX x 4 RX x 256 samples (presets: awr1843" in text for text in found)
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_frames_that_are_right_are_not_called_parts_of_others(moves: bool):
+    adc = room(replace(RADAR, frame_period_s=0.07), 16, speed_mps=0.9 if moves else 0.0)
+    assert implausible(adc, radar_cube(adc)) == []
 
 
 def test_frames_that_came_at_another_rate():

@@ -31,6 +31,18 @@ def test_floor_and_frame(scene: Scene):
     assert len(scene.assumptions) > 1
 
 
+def test_the_floor_lies_under_all_that_is_seen_and_under_the_radar(scene: Scene, box_room: Callable):
+    narrow = reconstruct(box_room(walls=(-0.5, 0.4, 2.0)).photo(width=320, height=240))
+    for one in (scene, narrow):
+        half = one.floor.half_size_m
+        for x_m, y_m in [(0.0, 0.0), *(wall.centre_m[:2] for wall in _walls(one))]:
+            across, along = (np.array([x_m, y_m, one.floor_z_m]) - one.floor.centre_m) @ np.stack(
+                [one.floor.axis_u, one.floor.axis_v], axis=1
+            )
+            assert abs(across) < half[0] + 1e-6
+            assert abs(along) < half[1] + 1e-6
+
+
 @pytest.mark.parametrize(
     ("normal", "distance_m"), [((0, -1, 0), 3.8), ((1, 0, 0), 2.0), ((-1, 0, 0), 2.2)], ids=["back", "left", "right"]
 )

@@ -1,5 +1,6 @@
 """What the page asks for is checked before anything is done."""
 
+import re
 import shlex
 from typing import Any
 
@@ -15,6 +16,18 @@ GOOD = {"room": "demo", "text": ["a person waves"], "radar": "awr1843", "method"
 def test_a_request_is_read():
     asked = Asked.of(GOOD)
     assert asked.request == {"text": "a person waves", "seed": 3, "at": (0.2, 2.0)}
+
+
+def test_a_path_has_as_many_places_as_the_refusal_says():
+    place = [0.5, 2]
+    with pytest.raises(InputError) as refused:
+        Asked.of({**GOOD, "path": [place] * 10**6})
+    fewest, most = map(int, re.findall(r"\d+", str(refused.value)))
+    assert Asked.of({**GOOD, "path": [place] * most}).request["path_m"] == ((0.5, 2.0),) * most
+    assert len(Asked.of({**GOOD, "path": [place] * fewest}).request["path_m"]) == fewest
+    for number in (fewest - 1, most + 1):
+        with pytest.raises(InputError):
+            Asked.of({**GOOD, "path": [place] * number})
 
 
 def test_the_first_of_two_people_starts_at_the_place():
@@ -41,7 +54,8 @@ def test_the_python_is_python():
         None, [], {**GOOD, "text": []}, {**GOOD, "text": [1]}, {**GOOD, "text": "x" * 501}, {**GOOD, "seed": -1},
         {**GOOD, "seed": True}, {**GOOD, "seed": 1.5}, {**GOOD, "at": [1]}, {**GOOD, "at": [1, "2"]},
         {**GOOD, "at": "12"}, {**GOOD, "at": {"0": 1, "1": 2}}, {**GOOD, "room": ["demo"]},
-        {**GOOD, "radar": "x" * 101},
+        {**GOOD, "radar": "x" * 101}, {**GOOD, "path": [[0, 1]]}, {**GOOD, "path": [[0, 1], [0, "2"]]},
+        {**GOOD, "path": "ab"},
     ],
 )  # fmt: skip
 def test_anything_else_is_refused(wrong: Any):

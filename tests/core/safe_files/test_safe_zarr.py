@@ -95,6 +95,29 @@ def test_metadata_that_promises_what_no_file_holds_is_refused(store: Path, value
         open_zarr(store).numbers("place_m", ("sequence", "frame", 3))
 
 
+@pytest.mark.parametrize(
+    "values", [{"data_type": "string"}, {"data_type": "numpy.datetime64"}, {"data_type": "M8[s]"},
+               {"shape": [1] * 40, **chunks(*[1] * 40)}]
+)  # fmt: skip
+def test_an_array_of_another_kind_is_refused_before_any_array_is_read(store: Path, values: dict[str, Any]):
+    changed(store, "place_m", **values)
+    with pytest.raises(InputError, match="place_m is no array that is read here"):
+        open_zarr(store)
+
+
+@pytest.mark.parametrize(("megabytes", "is_read"), [(8, True), (100, False)])
+def test_few_bytes_may_become_some_megabytes_but_not_a_hundred(tmp_path: Path, megabytes: int, is_read: bool):
+    """Zeros compress by more than any ratio that is allowed: small arrays may, large ones promise too much."""
+    group = zarr.open_group(tmp_path / "zeros", mode="w")
+    array = group.create_array("zeros", shape=(megabytes, 125_000), chunks=(1, 125_000), dtype="f8", fill_value=1.0)
+    array[:] = 0.0
+    if is_read:
+        assert not open_zarr(tmp_path / "zeros").row("zeros", 0, (125_000,)).any()
+    else:
+        with pytest.raises(InputError, match=f"say {megabytes}000000 bytes"):
+            open_zarr(tmp_path / "zeros")
+
+
 def test_a_chunk_that_is_missing_and_filled_with_nan_is_refused(store: Path):
     changed(store, "place_m", fill_value="NaN")
     (store / "place_m" / "c" / "0" / "0" / "0").unlink()

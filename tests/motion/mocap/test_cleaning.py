@@ -1,5 +1,7 @@
 """Gaps, zeros, T-poses and joints that are mixed up."""
 
+import re
+
 import numpy as np
 import pytest
 from mocap_files import walk
@@ -32,7 +34,7 @@ def test_short_gaps_are_bridged_smoothly(value: float):
 @pytest.mark.parametrize(
     ("frames", "message"),
     [
-        (slice(30, 60), "left_knee is missing for 30 frames"),
+        (slice(30, 60), r"walk: left_knee is missing for 30 frames \(0.50 s\) from frame 30"),
         (slice(0, 3), "from frame 0"),
         (slice(-2, None), "missing"),
     ],
@@ -42,6 +44,22 @@ def test_long_gaps_and_gaps_at_an_end_are_refused(frames: slice, message: str):
     holed[frames, joint("left_knee")] = np.nan
     with pytest.raises(InputError, match=message):
         without_gaps(holed, FPS, "walk")
+
+
+def test_gaps_as_long_as_the_refusal_says_are_filled():
+    holed = walk().copy()
+    holed[30:60, joint("left_knee")] = np.nan
+    with pytest.raises(InputError) as refused:
+        without_gaps(holed, FPS, "walk")
+    longest_s = float(re.findall(r"gaps of up to ([\d.]+) s", str(refused.value))[0])
+    for more, is_filled in ((0, True), (1, False)):
+        holed = walk().copy()
+        holed[30 : 30 + round(longest_s * FPS) + more, joint("left_knee")] = np.nan
+        if is_filled:
+            assert np.isfinite(without_gaps(holed, FPS, "walk")[0]).all()
+        else:
+            with pytest.raises(InputError, match="missing"):
+                without_gaps(holed, FPS, "walk")
 
 
 @pytest.mark.parametrize(

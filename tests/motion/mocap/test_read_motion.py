@@ -112,7 +112,7 @@ def test_what_cannot_be_read_is_refused_in_one_line(tmp_path: Path):
     np.save(tmp_path / "short.npy", walk()[:1])
     (tmp_path / "walk.fbx").write_text("x")
     for path, options, message in (
-        ("none.bvh", {}, "there is no motion file"),
+        ("none.bvh", {}, r"there is no motion file \S+none.bvh; give .*\.bvh"),
         ("walk.fbx", {}, r"read from \.bvh"),
         ("walk.npy", {}, "--motion-fps"),
         ("walk.npy", {"fps": 0.0}, "frames a second"),

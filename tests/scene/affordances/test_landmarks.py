@@ -33,6 +33,8 @@ def test_doors_and_tables_are_found_at_their_true_places(office: ProceduralRoom,
         distances = _near(scene, office, kind)
         assert distances, kind
         assert max(distances) < 0.6, kind
+    order = [(mark.kind, float(np.hypot(*mark.position_m[:2]))) for mark in scene.landmarks]
+    assert order == sorted(order), "by kind, the nearest first"
 
 
 def test_approaches_are_free_and_face_the_landmark(office: ProceduralRoom):

@@ -49,6 +49,8 @@ def test_poses_are_relative_to_the_first(place: Path):
         ([{"pose": IDENTITY}, {"pose": (2 * np.eye(4)).tolist()}], "last row"),
         ([{"pose": IDENTITY}, {"pose": np.diag([1, 1, -1, 1]).tolist()}], "no rotation"),
         ([{}, {"turned_deg": "left"}], "turned_deg"),
+        ([{}, {"place_m": [1, "2"]}], "place_m is"),
+        ([{}, {"place_m": [1, 2, 3]}], "place_m is"),
         ([{}, {"place": [0, 1]}], "may have"),
         ([], "1 to 24 photos"),
     ],

@@ -5,6 +5,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
+from mmweaver.core.radar_pose import RadarPose
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator
@@ -44,6 +45,11 @@ def test_nothing_overlaps(room: ProceduralRoom):
     # Different pieces only: the cushions of a sofa press into it.
     cut &= piece[:, None] != piece[None, :]
     assert not cut.any(), [(room.boxes.names[a], room.boxes.names[b]) for a, b in np.argwhere(cut)[:4]]
+
+
+def test_every_part_has_a_volume(room: ProceduralRoom):
+    """A board that is turned inside out or has no thickness would be a hole for rays."""
+    assert room.boxes.half_m.min() > 1e-3
 
 
 def test_nothing_floats(room: ProceduralRoom):
@@ -117,11 +123,28 @@ def test_noise_is_that_of_a_stereo_camera():
     assert 0.0005 < np.median(error) < 0.02
 
 
+def test_every_further_photo_has_noise_of_its_own():
+    """Of the room's seed and of its number; asked for again, it is the same."""
+    stand = RadarPose(x_m=0.3)
+    photos = [
+        make_room("office", 1, seed).further_photo(stand, noise=True, number=number)[0].depth_m
+        for seed, number in ((4, 1), (4, 1), (4, 2))
+    ]
+    assert np.array_equal(photos[0], photos[1], equal_nan=True)
+    assert not np.array_equal(photos[0], photos[2], equal_nan=True)
+
+
 def test_lightings_differ_and_unknown_ones_are_refused():
     room = make_room("office")
     assert np.abs(room.photo("day").rgb.astype(int) - room.photo("evening").rgb).mean() > 8
     with pytest.raises(InputError, match="known: day"):
         room.photo("moon")
+
+
+def test_seed_and_layout_turn_the_camera():
+    views = [make_room("office", layout, seed).radar_from_camera for layout, seed in ((1, 1), (1, 1), (1, 2), (2, 1))]
+    assert np.array_equal(views[0], views[1])
+    assert not any(np.allclose(views[0], other, atol=1e-4) for other in views[2:])
 
 
 def test_equal_seeds_give_equal_bits_and_different_seeds_different_rooms():
