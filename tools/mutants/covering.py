@@ -3,7 +3,8 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
@@ -15,6 +16,7 @@ from tools.mutants.copies import BUILD, copy_tree, digest, run_command, tracked_
 from tools.mutants.places import PACKAGE, Place
 
 _SPENT = re.compile(r"^ *([\d.]+) s  (\S.*::.*)$", re.MULTILINE)  # as tests/cpu_summary.py prints it
+_PASSED = re.compile(r"^PASSED (\S.*)$", re.MULTILINE)
 _LITTLE_S = 0.05  # of the tests that it does not print
 _DATA, _STATE = BUILD / "coverage.db", BUILD / "coverage.json"
 
@@ -33,7 +35,8 @@ def measured(copy: Path) -> "Covering":
     if changed:
         print(f"tests of {len(changed)} files run with coverage; all of them take an hour", flush=True)
         spent = _run(copy, changed if _DATA.exists() else [])
-        kept = {name: s for name, s in state["cpu_s"].items() if name.partition("::")[0] in set(tests) - set(changed)}
+        gone = {*changed, *(set(state["tests"]) - set(tests))}
+        kept = {name: cpu_s for name, cpu_s in state["cpu_s"].items() if name.partition("::")[0] not in gone}
         _STATE.write_text(json.dumps({"sources": sources, "tests": tests, "cpu_s": kept | spent}))
     return Covering(copy)
 
@@ -42,8 +45,8 @@ def _run(copy: Path, files: list[str]) -> dict[str, float]:
     """Adds what these files execute, all files where none is named; returns the CPU seconds of their tests."""
     new = BUILD / "coverage.new"
     arguments = [
-        "-n2", "--dist=loadfile", "--no-loadscope-reorder", f"--cov={PACKAGE}", "--cov-context=test", "--cov-report=",
-        *files,
+        "-n2", "--dist=loadfile", "--no-loadscope-reorder", "-rp",
+        f"--cov={PACKAGE}", "--cov-context=test", "--cov-report=", *files,
     ]  # fmt: skip
     printed = run_command(copy, arguments, COVERAGE_FILE=str(new), CPU_LINES="1000000")
     (BUILD / "coverage.log").write_text(printed)
@@ -52,7 +55,8 @@ def _run(copy: Path, files: list[str]) -> dict[str, float]:
         one.read()  # else it would be begun anew
     data.update(added)
     data.close()
-    return {name: float(seconds) for seconds, name in _SPENT.findall(printed)}
+    spent = {name: float(seconds) for seconds, name in _SPENT.findall(printed)}
+    return {name: spent.get(name, _LITTLE_S) for name in _PASSED.findall(printed)}
 
 
 def _kept() -> CoverageData:
@@ -73,8 +77,7 @@ class Covering:
         data = _kept()
         if not data.measured_contexts():
             raise SystemExit(f"{_DATA} is empty: see {BUILD / 'coverage.log'}, and delete {_STATE}")
-        contexts = {context.rpartition("|")[0] for context in data.measured_contexts()}
-        self.names = (contexts | set(self.cpu_s)) - {""}  # those too that run the package in child processes alone
+        self.names = set(self.cpu_s)  # of the tests that pass
         self.measured = {name[name.index(str(PACKAGE)) :]: name for name in data.measured_files()}
         self._lines: dict[str, dict[int, set[str]]] = {}
 
@@ -98,15 +101,27 @@ class Covering:
     def _of(self, file: str) -> dict[int, set[str]]:
         if file not in self._lines:
             contexts = _kept().contexts_by_lineno(self.measured[file]) if file in self.measured else {}
-            self._lines[file] = {
-                line: {name for context in found if (name := context.rpartition("|")[0])}
-                for line, found in contexts.items()
-            }
+            self._lines[file] = {line: self._tests_of(found) for line, found in contexts.items()}
         return self._lines[file]
+
+    def _tests_of(self, contexts: Iterable[str]) -> set[str]:
+        """What a test sets up, others of its file may share: a fixture runs in the context of the first."""
+        found: set[str] = set()
+        for context in contexts:
+            name, _, phase = context.rpartition("|")
+            found |= {name} if phase != "setup" else self._by_file[name.partition("::")[0]]
+        return found & self.names
+
+    @cached_property
+    def _by_file(self) -> dict[str, set[str]]:
+        found: dict[str, set[str]] = defaultdict(set)
+        for name in self.names:
+            found[name.partition("::")[0]].add(name)
+        return found
 
     def spent_s(self, name: str) -> float:
         """CPU seconds of a test, coverage included."""
-        return self.cpu_s.get(name, _LITTLE_S)
+        return self.cpu_s[name]
 
     def in_order(self, place: Place) -> list[str]:
         """The mirrored file first, then the others of its folder, then the fastest test of each other file by turns."""
