@@ -118,7 +118,7 @@ def check_all(results: Path) -> int:
     """Prints what is wrong with results and tables; returns the exit status."""
     from studies.report.pages import filled_page, pages_of
 
-    wrong = [line for path in sorted(results.rglob("*.json")) for line in check_result(path, results)]
+    wrong = [line for path in sorted(results.glob("*/**/*.json")) for line in check_result(path, results)]
     for page in pages_of(ROOT):
         if filled_page(page, results) != page.read_text(encoding="utf-8"):
             wrong.append(f"{page.relative_to(ROOT)}: a table or score is stale; run python -m studies tables")
