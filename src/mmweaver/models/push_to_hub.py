@@ -7,6 +7,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.hub_log import hub_log_off
+from mmweaver.core.optional_packages import need
 from mmweaver.models.weights import WEIGHTS_FILE, read_card
 
 CARD_FILE = "README.md"
@@ -35,10 +36,9 @@ def push_to_hub(
         InputError: for weights that are damaged or not of mmWeaver, for a card that is missing, cannot be read or names
             another licence than the weights, and where the Hub refuses.
     """
-    try:
-        from huggingface_hub import HfApi
-    except ImportError:
-        raise InputError("the Hub needs: pip install 'mmweaver[weaver]'") from None
+    need("weaver", "publishing on the Hub", "huggingface_hub")
+    from huggingface_hub import HfApi
+
     source = Path(source)
     files = [source] if source.is_file() else sorted(source.glob(ALL_WEIGHTS))
     if not files:
