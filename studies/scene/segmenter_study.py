@@ -30,12 +30,12 @@ from mmweaver.scene.segmentation.builtin_segmenter import (
     segment_builtin,
 )
 from mmweaver.scene.segmentation.segmenter_features import STRIDE, grid_features
-from mmweaver.training.segmenter_data import SegmenterExample, make_examples
-from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
-from mmweaver.training.segmenter_training import TEST_KINDS, TEST_SEED
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.scene.affordances import Tally, measure_scene, share_of
+from studies.scene.segmenter_data import SegmenterExample, make_examples
+from studies.scene.segmenter_scores import by_geometry, confusion, scores
+from studies.scene.segmenter_training import TEST_KINDS, TEST_SEED
 from studies.study import Reads
 
 REAL_TRUTH = Path(__file__).with_name("real_rooms_classes.json")

@@ -9,9 +9,9 @@ import argparse
 import json
 from pathlib import Path
 
-from mmweaver.training.segmenter_training import SegmenterRecipe
-from mmweaver.training.segmenter_training import run as train_and_score
 from studies.manifest import StudyRun
+from studies.scene.segmenter_training import SegmenterRecipe
+from studies.scene.segmenter_training import run as train_and_score
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -12,10 +12,10 @@ pytest.importorskip("transformers")
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT, small_file
 from mmweaver.motion.motiongpt.motiongpt_weights import save_weights
 from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
-from mmweaver.training.motion_language import LanguageRecipe
-from mmweaver.training.motion_tokenizer import TokenizerRecipe
 from studies.manifest import StudyRun
 from studies.motion import motiongpt_scores
+from studies.motion.motion_language import LanguageRecipe
+from studies.motion.motion_tokenizer import TokenizerRecipe
 from studies.motion.motiongpt_data import ACTIVITIES, library_examples
 from studies.motion.motiongpt_pictures import draw_strips
 from studies.motion.motiongpt_training import MotiongptRecipe, statistics, train

@@ -7,7 +7,7 @@
                    \\________________\\____________/______________/
 
 It works offline and knows thirteen groups of COCO-Stuff's classes. It was trained on procedural rooms only, see
-`training.segmenter_training` and model_cards/segmenter.md.
+`studies.scene.segmenter_training` and model_cards/segmenter.md.
 """
 
 from pathlib import Path

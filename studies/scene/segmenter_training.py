@@ -17,8 +17,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, groups_of_cells, make_network
 from mmweaver.training.resuming import Resumable
-from mmweaver.training.segmenter_data import SegmenterExample, augmented, make_examples
-from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
+from studies.scene.segmenter_data import SegmenterExample, augmented, make_examples
+from studies.scene.segmenter_scores import by_geometry, confusion, scores
 
 TRAIN_KINDS = ("office", "living_room", "lab", "kitchen", "library", "bedroom", "meeting_room", "corridor")
 TEST_KINDS = ("dining_room", "classroom", "gym", "workshop")

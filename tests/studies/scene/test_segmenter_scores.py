@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
-from mmweaver.training.segmenter_data import SegmenterExample, make_example
-from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
+from studies.scene.segmenter_data import SegmenterExample, make_example
+from studies.scene.segmenter_scores import by_geometry, confusion, scores
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
-from mmweaver.training.motion_tokenizer import TokenizerRecipe, train_tokenizer
+from studies.motion.motion_tokenizer import TokenizerRecipe, train_tokenizer
 
 TINY = TokenizerConfig(features=205, codes=24, code_width=8, width=16)  # 205: joints' ways are columns 193 on
 

@@ -8,7 +8,7 @@ import torch
 pytest.importorskip("transformers")
 
 from mmweaver.motion.motiongpt.language_model import sample_codes
-from mmweaver.training.motion_language import LanguageRecipe, train_language
+from studies.motion.motion_language import LanguageRecipe, train_language
 
 SIZES: dict[str, Any] = {
     "vocab_size": 6 + 11, "d_model": 32, "d_kv": 16, "d_ff": 64, "num_layers": 1, "num_decoder_layers": 1,

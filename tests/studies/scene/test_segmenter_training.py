@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from mmweaver.scene.segmentation.builtin_segmenter import load_network
-from mmweaver.training.segmenter_data import SegmenterExample, make_example
-from mmweaver.training.segmenter_training import TEST_KINDS, TRAIN_KINDS, SegmenterRecipe, save_weights, train
+from studies.scene.segmenter_data import SegmenterExample, make_example
+from studies.scene.segmenter_training import TEST_KINDS, TRAIN_KINDS, SegmenterRecipe, save_weights, train
 
 
 @pytest.fixture(scope="module")

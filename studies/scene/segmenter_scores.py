@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from mmweaver.core.shapes import Array
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
 from mmweaver.scene.segmentation.segmenter_features import HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE
-from mmweaver.training.segmenter_data import SegmenterExample
+from studies.scene.segmenter_data import SegmenterExample
 
 
 def confusion(examples: list[SegmenterExample], guess: Callable[[np.ndarray], np.ndarray]) -> Int[Array, "truth guess"]:

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.seeding import stream
 from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
-from mmweaver.training.segmenter_data import SegmenterExample, augmented, make_example, make_examples
+from studies.scene.segmenter_data import SegmenterExample, augmented, make_example, make_examples
 
 
 @pytest.fixture(scope="module")
