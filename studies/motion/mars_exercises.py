@@ -20,8 +20,8 @@ from jaxtyping import Float
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.empty_floor import act_out
-from mmweaver.recognition.mars_data import FRAME_S, KINECT_COLUMNS, joints_from_kinect
 from studies.manifest import StudyRun
+from studies.physics.mars_data import FRAME_S, KINECT_COLUMNS, joints_from_kinect
 from studies.result_rows import complete_rows
 from studies.study import Reads
 

@@ -24,7 +24,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube
 from mmweaver.paths.receiver import IDEAL, Receiver, quantise
-from mmweaver.recognition.mars_data import MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.peers.rf_genesis import RfGenesis
 from studies.physics.cloud_scores import score
@@ -43,6 +42,7 @@ from studies.physics.mars import (
     simulate,
     smoothed,
 )
+from studies.physics.mars_data import MarsStretch, read_mars
 from studies.physics.mars_pieces import cut, pose_of
 from studies.result_rows import complete_rows
 from studies.study import Reads

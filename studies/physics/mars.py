@@ -39,11 +39,11 @@ from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.paths.static_paths import AS_PUBLISHED
-from mmweaver.recognition.mars_data import FRAME_S, MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
+from studies.physics.mars_data import FRAME_S, MarsStretch, read_mars
 from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
 from studies.result_rows import complete_rows
 from studies.study import Reads

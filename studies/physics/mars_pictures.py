@@ -15,9 +15,9 @@ import numpy as np
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import PointCloud
 from mmweaver.core.skeleton import BONES
-from mmweaver.recognition.mars_data import MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.physics.mars import Clouds, MarsVariant, Setup, detect, simulate
+from studies.physics.mars_data import MarsStretch, read_mars
 from studies.physics.mars_pieces import cut
 from studies.study import Reads
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.recognition.mars_data import FRAME_S, MarsStretch
+from studies.physics.mars_data import FRAME_S, MarsStretch
 
 # The published clouds end sharply here (validate: 868 points in the highest 10 cm below 1 m, none above): whoever made
 # them cut away what lies beyond, mostly second azimuth peaks with absurd heights.

@@ -3,7 +3,7 @@
     python -m studies run shipped_models --radhar RADHAR --mars MARS
 
 RadHAR: all recordings, as `mmweaver evaluate zero-shot-activity` scores them. MARS: split `test` of the subjects that
-are there, as `mmweaver evaluate zero-shot-pose` does. The files are scored as they are; nothing is trained.
+are there (`score_poses`). The files are scored as they are; nothing is trained.
 """
 
 import argparse
@@ -14,10 +14,10 @@ from typing import Any
 from mmweaver.recognition.point_recordings import read_task_recordings
 from mmweaver.recognition.pose_estimator import load_estimator
 from mmweaver.recognition.recogniser import load_recogniser
-from mmweaver.recognition.score_poses import score_poses
 from mmweaver.recognition.scoring import score_recordings
 from studies.manifest import StudyRun, content_of
 from studies.recognition.blind_recognition import WORDS
+from studies.recognition.score_poses import score_poses
 from studies.recognition.zero_shot_pose import WORDS as ALIGNMENTS
 from studies.schema import metric
 from studies.study import Reads

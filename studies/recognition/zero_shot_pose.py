@@ -25,7 +25,13 @@ from mmweaver.figures.pose_strip import draw_pose_strips
 from mmweaver.models.point_frames import middle_m, near
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator
-from mmweaver.recognition.score_poses import (
+from mmweaver.recognition.task_file import RecognitionTask, read_task
+from mmweaver.recognition.train_pose import generated_frames, posed_frames, split_people
+from mmweaver.training.pose_examples import PosedFrames, PoseWindows
+from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
+from mmweaver.training.trainer import Trainer
+from studies.manifest import StudyRun, content_of
+from studies.recognition.score_poses import (
     JointCalibration,
     Joints,
     as_kinect,
@@ -36,12 +42,6 @@ from mmweaver.recognition.score_poses import (
     repeated,
     truth,
 )
-from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.recognition.train_pose import generated_frames, posed_frames, split_people
-from mmweaver.training.pose_examples import PosedFrames, PoseWindows
-from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
-from mmweaver.training.trainer import Trainer
-from studies.manifest import StudyRun, content_of
 from studies.schema import metric
 from studies.study import Reads
 

@@ -2,27 +2,22 @@
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from mmweaver.cli.recognise_text import score_lines
-from mmweaver.core.errors import InputError
 
-FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
 
 EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
   mmweaver evaluate zero-shot-activity --model model/ --recordings recordings/
-  mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
-Without --model the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
-second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
+Without --model the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames per
+second, as RadHAR publishes them (.txt, one message per point) or as .npz with frame (point) and pts (point, 8). The
 activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
 activities train a model from a task file: docs/recognise.md.
-Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
 """
 
 
@@ -32,10 +27,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "evaluate", help="score what was trained on generated data on real recordings", epilog=EXAMPLES,
         description="Trains on generated data alone and scores on recordings of real people.",
     )  # fmt: skip
-    parser.add_argument("task", choices=tuple(TASKS), help="what is scored")
+    parser.add_argument("task", choices=("zero-shot-activity",), help="what is scored")
     parser.add_argument("--recordings", type=Path, required=True, metavar="DIR", help="folder of recordings")
-    parser.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train` or `train pose`")
-    parser.add_argument("--split", choices=("train", "validate", "test"), help="zero-shot-pose: of MARS (default test)")
+    parser.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train`")
     parser.add_argument("--json", action="store_true", help="print the scores for machines")
     parser.set_defaults(run=run)
     return parser
@@ -43,16 +37,13 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
-    evaluated, as_lines = TASKS[arguments.task]
-    scores = evaluated(arguments)
-    print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(as_lines(scores)))
+    scores = _activities(arguments)
+    print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(lines(scores)))
     return 0
 
 
 def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
     """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
-    if arguments.split is not None:
-        raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
     from mmweaver.core.repository_files import repository_file
     from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import META_FILE, load_recogniser
@@ -68,38 +59,7 @@ def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
     return {"task": arguments.task, "model": folder.name, **made, **scores}
 
 
-def _poses(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Scores of a pose network, by default of the frozen one."""
-    from mmweaver.core.repository_files import repository_file
-    from mmweaver.models.weights import WEIGHTS_FILE
-    from mmweaver.recognition.pose_estimator import load_estimator
-    from mmweaver.recognition.score_poses import score_poses
-
-    model = arguments.model
-    if model is None:
-        otherwise = "train some with mmweaver train pose and give them by --model"
-        model = repository_file(f"{FROZEN_POSE}/{WEIGHTS_FILE}", "the folder of frozen pose networks", otherwise).parent
-    scores = score_poses(load_estimator(model), arguments.recordings, arguments.split or "test")
-    return {"task": arguments.task, "model": model.name, **scores}
-
-
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
     windows = f"trained on {scores['generated_windows']} generated windows"
     return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
-
-
-def pose_lines(scores: dict[str, Any]) -> list[str]:
-    """Errors in cm, by alignment and group of joints."""
-    text = [f"split {scores['split']} of {len(scores['subjects'])} subjects; mean distance of joints in cm"]
-    for method, of_alignment in scores["mean"].items():
-        text.append(f"  {method.replace('_', ' ')}")
-        for alignment, groups in of_alignment.items():
-            words = ", ".join(f"{group} {value:.1f}" for group, value in groups.items())
-            text.append(f"    {alignment:11} {words}")
-    return text
-
-
-TASKS: dict[str, tuple[Callable[[argparse.Namespace], dict[str, Any]], Callable[[dict[str, Any]], list[str]]]] = {
-    "zero-shot-activity": (_activities, lines), "zero-shot-pose": (_poses, pose_lines),
-}  # fmt: skip

@@ -11,10 +11,10 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
-from mmweaver.recognition.mars_data import joints_from_kinect
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
-from tests.recognition.test_mars_data import standing_kinect
+from studies.physics.mars_data import joints_from_kinect
+from tests.studies.physics.test_mars_data import standing_kinect
 
 
 def test_the_body_is_where_its_joints_are():

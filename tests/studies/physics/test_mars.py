@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.recognition.mars_data import MarsStretch, read_mars
 from studies.manifest import StudyRun
 from studies.physics import mars
 from studies.physics.cloud_scores import score
@@ -21,8 +20,9 @@ from studies.physics.mars import (
     simulate,
     surface_baseline,
 )
+from studies.physics.mars_data import MarsStretch, read_mars
 from studies.physics.mars_pieces import cut
-from tests.recognition.test_mars_data import write_split
+from tests.studies.physics.test_mars_data import write_split
 
 HERE = Setup(shift_m=(0.0, 0.0, 0.2), height_m=1.75)
 

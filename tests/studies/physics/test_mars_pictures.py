@@ -5,11 +5,11 @@ from pathlib import Path
 
 from PIL import Image
 
-from mmweaver.recognition.mars_data import read_mars
 from studies.physics.mars import Clouds, Setup
+from studies.physics.mars_data import read_mars
 from studies.physics.mars_pictures import draw, setup_of
 from studies.physics.mars_pieces import cut
-from tests.recognition.test_mars_data import write_split
+from tests.studies.physics.test_mars_data import write_split
 
 
 def test_a_picture_is_drawn(tmp_path: Path):

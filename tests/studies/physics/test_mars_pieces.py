@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.recognition.mars_data import cloud_of, read_mars
+from studies.physics.mars_data import cloud_of, read_mars
 from studies.physics.mars_pieces import as_published, body_height_m, cut, pose_of
-from tests.recognition.test_mars_data import write_split
 from tests.rooms import STANDING_M
+from tests.studies.physics.test_mars_data import write_split
 
 
 def test_a_stretch_is_a_motion_of_somebody_as_tall(tmp_path: Path):

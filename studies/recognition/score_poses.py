@@ -12,9 +12,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.metrics.pose_errors import ALIGNMENTS, joint_errors_cm
 from mmweaver.models.point_frames import point_frames
-from mmweaver.recognition.mars_data import posed_recordings
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator
+from studies.physics.mars_data import posed_recordings
 
 Joints = Float[np.ndarray, "frame 22 3"]
 SPLITS = ("train", "validate", "test")

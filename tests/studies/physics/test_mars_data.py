@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.recognition.mars_data import joints_from_kinect, read_mars
+from studies.physics.mars_data import joints_from_kinect, read_mars
 from tests.rooms import STANDING_M
 
 KINECT = (
