@@ -151,18 +151,7 @@ class Weaver(RoomReader):
 
         Raises InputError for a request that cannot be met.
         """
-        request = parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
-        self._check_poses(request)
-        return request
-
-    def _check_poses(self, request: Request) -> None:
-        """Raises InputError for radars that the method's weights do not know."""
-        elsewhere = any(not pose.is_at_camera for pose in request.radar_poses)
-        if elsewhere and isinstance(self.method, Learned) and self.method.reads_fields:
-            raise InputError(
-                "fields of power (recipe paper_power) are counted from what a radar at the camera has before it; leave"
-                " out the weights, or choose physics, for radars elsewhere"
-            )
+        return parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
 
     def generate(
         self,
@@ -269,7 +258,6 @@ class Weaver(RoomReader):
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
         scenes = [scene_seen_from(room.scene, pose) for pose in poses]
-        self._check_poses(request)
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):

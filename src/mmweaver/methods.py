@@ -24,7 +24,7 @@ from mmweaver.paths.unresolved_clutter import seed_of_room
 
 if TYPE_CHECKING:
     from mmweaver.models.given_room import GivenRoom
-    from mmweaver.models.learned_paths import EchoNetwork, LearnedRoom
+    from mmweaver.models.learned_paths import LearnedRoom, ScattererNetwork
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 LEARNED_NOTE = UsualAssumption(
     "echoes of first order were written by a network trained on simulated rooms, others by physics; phases of surfaces"
     " and skin are sampled"
-)
-FIELDS_NOTE = (
-    "a hypernetwork wrote fields of power (recipe paper_power); each of their cells is a scatterer of sampled phase"
 )
 ELSEWHERE = (
     "the network was trained with radars at the camera; elsewhere it was measured to be about as near as physics"
@@ -176,14 +173,6 @@ class Learned:
         # what the network is given of a room is the same for every board with the same places of antennas
         self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, propagation))
 
-    @cached_property
-    def reads_fields(self) -> bool:
-        """Whether the weights are of recipe `paper_power`."""
-        from mmweaver.models.power_network import RECIPE
-        from mmweaver.models.weights import read_card
-
-        return self.weights is not None and read_card(self.weights).recipe == RECIPE
-
     def __call__(
         self,
         scene: Scene,
@@ -209,10 +198,9 @@ class Learned:
                 num_frames=num_frames,
             )  # fmt: skip
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
-        note = FIELDS_NOTE if room.reads_cells else LEARNED_NOTE
         moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
-        order = () if room.reads_cells else _of_order(self.propagation)
-        assumptions = (note, *order, *moved, *several, *_of_background(room.background))
+        order = _of_order(self.propagation)
+        assumptions = (LEARNED_NOTE, *order, *moved, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
     def _encode(
@@ -224,10 +212,10 @@ class Learned:
         return LearnedRoom(self._network, given, config, background=background, board=board)
 
     @cached_property
-    def _network(self) -> "EchoNetwork":
-        from mmweaver.models.weights import load_network, shipped_weights
+    def _network(self) -> "ScattererNetwork":
+        from mmweaver.models.weights import load_weights, shipped_weights
 
-        return load_network(self.weights or shipped_weights())[0]
+        return load_weights(self.weights or shipped_weights())[0]
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":

@@ -28,11 +28,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, Representations
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.power_network import PowerNetwork
+from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.models.weights import load_network, shipped_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
@@ -40,13 +39,15 @@ from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, batch_sampler
-from mmweaver.training.power_training import PowerRecipe, initial_power_network, measure_codes
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
 from studies.network.ablation_variants import HYPERNETWORK, VARIANTS, WHOLE, AblationVariant
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
+from studies.paper.power_method import load_power
+from studies.paper.power_network import PowerNetwork
+from studies.paper.power_training import PowerRecipe, initial_power_network, measure_codes
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -135,7 +136,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
     return learner
 
 
-def network_of(variant: AblationVariant) -> EchoNetwork:
+def network_of(variant: AblationVariant) -> ScattererNetwork:
     """The variant's network before training."""
     if variant.power:
         return initial_power_network(PowerRecipe(is_anchored=variant.power == "anchored"))
@@ -153,7 +154,7 @@ class _OneCode(nn.Module):
         return self.written.expand(*code.shape[:-1], -1)
 
 
-def with_one_code(network: EchoNetwork, generic: StoredRoom) -> EchoNetwork:
+def with_one_code(network: ScattererNetwork, generic: StoredRoom) -> ScattererNetwork:
     """The hypernetwork, which now writes the fields of one photo and of the first pose in that room for all."""
     assert isinstance(network, PowerNetwork)
     joints, velocity = (torch.from_numpy(one[0])[None] for one in (generic.joints_m, generic.joint_velocity_mps))
@@ -297,7 +298,8 @@ def _evaluator(
         shared = trained_as(variant)
         if shared not in trained_before:
             return trained(variant, material, runs / slug(shared), recipe)
-        network, _ = load_network(trained_before[shared])
+        file = trained_before[shared]
+        network, _ = load_power(file) if variant.power else load_weights(file)
         return NetworkLearner(network, material.cases[0].room.config)
 
     @cache

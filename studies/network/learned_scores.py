@@ -37,20 +37,22 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence, pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
-from mmweaver.models.weights import load_network, load_weights, read_card, shipped_weights
+from mmweaver.models.scatterer_network import ScattererNetwork
+from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation
 from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.power_training import PowerRecipe, initial_power_network
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method
+from studies.paper.power_method import FieldRoom, load_power
+from studies.paper.power_network import PowerNetwork
+from studies.paper.power_training import PowerRecipe, initial_power_network
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -151,7 +153,7 @@ def _simulated(
 
 
 def learned(
-    network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False,
+    network: ScattererNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False,
     board_of: BoardOf = ideal_board,
 ) -> Method:  # fmt: skip
     """The network with a photo, and with `recorded` as many frames of background recording as the sequence has.
@@ -165,7 +167,8 @@ def learned(
             empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER, board)
             board = board_seen_in(empty, board)
         room = reconstruct(room_of(case).photo)
-        learned_room = LearnedRoom(network, room, config, room_seed=1, background=empty, board=board)
+        room_type = FieldRoom if isinstance(network, PowerNetwork) else LearnedRoom
+        learned_room = room_type(network, room, config, room_seed=1, background=empty, board=board)
         return learned_room.cube([case.motion], seed=case.index)
 
     return method
@@ -339,7 +342,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         methods["paper"] = paper_method(options.paper)
         about["paper"] = read_card(options.paper).__dict__
     if options.power is not None:
-        power, power_card = load_network(options.power)
+        power, power_card = load_power(options.power)
         methods["paper_power"] = learned(power, lambda case: case.room)
         methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
         recipe = PowerRecipe(is_anchored=bool(power_card.settings.get("is_anchored", True)))

@@ -21,9 +21,9 @@ from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
@@ -67,7 +67,7 @@ def simulated(scene: Scene, case: Case, pose: RadarPose, *, other: int = OTHER) 
     return RadarCube(values=values, grid=CubeGrid.of(config, frames), config=config, scale=1.0)
 
 
-def learned(network: EchoNetwork, scene: Scene, case: Case, pose: RadarPose) -> RadarCube:
+def learned(network: ScattererNetwork, scene: Scene, case: Case, pose: RadarPose) -> RadarCube:
     """The network at a pose."""
     config = case.room.config
     room = LearnedRoom(network, scene_seen_from(scene, pose), config, room_seed=1)
@@ -75,14 +75,14 @@ def learned(network: EchoNetwork, scene: Scene, case: Case, pose: RadarPose) -> 
     return room.cube([motion], seed=case.index)
 
 
-def scores_of(case: Case, network: EchoNetwork, generic: Scene) -> Scores:
+def scores_of(case: Case, network: ScattererNetwork, generic: Scene) -> Scores:
     """{pose: {method: {column: value}}} of one room; `difference`: of the network less physics."""
     photographed = reconstruct(case.room.photo)
     return {name: _scores_at(pose, case, network, photographed, generic) for name, pose in POSES.items()}
 
 
 def _scores_at(
-    pose: RadarPose, case: Case, network: EchoNetwork, photographed: Scene, generic: Scene
+    pose: RadarPose, case: Case, network: ScattererNetwork, photographed: Scene, generic: Scene
 ) -> dict[str, dict[str, float]]:
     truth, found = simulated(case.true_scene, case, pose, other=0), {}
     made = {

@@ -26,7 +26,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import load_activity
-from mmweaver.models.echo_network import EchoNetwork
+from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -162,7 +162,9 @@ def true_by(board_of: BoardOf) -> Method:
     return lambda case: true_cube(case.room, case.index, case.seed_of_plan, board_of(case))
 
 
-def methods_of(network: EchoNetwork, generic: Scene, recorded_by: BoardOf, generated_by: BoardOf) -> dict[str, Method]:
+def methods_of(
+    network: ScattererNetwork, generic: Scene, recorded_by: BoardOf, generated_by: BoardOf
+) -> dict[str, Method]:
     """What is to be distinguished from the ground truth."""
     physics = partial(simulated, skin=OTHER, micro_seed=1, board_of=generated_by)
     return {

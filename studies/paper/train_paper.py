@@ -63,7 +63,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     place = ComputeDevice.chosen(options.device, options.precision)
     settings = {name: getattr(options, name) for name in (*SETTINGS, "validation_batches")}
     start = None if options.start is None else load_paper(find_weights(options.start)).state_dict()
-    with _progress_bar(options.steps, options.quiet or not place.is_first) as listener:
+    with progress_bar(options.steps, options.quiet or not place.is_first) as listener:
         trainer = train_paper(
             options.data, options.out, PaperRecipe(**settings), features=options.features, start=start,
             listener=listener, compute=place, tensorboard=options.tensorboard, save_every_s=options.save_every,
@@ -88,7 +88,7 @@ def validation_figures(trainer: Trainer) -> Figures:
 
 
 @contextmanager
-def _progress_bar(steps: int, is_quiet: bool) -> Iterator[Listener]:
+def progress_bar(steps: int, is_quiet: bool) -> Iterator[Listener]:
     """A listener that shows the loss of each step."""
     from tqdm import tqdm
 

@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 import torch
 from safetensors.torch import load_file
@@ -119,17 +118,3 @@ def kill_when(file: Path, processes: list[subprocess.Popen[str]]) -> None:
     for process in processes:
         process.kill()
         process.communicate(timeout=60)
-
-
-@pytest.mark.slow  # tests/training/test_power_training.py trains it, tests/models/test_power_network.py makes signals
-def test_fields_of_power_are_trained_then_generate(
-    tiny_geometry: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-):
-    run, out = tmp_path / "run", tmp_path / "out"
-    words = ["train", "paper_power", "--data", str(tiny_geometry), "--out", str(run), "--steps", "2", "--batch", "1"]
-    assert main([*words, "--json"]) == 0
-    weights = json.loads(capsys.readouterr().out)["weights"]
-    words = ["generate", "--demo", "--weights", weights, "--frames", "4", "--radar", "hupr", "--out", str(out)]
-    assert main([*words, "--text", "a person walks", "--quiet", "--no-pictures"]) == 0
-    with np.load(out / "radar.npz") as radar:
-        assert np.isfinite(radar["cube"]).all()

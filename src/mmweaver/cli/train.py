@@ -28,7 +28,6 @@ EXAMPLES = """examples:
   mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
   mmweaver train activity --data data/ --out activity/
-  mmweaver train paper_power --data light/ --out power/            # light/: of mmweaver dataset --geometry-only
   mmweaver train activity --data my_set/ --out recogniser/          # of mmweaver dataset --activities
   mmweaver train pose examples/tasks/mars_poses.toml --out model/   # then: mmweaver pose model/ --points log.dat
   mmweaver generate --demo --weights run/ --out woven/
@@ -46,9 +45,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "every validation OUT/pictures compares what it has learned with the ground truth.",
     )
     parser.add_argument(
-        "recipe", choices=("weaver", "activity", "paper_power", "pose"),
-        help="what is trained: the network; a recogniser of the activities of the data; the paper's hypernetwork with "
-        "fields of power as its target; or poses from points",
+        "recipe", choices=("weaver", "activity", "pose"),
+        help="what is trained: the network; a recogniser of the activities of the data; or poses from points",
     )  # fmt: skip
     parser.add_argument("task", type=Path, nargs="?", metavar="TASK.toml", help="of recipe pose: docs/pose.md")
     parser.add_argument(
@@ -190,8 +188,6 @@ def _check(arguments: argparse.Namespace) -> None:
 def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     if arguments.recipe == "activity":
         return _activity_on_data(arguments, place, is_quiet)
-    if arguments.recipe == "paper_power":
-        return _power_on_data(arguments, place, is_quiet)
     from mmweaver.training.network_training import TrainingRecipe, train, write_weights
 
     start, card = (None, None) if arguments.start is None else _start(arguments.start)
@@ -217,19 +213,6 @@ def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_
     scores = activity_scores(arguments.data, trainer)
     file = write_activity_weights(arguments.out, arguments.data, trainer, scores)
     return {"weights": str(file), **summary, "scores": scores}
-
-
-def _power_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    from mmweaver.training.power_training import PowerRecipe, train_power, write_power_weights
-
-    recipe = PowerRecipe(**_given(arguments))
-    start = None if arguments.start is None else train_recipes.power_start(arguments.start)
-    with _bar(recipe.steps, is_quiet) as listener:
-        trainer = train_power(
-            arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
-        )
-    file = write_power_weights(arguments.out, arguments.data, trainer) if place.is_first else None
-    return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
 
 
 def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""mmweaver train activity, paper_power and pose: what differs from mmweaver train weaver."""
+"""mmweaver train activity and pose: what differs from mmweaver train weaver."""
 
 import argparse
 from typing import TYPE_CHECKING, Any
@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from torch import Tensor
-
     from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Trainer
 
@@ -72,14 +70,3 @@ def train_on_data(
     return train_activity(
         arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **options
     )
-
-
-def power_start(source: str) -> "dict[str, Tensor]":
-    """Weights of recipe `paper_power` to start from. Raises InputError for others."""
-    from mmweaver.models.find_weights import find_weights
-    from mmweaver.models.power_network import RECIPE, PowerNetwork
-    from mmweaver.models.weights import load_into
-
-    network = PowerNetwork()
-    load_into(network, find_weights(source), recipe=RECIPE)
-    return network.state_dict()

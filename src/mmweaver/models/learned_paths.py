@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import torch
@@ -21,16 +22,15 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_second_order import second_order_paths
-from mmweaver.models.power_network import PowerNetwork
+from mmweaver.models.scatterer_network import ScattererNetwork
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.apparent_paths import signal_points, static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
-from mmweaver.paths.cell_echoes import CellEchoes
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower
@@ -38,7 +38,6 @@ from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
 from mmweaver.paths.random_phases import (
     place_of,
-    sample_cells,
     sample_moving,
     sample_moving_segments,
     sample_static,
@@ -61,7 +60,7 @@ class LearnedRoom:
 
     def __init__(
         self,
-        network: EchoNetwork,
+        network: ScattererNetwork,
         room: Scene | GivenRoom,
         config: RadarConfig,
         *,
@@ -85,10 +84,9 @@ class LearnedRoom:
             at_range = self.board.noise_gain(share).astype(np.float32)
             self._noise_factor = at_range[:, None, None] * self._noise_factor
         with torch.inference_mode(), one_thread():
-            self.code = network.encode_for(self.given.view[None].to(device), config)
-            echoes = self.code.static[0].to("cpu")
-            static = [sample_static(echoes, config, room_seed), *([] if self.reads_cells else [self.given.others])]
-            self.static = strongest_first(StaticPaths.cat(static))
+            self.code = self._encoded(self.given.view[None].to(device))
+            static = sample_static(self.code.static[0].to("cpu"), config, room_seed)
+            self.static = strongest_first(StaticPaths.cat([static, self.given.others]) if self.has_others else static)
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
             if self.board is not None:
@@ -110,10 +108,10 @@ class LearnedRoom:
                     self._layer_rate = self._layer_rate + self.renderer.leakage(*self.board.leakage_rate)
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
 
-    @property
-    def reads_cells(self) -> bool:
-        """Whether echoes are cells of a field rather than places on bodies."""
-        return isinstance(self.network, PowerNetwork)
+    has_others = True  # paths that the network has not learned follow from physics: second order and clutter
+
+    def _encoded(self, view: SceneTensors) -> Any:
+        return self.network.encode_room(view)
 
     def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
         """Paths of the room and of everybody, who occlude the room and each other."""
@@ -128,7 +126,7 @@ class LearnedRoom:
         moving = [
             self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions
         ]
-        has_second = self.given.traced.propagation.bounces > 1 and not self.reads_cells
+        has_second = self.given.traced.propagation.bounces > 1 and self.has_others
         if has_second and of_second_order:
             moving.append(second_order_paths(self.given.traced, motions, self.renderer.clock))
         noticed_m = self.static.departure_vertex_m[: self._num_noticed]
@@ -163,30 +161,32 @@ class LearnedRoom:
             for index, one in enumerate(each)
         ]
         echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
-        if isinstance(echoes, CellEchoes):
-            frame_s = (first_frame + torch.arange(len(joints)).double()) * self.config.frame_period_s
-            time_s = frame_s[:, None] + torch.from_numpy(clock.middle_s)
-            return sample_cells(echoes, time_s, self.config, motion.subject)
-        sight = aspect(joints.flatten(0, 1)).unflatten(0, (-1, count))
+        return self._sampled(echoes, joints, motion.subject, first_frame)
+
+    def _sampled(self, echoes: MeanEchoes, joints_m: Tensor, subject: int, first_frame: int) -> Paths:
+        """Echoes (frame, segment, echo) of a person with phases, as paths (frame * segment, path)."""
+        count = joints_m.shape[1]
+        sight = aspect(joints_m.flatten(0, 1)).unflatten(0, (-1, count))
         if count == 1:
-            paths = sample_moving(echoes[:, 0], sight[:, 0], self.config, motion.subject)
-            return self._from_reference(paths)
-        middle_s = torch.from_numpy(clock.middle_s)
-        return sample_moving_segments(echoes, sight, middle_s, self.config, motion.subject)
+            return self._from_reference(sample_moving(echoes[:, 0], sight[:, 0], self.config, subject))
+        middle_s = torch.from_numpy(self.renderer.clock.middle_s)
+        return sample_moving_segments(echoes, sight, middle_s, self.config, subject)
 
     def _shown(self, echoes: MeanEchoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
         """1 where nobody else stands before an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
 
         A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
         """
-        ends_m = place_of(echoes).float()
-        if not isinstance(echoes, CellEchoes):
-            reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
-            ends_m = torch.cat([ends_m[:, :NUM_ANCHORS], reflected_m], dim=1)
+        ends_m = self._ends_m(echoes, joints_m)
         hidden = torch.zeros(ends_m.shape[:2], dtype=torch.bool)
         for other_m in others_m:
             hidden |= occluded(ends_m, other_m)
         return (~hidden).float()
+
+    def _ends_m(self, echoes: MeanEchoes, joints_m: Tensor) -> Tensor:
+        """Places (frame, echo, 3) that others must leave in view for an echo to be there."""
+        reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
+        return torch.cat([place_of(echoes).float()[:, :NUM_ANCHORS], reflected_m], dim=1)
 
     def _from_reference(self, paths: Paths) -> Paths:
         """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""

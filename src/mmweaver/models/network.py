@@ -32,10 +32,10 @@ from mmweaver.models.body_anchors import (
     ghost_anchors,
 )
 from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_CHANNELS, Z_ENV
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
+from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
 from mmweaver.paths.mean_echoes import MeanEchoes
 
@@ -58,7 +58,7 @@ class SceneEncoding(TensorRecord):
     static: MeanEchoes
 
 
-class WeaverNetwork(EchoNetwork):
+class WeaverNetwork(ScattererNetwork):
     """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion.
 
     `without` leaves parts out (`PARTS`), to see what they are worth. `encoder` names the environment encoder.

@@ -20,10 +20,10 @@ from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.power_network import RECIPE, PowerNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1
+POWER_RECIPE = "paper_power"
 SHIPPED = "weaver.safetensors"
 WEIGHTS_FILE = "weights.safetensors"  # in a folder of mmweaver train, and in a repository on the Hub
 
@@ -59,19 +59,13 @@ def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: boo
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
     """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
-    network, card = load_network(file)
-    if not isinstance(network, WeaverNetwork):
-        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train weaver")
-    return network, card
-
-
-def load_network(file: Path) -> tuple[WeaverNetwork | PowerNetwork, WeightsCard]:
-    """The same for every recipe that generates signals."""
     card, tensors = _read(file)
-    if card.recipe == RECIPE:
-        network = PowerNetwork(is_anchored=bool(card.settings.get("is_anchored", True)))
-    else:
-        network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
+    if card.recipe == POWER_RECIPE:
+        raise InputError(
+            f"{file} holds weights of recipe {POWER_RECIPE!r}, which studies alone read; give those of: mmweaver train"
+            " weaver"
+        )
+    network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
     _fill(network, file, tensors)
     return network, card
 

@@ -69,18 +69,6 @@ range-azimuth maps in decibels above the receiver's noise. It evaluates generate
 of the paper's perceptual loss.""",
     limits="- One radar ({radar}); its maps are scaled by that radar's constants; other radars need other weights.",
 )
-POWER = Page(
-    unit="dB",
-    about="""The paper's idea with a target that can be learnt: a photo of a room with depth and a person's joints in,
-fields of radar cross section out, implicit neural representations that a hypernetwork writes. Read at the cells of any
-radar; each cell becomes a scatterer of sampled phase. Kept to be compared with; recipe weaver is nearer to the truth.
-
-    mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --weights . --out walk/""",
-    limits="""- Read together with photo and joints, from which its coordinates are counted; radars at the camera alone.
-- The person's reflections in walls are not there.
-- Details finer than 5 cm, 0.28 m/s and an eighth of a cosine are smooth, whatever radar reads them.
-- One radar ({radar}); others read the same fields and have not been evaluated.""",
-)
 
 
 def model_card(

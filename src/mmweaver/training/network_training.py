@@ -13,10 +13,10 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.version import __version__
 from mmweaver.datasets.dataset_store import plan_text, read_plan
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.precision import exactly
+from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
@@ -49,7 +49,7 @@ class NetworkLearner(Learner):
 
     def __init__(
         self,
-        network: EchoNetwork,
+        network: ScattererNetwork,
         config: RadarConfig,
         shown: Callable[[], NetworkBatch] | None = None,
     ):
@@ -184,7 +184,7 @@ def card_of(trainer: Trainer, dataset_sha256: str, **more: str) -> WeightsCard:
     )  # fmt: skip
 
 
-def compare_with_start(trainer: Trainer, start: EchoNetwork) -> Figures:
+def compare_with_start(trainer: Trainer, start: ScattererNetwork) -> Figures:
     """Mean map differences in dB on the validation batches: network, initial weights, and empty maps."""
     learner = trainer.learner
     assert isinstance(learner, NetworkLearner)

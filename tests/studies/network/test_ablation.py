@@ -7,8 +7,6 @@ import pytest
 import torch
 
 from mmweaver.models.network import PARTS, WeaverNetwork
-from mmweaver.models.power_field import NUM_WRITTEN
-from mmweaver.models.power_network import PowerNetwork
 from mmweaver.training.network_training import TrainingRecipe
 from studies.network.ablation import (
     COLUMNS,
@@ -25,6 +23,8 @@ from studies.network.ablation import (
     with_one_code,
 )
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
+from studies.paper.power_field import NUM_WRITTEN
+from studies.paper.power_network import PowerNetwork
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("blank_training_pictures")

@@ -10,7 +10,7 @@ from torch import Tensor, nn
 LEAST_SPREAD = 1e-3  # of the largest: directions that differ less are left out
 
 
-class CodeWhitening(nn.Module):
+class PcaWhitening(nn.Module):
     """Codes (..., size) -> their first `count` principal components (..., count), of unit spread over samples.
 
     Mean and directions are measured once, by `measure`, and not trained; until then the first values are passed on.

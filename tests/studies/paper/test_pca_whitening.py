@@ -2,7 +2,7 @@
 
 import torch
 
-from mmweaver.models.code_whitening import CodeWhitening
+from studies.paper.pca_whitening import PcaWhitening
 
 
 def _codes(samples: int) -> torch.Tensor:
@@ -13,7 +13,7 @@ def _codes(samples: int) -> torch.Tensor:
 
 def test_each_component_has_unit_spread_and_none_follows_from_another():
     codes = _codes(400)
-    whitening = CodeWhitening(12, 4)
+    whitening = PcaWhitening(12, 4)
     whitening.measure(codes)
     white = whitening(codes)
     assert torch.allclose(white.mean(0), torch.zeros(4), atol=1e-3)
@@ -22,14 +22,14 @@ def test_each_component_has_unit_spread_and_none_follows_from_another():
 
 
 def test_directions_that_samples_do_not_show_are_left_out():
-    whitening = CodeWhitening(12, 4)
+    whitening = PcaWhitening(12, 4)
     whitening.measure(_codes(3))
     assert whitening.directions.abs().sum(0).gt(0).tolist() == [True, True, False, False]
     assert whitening(5 + torch.ones(2, 12)).isfinite().all()
 
 
 def test_it_is_kept_with_the_weights():
-    measured, read = CodeWhitening(12, 4), CodeWhitening(12, 4)
+    measured, read = PcaWhitening(12, 4), PcaWhitening(12, 4)
     measured.measure(_codes(50))
     read.load_state_dict(measured.state_dict())
     assert torch.equal(read(_codes(5)), measured(_codes(5)))

@@ -3,18 +3,21 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
+from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.models.environment_encoder import Z_ENV
-from mmweaver.models.power_network import RECIPE, PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.models.weights import load_network, load_weights, shipped_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.network_examples import examples
 from mmweaver.training.network_training import NetworkLearner
-from mmweaver.training.power_training import PowerRecipe, train_power, write_power_weights
 from mmweaver.training.reflection_augmentation import reflected_scene
+from studies.paper.power_method import PowerFields, load_power
+from studies.paper.power_network import RECIPE, PowerNetwork
+from studies.paper.power_training import PowerRecipe, train_power, write_power_weights
 
 pytest.importorskip("zarr")
 pytestmark = pytest.mark.usefixtures("blank_training_pictures")
@@ -23,7 +26,7 @@ TINY = PowerRecipe(steps=1, batch_size=1, frames=2, validate_every=1, validation
 
 def test_one_step_trains_and_its_weights_are_read_back(tiny_geometry: Path, tmp_path: Path):
     trainer = train_power(tiny_geometry, tmp_path, TINY)
-    network, card = load_network(write_power_weights(tmp_path, tiny_geometry, trainer))
+    network, card = load_power(write_power_weights(tmp_path, tiny_geometry, trainer))
     assert isinstance(network, PowerNetwork)
     assert (card.recipe, card.steps) == (RECIPE, 1)
     own = trainer.learner.state_dict()["network.person.layers.0.weight"]
@@ -33,6 +36,9 @@ def test_one_step_trains_and_its_weights_are_read_back(tiny_geometry: Path, tmp_
     assert all(row in page for row in ("this network", "initial weights", "empty maps"))
     with pytest.raises(InputError, match="give those of: mmweaver train weaver"):
         load_weights(tmp_path / "weights.safetensors")
+    weaver = Weaver(PowerFields(tmp_path / "weights.safetensors"))
+    made = weaver.generate(weaver.sample_room(), "a person walks", frames=2)
+    assert np.isfinite(made.cube.values).all()
 
 
 def _is_the_encoder_of_weaver(network: PowerNetwork) -> bool:

@@ -4,12 +4,11 @@ from typing import Any
 
 from torch import Tensor, nn
 
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_echoes import MeanEchoes
 
 
-class EchoNetwork(nn.Module):
+class ScattererNetwork(nn.Module):
     """`encode_room` once a room, then `moving` for each motion. The room's code is the network's own record.
 
     Its `view` (SceneTensors) and `static` (MeanEchoes) are for everybody.
@@ -18,10 +17,6 @@ class EchoNetwork(nn.Module):
     def encode_room(self, view: SceneTensors) -> Any:
         """Rooms (room, ...) -> their code, with static echoes (room, echo)."""
         raise NotImplementedError
-
-    def encode_for(self, view: SceneTensors, config: RadarConfig) -> Any:
-        """The same, for one radar; only networks that read fields cell by cell need to know it."""
-        return self.encode_room(view)
 
     def moving(self, code: Any, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None) -> MeanEchoes:
         """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo)."""

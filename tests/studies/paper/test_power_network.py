@@ -11,10 +11,10 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
-from mmweaver.models.power_cells import CellSizes
-from mmweaver.models.power_network import PowerEncoding, PowerNetwork
 from mmweaver.scene.procedural.procedural_room import make_room
+from studies.paper.power_cells import CellSizes
+from studies.paper.power_method import FieldRoom
+from studies.paper.power_network import PowerEncoding, PowerNetwork
 from tests.rooms import standing_person
 
 BLOB = torch.tensor([2.2, 1.1, 0.25, 0.0])  # range, velocity, direction cosines
@@ -40,7 +40,7 @@ def _cube(network: PowerNetwork, scene: Scene, config: RadarConfig, frames: int 
     torch.manual_seed(0)
     pose = standing_person((0.5, 2.1, -1.0), (0.0, 1.0, 0.0))
     motion = FrameMotion.of(replace(pose, subject=1), config, frames)
-    return LearnedRoom(network.eval(), scene, config).cube([motion], seed=0)
+    return FieldRoom(network.eval(), scene, config).cube([motion], seed=0)
 
 
 def test_the_signal_is_where_its_cells_are(scene: Scene):
@@ -94,6 +94,6 @@ def test_a_field_read_finer_holds_as_much(scene: Scene):
 
 def test_no_more_numbers_than_the_papers():
     """A sequence of 20 frames: the room's field once, the person's for each frame."""
-    from mmweaver.models.power_field import NUM_WRITTEN
+    from studies.paper.power_field import NUM_WRITTEN
 
     assert 21 * NUM_WRITTEN < 10_018

@@ -19,13 +19,16 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor, nn
 
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.geometry.pinhole import pixel_coordinates
-from mmweaver.models.code_whitening import CodeWhitening
-from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
-from mmweaver.models.power_anchors import (
+from mmweaver.models.precision import in_full_precision
+from mmweaver.models.scatterer_network import ScattererNetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.cell_echoes import CellEchoes
+from mmweaver.paths.mean_echoes import MeanEchoes
+from studies.paper.pca_whitening import PcaWhitening
+from studies.paper.power_anchors import (
     BODY_VALUES,
     HEADS,
     SURFACE_VALUES,
@@ -36,12 +39,8 @@ from mmweaver.models.power_anchors import (
     surface_values,
     surface_volume,
 )
-from mmweaver.models.power_cells import REACH, WIDEST, CellSizes
-from mmweaver.models.power_field import FieldWriter, PowerField, octave_size, octaves
-from mmweaver.models.precision import in_full_precision
-from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.cell_echoes import CellEchoes
-from mmweaver.paths.mean_echoes import MeanEchoes
+from studies.paper.power_cells import REACH, WIDEST, CellSizes
+from studies.paper.power_field import FieldWriter, PowerField, octave_size, octaves
 
 RECIPE = "paper_power"
 ROOM_OCTAVES, PERSON_OCTAVES = (7, 6, 4, 4), (6, 6, 4, 4)
@@ -71,7 +70,7 @@ class PowerEncoding:
     static: MeanEchoes  # (room, cell)
 
 
-class PowerNetwork(EchoNetwork):
+class PowerNetwork(ScattererNetwork):
     """Rooms and motions -> mean echoes of cells; `encode_room` once a room, then `moving` for each motion.
 
     Without `anchored`, coordinates are those of the radar alone, as in the paper.
@@ -83,7 +82,7 @@ class PowerNetwork(EchoNetwork):
         self.environment, self.pose = EnvironmentEncoder(), PoseEncoder()
         for encoder in (self.environment, self.pose):
             encoder.requires_grad_(False)
-        self.env_whitening, self.pose_whitening = CodeWhitening(Z_ENV, ENV_PARTS), CodeWhitening(Z_POSE, POSE_PARTS)
+        self.env_whitening, self.pose_whitening = PcaWhitening(Z_ENV, ENV_PARTS), PcaWhitening(Z_POSE, POSE_PARTS)
         self.room_writer, self.person_writer = FieldWriter(ENV_PARTS), FieldWriter(ENV_PARTS + POSE_PARTS)
         self.nearness = BodyNearness()
         self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES + SURFACE_VALUES)
@@ -117,9 +116,6 @@ class PowerNetwork(EchoNetwork):
             cross_section_m2=level.exp() * code.sizes.room_share,
         )  # fmt: skip
         return replace(code, static=static)
-
-    def encode_for(self, view: SceneTensors, config: RadarConfig) -> PowerEncoding:
-        return self.encode_room(view, CellSizes.of(config))
 
     def room_level(self, code: PowerEncoding, at: Tensor) -> Tensor:
         """Logarithm of the cross section (m2) of reference cells at rest at (room, place, 3) -> (room, place)."""
