@@ -28,7 +28,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, Representations
-from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
@@ -42,6 +41,7 @@ from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, 
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
+from studies.network.ablated_network import AblatedNetwork
 from studies.network.ablation_variants import HYPERNETWORK, VARIANTS, WHOLE, AblationVariant
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
@@ -140,7 +140,7 @@ def network_of(variant: AblationVariant) -> ScattererNetwork:
     """The variant's network before training."""
     if variant.power:
         return initial_power_network(PowerRecipe(is_anchored=variant.power == "anchored"))
-    return WeaverNetwork(without=variant.without)
+    return AblatedNetwork(variant.without)
 
 
 class _OneCode(nn.Module):

@@ -10,23 +10,18 @@ nobody can know them. Geometry (where a joint is, how the radar equation falls w
 Reference: paper, section "Generalization via Hypernetworks".
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import pixel_coordinates
-from mmweaver.models.ablations import flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
     GHOST_FEATURES,
-    MIRRORED,
     NUM_ANCHORS,
     NUM_GHOSTS,
-    NUM_REFLECTORS,
     Anchors,
     body_anchors,
     ghost_anchors,
@@ -40,13 +35,9 @@ from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneT
 from mmweaver.paths.mean_echoes import MeanEchoes
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
-PARTS = (
-    "faces", "ghosts", "correction", "colour", "depth", "mask", "room prior", "body prior", "between joints", "steps",
-)  # fmt: skip # that can be left out
-PICTURE = {"colour", "depth", "mask"}
-LARGEST_STEP = 12.0  # of a logarithm of power
+MAX_STEP = 12.0  # of a logarithm of power
 FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
-LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
+MAX_CORRECTION = 2.0  # the same, of the strength that physics predicts for the photographed room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,17 +50,18 @@ class SceneEncoding(TensorRecord):
 
 
 class WeaverNetwork(ScattererNetwork):
-    """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion.
+    """Rooms and motions -> mean echoes. `encode_room` once per room, then `moving` for each motion.
 
-    `without` leaves parts out (`PARTS`), to see what they are worth. `encoder` names the environment encoder.
+    Args:
+        corrects_surfaces: Whether the network changes the strength that physics predicts for photographed surfaces.
+        encoder: Name of the environment encoder.
     """
 
-    def __init__(self, without: Iterable[str] = (), encoder: str = DEFAULT_ENCODER) -> None:
+    max_correction = MAX_CORRECTION
+
+    def __init__(self, *, corrects_surfaces: bool = True, encoder: str = DEFAULT_ENCODER) -> None:
         super().__init__()
-        self.without = frozenset(without)
-        unknown = self.without - set(PARTS)
-        if unknown:
-            raise InputError(f"unknown parts {', '.join(sorted(unknown))}; known: {', '.join(PARTS)}")
+        self.corrects_surfaces = corrects_surfaces
         self.environment = ENCODERS[encoder]()
         self.pose = PoseEncoder()
         self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
@@ -90,8 +82,7 @@ class WeaverNetwork(ScattererNetwork):
 
     def encode_room(self, view: SceneTensors) -> SceneEncoding:
         """Rooms (room, ...) -> their code; static echoes (room, echo)."""
-        z_env, places = self.environment(self._shown(view.image))
-        view = uniform_surfaces(view) if "room prior" in self.without else view
+        z_env, places = self.environment(view.image)
         parts = [self._points(view, places), self._faces(view)]
         return SceneEncoding(view=view, z_env=z_env, static=MeanEchoes.cat(parts, 1))
 
@@ -105,50 +96,37 @@ class WeaverNetwork(ScattererNetwork):
         z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
         if frames is not None:
             z_pose, joints_m, velocity_mps = (_picked(part, frames) for part in (z_pose, joints_m, velocity_mps))
-        body = body_anchors(joints_m, velocity_mps, code.view)
-        prior = body_prior(joints_m)
-        prior = flat_body(prior) if "body prior" in self.without else prior
-        if "between joints" in self.without:
-            body, prior = joints_alone(body, prior)
-        ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
+        body, ghosts, prior = self.anchors(joints_m, velocity_mps, code.view)
         physics = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
         of_body = self.body_in(torch.cat([body.features, physics], dim=-1))
         token = torch.cat([of_body, self.ghost_in(ghosts.features)], dim=-2) + self.part
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
-        if "ghosts" in self.without:
-            ghosts = replace(ghosts, share=0 * ghosts.share)
-        said = level_alone(self.out(mixed)) if "steps" in self.without else self.out(mixed)
-        return _placed(said, body, ghosts, prior, ghost_section(joints_m, prior))
+        return _placed(self.steps(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
 
-    def _shown(self, image: Tensor) -> Tensor:
-        kept = torch.ones(image.shape[1], device=image.device)
-        for name, channels in (("colour", [0, 1, 2]), ("depth", [3]), ("mask", [4])):
-            if name in self.without:
-                kept[channels] = 0.0
-        if self.without >= PICTURE:  # of an even black, group norms have gradients without end
-            return torch.full_like(image, 0.5)
-        return image * kept[:, None, None]
+    def anchors(self, joints_m: Tensor, velocity_mps: Tensor, view: SceneTensors) -> tuple[Anchors, Anchors, BodyPrior]:
+        """Anchors of direct echoes and of ghosts, and the strength of the body by physics."""
+        body, ghosts = body_anchors(joints_m, velocity_mps, view), ghost_anchors(joints_m, velocity_mps, view)
+        return body, ghosts, body_prior(joints_m)
+
+    def steps(self, mixed: Tensor) -> Tensor:
+        """Features (..., echo, WIDTH) -> level, and steps in range, velocity and direction (..., echo, 5)."""
+        return self.out(mixed)
 
     def _points(self, view: SceneTensors, places: Tensor) -> MeanEchoes:
         local = _looked_up(places, view.point_m, view)
         level = self.point(torch.cat([view.point_features, local], dim=-1))[..., 0]
         distance = view.point_m.norm(dim=-1).clamp(min=0.1)
-        if "correction" in self.without:
-            level = 0 * level
-        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, self._largest_correction))
+        level = level if self.corrects_surfaces else 0 * level
+        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, self.max_correction))
         return _static(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
-
-    @property
-    def _largest_correction(self) -> float:
-        return LARGEST_STEP if "room prior" in self.without else LARGEST_CORRECTION
 
     def _faces(self, view: SceneTensors) -> MeanEchoes:
         """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
         level = self.face(view.plane_features)[..., 0]
         normal = view.plane_axes[..., 2, :]
         distance = -(view.plane_centre_m * normal).sum(-1)
-        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0) & ("faces" not in self.without)
+        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0)
         cross_section = there * torch.exp(_bounded(level) - 8.0)
         return _static(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
 
@@ -191,7 +169,7 @@ def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, of_gh
     )
 
 
-def _bounded(level: Tensor, largest: float = LARGEST_STEP) -> Tensor:
+def _bounded(level: Tensor, largest: float = MAX_STEP) -> Tensor:
     return largest * torch.tanh(level / largest)
 
 
@@ -199,6 +177,3 @@ def _mlp(wide_in: int, hidden: int, wide_out: int) -> nn.Sequential:
     return nn.Sequential(
         nn.Linear(wide_in, hidden), nn.GELU(), nn.Linear(hidden, hidden), nn.GELU(), nn.Linear(hidden, wide_out)
     )
-
-
-assert len(MIRRORED) * NUM_REFLECTORS == NUM_GHOSTS

@@ -56,7 +56,7 @@ class CaptureRecipe(TrainingRecipe):
     validate_every: int = 25
     validation_batches: int = 4
     patience: int = 6
-    without: tuple[str, ...] = ()  # static surfaces of the captured room may be learned
+    corrects_surfaces: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ class TrainingRecipe(LoopRecipe):
     batch_size: int = 3  # sequences, each of a different room
     frames: int = 8  # sampled from each sequence
     mirror: bool = True  # reflect every second batch left-right
-    without: tuple[str, ...] = ("correction",)  # parts of the network left to physics
+    corrects_surfaces: bool = False  # whether the strength of photographed surfaces is learned, or left to physics
     encoder: str = DEFAULT_ENCODER  # environment encoder, a name in ENCODERS
 
 
@@ -129,9 +129,10 @@ def train(
 
 
 def initial_network(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNetwork:
-    """The network that training starts from; the recipe may switch off parts of it."""
+    """The network that training starts from."""
+    assert isinstance(recipe, TrainingRecipe), "a recipe of this network"
     torch.manual_seed(recipe.seed)
-    network = WeaverNetwork(recipe.without, recipe.encoder) if isinstance(recipe, TrainingRecipe) else WeaverNetwork()
+    network = WeaverNetwork(corrects_surfaces=recipe.corrects_surfaces, encoder=recipe.encoder)
     if start is not None:
         network.load_state_dict(start)
     return network

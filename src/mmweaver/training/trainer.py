@@ -267,12 +267,12 @@ class BestValidation:
         return {"recipe": self.recipe, "value": self.value, "since": self.since, "figures": self.figures}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        # settings unknown to an earlier version had today's defaults; a constant rate may be extended
-        before = {**self.recipe, **state["recipe"]}
+        # settings that another version does not have were those of today; a constant rate may be extended
+        before = {name: state["recipe"].get(name, value) for name, value in self.recipe.items()}
         if not self.recipe.get("is_cosine", True):
             before["steps"] = self.recipe["steps"]
-        others = [name for name, value in before.items() if value != self.recipe.get(name)]
+        others = [name for name, value in before.items() if value != self.recipe[name]]
         if others:
-            differing = ", ".join(f"{name} {before[name]}, not {self.recipe.get(name)}" for name in others)
+            differing = ", ".join(f"{name} {before[name]}, not {self.recipe[name]}" for name in others)
             raise InputError(f"it has other settings: {differing[:200]}")
         self.value, self.since, self.figures = state["value"], state["since"], state.get("figures", {})

@@ -5,13 +5,20 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.models.ablations import FLAT_M2, STRENGTH, flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import NUM_ANCHORS, body_anchors
 from mmweaver.models.body_prior import body_prior
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.procedural.procedural_room import make_room
+from studies.network.ablated_network import (
+    FLAT_M2,
+    STRENGTH,
+    AblatedNetwork,
+    flat_body,
+    joints_alone,
+    level_alone,
+    uniform_surfaces,
+)
 from tests.rooms import standing_person
 
 
@@ -65,7 +72,7 @@ def test_leaving_a_part_out_changes_what_it_is_about(
     echoes = []
     for without in ((), (part,)):
         torch.manual_seed(0)
-        network = WeaverNetwork(without=without).eval()
+        network = AblatedNetwork(without).eval()
         with torch.inference_mode():
             code = network.encode_room(view)
             echoes.append((code.static.cross_section_m2, network.moving(code, *motion).cross_section_m2))
@@ -79,7 +86,7 @@ def test_leaving_a_part_out_changes_what_it_is_about(
 
 def test_without_a_picture_gradients_are_numbers(view: SceneTensors):
     torch.manual_seed(0)
-    network = WeaverNetwork(without=("colour", "depth", "mask"))
+    network = AblatedNetwork(("colour", "depth", "mask"))
     network.encode_room(view).z_env.square().mean().backward()
     gradients = [parameter.grad for parameter in network.environment.parameters() if parameter.grad is not None]
     assert gradients
