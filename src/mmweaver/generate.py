@@ -372,7 +372,7 @@ def compose_request(request: Request, scene: Scene) -> tuple[Motion, ...]:
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
-    from mmweaver.models.find_weights import find_weights
+    from mmweaver.models.hub import find_weights
 
     return find_weights(weights, revision=revision)
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from mmweaver.models.find_weights import find_weights
+from mmweaver.models.hub import find_weights
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import Figures, Page
 from mmweaver.training.recipe_weights import write_recipe_weights

@@ -11,7 +11,6 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from mmweaver.recognition.confusion_picture import confusion_picture, usual_windows
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.task_file import read_task
@@ -19,6 +18,7 @@ from mmweaver.recognition.train_recogniser import fitted
 from mmweaver.recognition.training_windows import TrainingOptions, generated_windows
 from studies.manifest import StudyRun
 from studies.recognition.blind_recognition import TASKS, add_task_options, recordings_of
+from studies.recognition.confusion_picture import confusion_picture, usual_windows
 from studies.recognition.zero_shot_pictures import draw
 
 RANGES_M, WIDE = (0.5, 4.0), 1.7
@@ -47,4 +47,4 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     draw(median_windows(real), median_windows(made), place, seconds=seconds, ranges_m=RANGES_M, wide=WIDE)
     model = fitted(generated_windows(sequences, task, TrainingOptions()), [], task, TrainingOptions())
     place = options.out / f"recognise_{options.task}_confusions.png"
-    print(confusion_picture(model, options.sequences, recordings, place))
+    print(confusion_picture(model, sequences, recordings, place))

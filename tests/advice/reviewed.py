@@ -18,7 +18,6 @@ REVIEWED: dict[str, str] = {
             "recognise □ needs --□",
             "--□ is no option of recognise",
             "--labelled is no option of recognise",
-            "--picture is no option of recognise",
             "--workers must be 1 to 64",
             "(--verbose prints □)",
             "--□ must be 1 or more",

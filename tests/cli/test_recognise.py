@@ -3,7 +3,6 @@
 import io
 import json
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,6 @@ pytest.importorskip("sklearn")
 from mmweaver.cli.main import main
 from mmweaver.cli.recognise_text import confused_lines
 from mmweaver.recognition import train_recogniser as training
-from mmweaver.recognition.generated_sequences import _write
 from mmweaver.recognition.recogniser import load_recogniser
 from tests.formats.point_clouds.test_read_points import out_of_box
 from tests.recognition.small_recogniser import drawn_sequences, write_recordings
@@ -54,24 +52,6 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b"Frame,X,Y,Z,Doppler\n0,0,2,0,0\n25,0,2,0,0\n")))
     assert main(["recognise", "run", str(model), "--points", "-"]) == 0
     assert "0.0 s" in capsys.readouterr().out
-
-
-def test_confusions_are_drawn_from_the_sequences_that_trained(model: Path, capsys: pytest.CaptureFixture[str]):
-    """A folder calls those who move at rest, so they are mistaken."""
-    settings = load_recogniser(model).settings
-    moved = next(label for label in settings.labels if label != "rest")
-    people = [one for one in drawn_sequences(settings, 2, first=30) if one.label == moved]
-    write_recordings(model.parent / "people", [replace(one, label="rest") for one in people])
-    words = ["recognise", "score", str(model), "--recordings", str(model.parent / "people"), "--picture"]
-    assert main([*words, str(model.parent / "seen.png")]) == 2
-    assert "sequences that the recogniser learned from" in capsys.readouterr().err
-    for index, one in enumerate(drawn_sequences(settings, 2)):
-        _write(model / "sequences" / f"{settings.labels.index(one.label):03d}_{index:05d}.npz", one)
-    assert main([*words, str(model.parent / "seen.png")]) == 0
-    assert "balanced accuracy" in capsys.readouterr().out
-    assert (model.parent / "seen.png").read_bytes()[:4] == b"\x89PNG"
-    assert main([*words, str(model.parent / "seen.jpg")]) == 2
-    assert main(["recognise", "run", str(model), "--points", "x.npz", "--picture", "seen.png"]) == 2
 
 
 def test_the_largest_confusions_of_generated_people_are_named():

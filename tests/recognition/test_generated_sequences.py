@@ -11,7 +11,6 @@ from mmweaver.recognition.generated_sequences import (
     SequenceRecipe,
     generate_sequence,
     generate_sequences,
-    stored_sequences,
 )
 from mmweaver.recognition.subject_simulation import PerformancePrior, performer
 from mmweaver.recognition.task_file import read_task
@@ -52,8 +51,6 @@ def test_sequences_are_kept_and_the_same_again(recipe: SequenceRecipe, tmp_path:
     for one, other in zip(made, again, strict=True):
         assert np.allclose(one.cloud.y_m, other.cloud.y_m, atol=1e-5)
         assert one.num_frames == other.num_frames
-    kept = stored_sequences(tmp_path, recipe.task.recordings)
-    assert [one.label for one in kept] == [one.label for one in made], "by label and number, whatever the disk's order"
     monkeypatch.setattr(generated_sequences, "VERSION", 0)
     with pytest.raises(InputError, match="another task or seed"):
         generate_sequences(recipe, 1, tmp_path)

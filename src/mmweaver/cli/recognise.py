@@ -8,13 +8,11 @@ from typing import Any
 
 from mmweaver.cli.arguments import whole
 from mmweaver.core.errors import InputError
-from mmweaver.core.output_checks import check_output_file
 
 EXAMPLES = """examples:
   mmweaver recognise train examples/tasks/radhar.toml --out model/
   mmweaver recognise train TASK.toml --labelled few_recordings/ --out model/
   mmweaver recognise score model/ --recordings recordings/ --json
-  mmweaver recognise score model/ --recordings recordings/ --picture confusions.png
   mmweaver recognise run model/ --points log.dat
   cat /dev/ttyUSB1 | mmweaver recognise run model/ --points - --json
 
@@ -47,10 +45,6 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     train.add_argument("--seed", type=whole, default=0, help="of people, rooms and trees (default 0)")
     score = parser.add_argument_group("score")
     score.add_argument("--recordings", type=Path, metavar="DIR", help="labelled recordings, a folder an activity")
-    score.add_argument(
-        "--picture", type=Path, metavar="PNG",
-        help="draw the largest confusions: recorded windows that are mistaken, next to generated ones",
-    )  # fmt: skip
     run = parser.add_argument_group("run")
     run.add_argument("--points", type=Path, metavar="FILE|-", help="a recording, or - for a pipe")
     parser.add_argument("--json", action="store_true", help="print for machines; run: one object a window")
@@ -69,8 +63,6 @@ def run_command(arguments: argparse.Namespace) -> int:
             raise InputError(f"--{name} is no option of recognise {arguments.action}")
     if arguments.labelled is not None and arguments.action != "train":
         raise InputError(f"--labelled is no option of recognise {arguments.action}")
-    if arguments.picture is not None and arguments.action != "score":
-        raise InputError(f"--picture is no option of recognise {arguments.action}")
     return {"train": _train, "score": _score, "run": _run}[arguments.action](arguments)
 
 
@@ -94,23 +86,13 @@ def _train(arguments: argparse.Namespace) -> int:
 
 def _score(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import score_lines
-    from mmweaver.recognition.confusion_picture import confusion_picture
     from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import load_recogniser
-    from mmweaver.recognition.scoring import score_recordings, without_persistent_motion
-    from mmweaver.recognition.train_recogniser import SEQUENCE_FOLDER
+    from mmweaver.recognition.scoring import score_recordings
 
-    picture = arguments.picture
-    if picture is not None:
-        if picture.suffix.lower() != ".png":
-            raise InputError(f"{picture}: pictures are PNG files; name it {picture.stem}.png")
-        check_output_file(picture, overwrite=True, inputs=[arguments.recordings, arguments.place])
     model = load_recogniser(arguments.place)
     recordings = read_task_recordings(arguments.recordings, model.settings)
     scores = score_recordings(model, recordings)
-    if picture is not None:
-        shown, _ = without_persistent_motion(model, recordings)
-        confusion_picture(shown, arguments.place / SEQUENCE_FOLDER, recordings, picture)
     print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(score_lines(scores)))
     return 0
 

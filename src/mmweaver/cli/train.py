@@ -267,7 +267,7 @@ def _bar(steps: int, is_quiet: bool) -> "Iterator[Listener]":
 
 def _start(source: str) -> "tuple[dict[str, Tensor], WeightsCard]":
     """The weights to start from, and what their file says of them."""
-    from mmweaver.models.find_weights import find_weights
+    from mmweaver.models.hub import find_weights
     from mmweaver.models.weights import load_weights
 
     network, card = load_weights(find_weights(source))

@@ -57,7 +57,7 @@ def train_on_data(
     """Trains recipe `activity`; `given` are the settings of the recipe that the user gave. Raises InputError."""
     from mmweaver.datasets.room_sequences import labels_of, radar_of
     from mmweaver.models.activity_network import label_names_of, load_activity
-    from mmweaver.models.find_weights import find_weights
+    from mmweaver.models.hub import find_weights
     from mmweaver.training.activity_training import ActivityRecipe, train_activity
 
     start = None

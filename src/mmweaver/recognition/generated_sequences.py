@@ -4,7 +4,6 @@ Sequences are kept in a folder as they are made, so an interrupted run resumes w
 """
 
 import json
-import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from itertools import product
@@ -38,7 +37,6 @@ TRIES, UNSEEN_TRIES = 12, 2
 REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
 SKIN_POINTS = 1000
 VERSION = 8  # of how sequences are made; part of what a folder of them must agree in
-NAME = re.compile(r"(\d{3})_(\d{5,})")  # of the file of a sequence: number of the label, and of the person
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 
 
@@ -159,15 +157,6 @@ def generate_sequences(
         if listener is not None:
             listener(len(sequences), each * len(settings.labels))
     return sequences
-
-
-def stored_sequences(folder: Path, settings: RecordingSettings) -> list[PointRecording]:
-    """All sequences that a folder holds. Raises InputError where there are none, or of other activities."""
-    found = [(place, NAME.fullmatch(place.stem)) for place in sorted(folder.glob("*.npz"))]
-    numbers = [(place, int(name[1]), int(name[2])) for place, name in found if name]
-    if not numbers or max(label for _, label, _ in numbers) >= len(settings.labels):
-        raise InputError(f"{folder} does not hold the sequences that the recogniser learned from; train it again")
-    return [_read(place, settings, settings.labels[label], index) for place, label, index in numbers]
 
 
 def _write(place: Path, sequence: PointRecording) -> None:

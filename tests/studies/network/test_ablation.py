@@ -8,6 +8,7 @@ import torch
 
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.training.network_training import TrainingRecipe
+from studies.network.ablated_network import PARTS
 from studies.network.ablation import (
     COLUMNS,
     MEAN_COLUMNS,
@@ -22,7 +23,6 @@ from studies.network.ablation import (
     trained,
     with_one_code,
 )
-from studies.network.ablated_network import PARTS
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
 from studies.paper.power_field import NUM_WRITTEN
 from studies.paper.power_network import PowerNetwork

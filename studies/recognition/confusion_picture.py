@@ -13,7 +13,6 @@ import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.generated_sequences import stored_sequences
 from mmweaver.recognition.point_recordings import PointRecording, is_moving, windows_of
 from mmweaver.recognition.recogniser import Recogniser
 
@@ -27,13 +26,13 @@ SHOWN_MPS = 2.5  # velocity at full colour
 
 
 def confusion_picture(
-    model: Recogniser, sequences: Path, recordings: Sequence[PointRecording], out: Path
+    model: Recogniser, sequences: Sequence[PointRecording], recordings: Sequence[PointRecording], out: Path
 ) -> list[tuple[str, str]]:
     """Writes a PNG of the largest confusions, (true, recognised) label, which are returned; `sequences` trained it.
 
-    Raises InputError where there are no sequences or no confusion.
+    Raises InputError where there is no window or no confusion.
     """
-    made = [window for one in stored_sequences(sequences, model.settings) for window in windows_of(one, model.settings)]
+    made = [window for one in sequences for window in windows_of(one, model.settings)]
     real = [window for one in recordings for window in windows_of(one, model.settings)]
     if not real:
         raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
