@@ -102,7 +102,7 @@ def network_errors(
     recipe = PoseRecipe(steps=steps, seed=seed, validate_every=steps, validation_batches=1)
     trainer = train_pose(windows, windows, folder, recipe)
     settings = RecordingSettings(labels=(), window_s=float(windows.window_frames), frame_rate_hz=1.0)
-    estimator = PoseEstimator(networks=[trainer.learner.network], settings=settings)  # ty: ignore
+    estimator = PoseEstimator(networks=[trainer.learner.network], settings=settings)
     return {
         name: errors_of([estimator.joints_m(one.frames) for one in people], people) for name, people in tests.items()
     }

@@ -16,7 +16,7 @@ from pathlib import Path
 from mmweaver.models.hub import find_weights
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import Figures, Page
-from mmweaver.training.recipe_weights import write_recipe_weights
+from mmweaver.training.trained_weights import write_recipe_weights
 from mmweaver.training.trainer import Listener, Progress, Trainer
 from studies.manifest import StudyRun
 from studies.paper.paper_method import load_paper

@@ -15,7 +15,7 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
 from mmweaver.models.weights import load_into
 from mmweaver.training.device import Share
 from mmweaver.training.model_card import Page
-from mmweaver.training.recipe_weights import write_recipe_weights
+from mmweaver.training.trained_weights import write_recipe_weights
 from mmweaver.training.trainer import Learner, LoopRecipe, Trainer
 from studies.peers.signal_diffusion import PICTURE, FrameBatch, SignalDiffusion, mixed
 

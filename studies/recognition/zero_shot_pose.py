@@ -57,7 +57,7 @@ WORDS = {
 
 def estimator_of(trainers: Sequence[Trainer], task: RecognitionTask) -> PoseEstimator:
     """The networks of trainings, whose poses are averaged."""
-    return PoseEstimator(networks=[one.learner.network for one in trainers], settings=task.recordings)  # ty: ignore
+    return PoseEstimator(networks=[one.learner.network for one in trainers], settings=task.recordings)
 
 
 # the nearest neighbour ----------------------------------------------------------------------------------------------
@@ -142,7 +142,7 @@ class PoseStudy:
         windows = PoseWindows(recordings=known, window_frames=self.frames)
         recipe = replace(self.recipe, seed=seed, steps=steps, validate_every=steps, validation_batches=1)
         folder = self.options.runs / f"person_{minutes:g}_{seed}_{steps}_{'pretrained' if start else 'anew'}"
-        weights = None if start is None else start.learner.network.state_dict()  # ty: ignore
+        weights = None if start is None else start.learner.network.state_dict()
         return train_pose(windows, replace(windows, disturbance=None), folder, recipe, start=weights)
 
     def scored(self, *trainers: Trainer) -> dict[str, Any]:

@@ -201,8 +201,7 @@ def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bo
 
 
 def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    from mmweaver.training.activity_training import ActivityRecipe
-    from mmweaver.training.recipe_weights import activity_scores, write_activity_weights
+    from mmweaver.training.activity_training import ActivityRecipe, activity_scores, write_activity_weights
 
     given = _given(arguments)
     with _bar(ActivityRecipe(**given).steps, is_quiet) as listener:

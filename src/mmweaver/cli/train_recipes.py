@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from mmweaver.training.activity_training import ActivityLearner
     from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Trainer
 
@@ -53,7 +54,7 @@ def train_on_task(
 def train_on_data(
     arguments: argparse.Namespace, given: dict[str, Any], listener: "Listener", place: "ComputeDevice",
     options: dict[str, Any],
-) -> "Trainer":  # fmt: skip
+) -> "Trainer[ActivityLearner]":  # fmt: skip
     """Trains recipe `activity`; `given` are the settings of the recipe that the user gave. Raises InputError."""
     from mmweaver.datasets.room_sequences import labels_of, radar_of
     from mmweaver.models.activity_network import label_names_of, load_activity

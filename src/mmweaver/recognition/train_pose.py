@@ -2,23 +2,22 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.version import __version__
 from mmweaver.models.point_frames import point_frames
-from mmweaver.models.pose_network import PoseNetwork
-from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
+from mmweaver.models.weights import WEIGHTS_FILE, save_weights
 from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.training.pose_examples import PosedFrames, PoseWindows
-from mmweaver.training.pose_training import PoseRecipe, train_pose
+from mmweaver.training.pose_training import PoseLearner, PoseRecipe, train_pose
+from mmweaver.training.trained_weights import weights_card
 from mmweaver.training.trainer import Listener, Trainer
 
 SEQUENCES, SEQUENCE_FOLDER = 40, "sequences"
@@ -96,7 +95,7 @@ def split_people(recordings: Sequence[PointRecording], window_frames: int) -> tu
 def train_pose_of_task(
     task_file: Path | str, out: Path | str, training: PoseTraining | None = None, *,
     tell: Callable[[int, int], object] | None = None, listener: Listener | None = None, **options: Any,
-) -> tuple[list[Path], list[Trainer]]:  # fmt: skip
+) -> tuple[list[Path], list[Trainer[PoseLearner]]]:  # fmt: skip
     """Trains pose networks on people who carry out the sentences of a task; writes `out`/weights.safetensors, weights_2
     and so on.
 
@@ -119,21 +118,15 @@ def train_pose_of_task(
     return files, trainers
 
 
-def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer, people_seed: int) -> Path:
+def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer[PoseLearner], people_seed: int) -> Path:
     """Writes the best network with what one must know to apply it."""
     columns = task.recordings.columns
-    settings = asdict(trainer.recipe) | {
+    settings = {
         "window_s": float(task.recordings.window_s), "frame_rate_hz": float(task.recordings.frame_rate_hz),
         "columns": None if columns is None else list(columns.names),
-        "activities": {label: list(said) for label, said in task.activities.items()},
+        "activities": {label: list(sentences) for label, sentences in task.activities.items()},
     }  # fmt: skip
-    recipe = _recipe(task, people_seed)
-    card = WeightsCard(
-        recipe=trainer.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(recipe.as_json().encode()).hexdigest(),
-        radar=task.radar.name, steps=trainer.step, seed=trainer.recipe.seed, validation_loss=trainer.best.value,
-        mmweaver_version=__version__, settings=settings,
-    )  # fmt: skip
-    network = getattr(trainer.learner, "network", None)
-    assert isinstance(network, PoseNetwork), "a trainer of train_pose"
-    save_weights(file, network, card)
+    people = hashlib.sha256(_recipe(task, people_seed).as_json().encode()).hexdigest()
+    card = weights_card(trainer, dataset_sha256=people, radar=task.radar.name, settings=settings)
+    save_weights(file, trainer.learner.network, card)
     return file

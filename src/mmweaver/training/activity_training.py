@@ -10,10 +10,14 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.seeding import stream
+from mmweaver.datasets.activity_store import SPLITS, is_activity_set
+from mmweaver.datasets.room_sequences import labels_of, read_labelled
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples, augmented
 from mmweaver.training.confusion_sheet import draw_confusion
 from mmweaver.training.device import ComputeDevice, Share
+from mmweaver.training.model_card import ACTIVITY, OWN, Figures
+from mmweaver.training.trained_weights import write_recipe_weights
 from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
 
 # The recogniser learns all twelve activities, those held out from the learned method included.
@@ -78,7 +82,7 @@ def train_activity(
     listener: Listener | None = None,
     compute: ComputeDevice | None = None,
     **options: Any,
-) -> Trainer:
+) -> Trainer[ActivityLearner]:
     """Trains on a data set of rooms or a labelled set, or resumes from `out`/checkpoint.pt.
 
     The returned Trainer holds the best network.
@@ -94,9 +98,15 @@ def train_activity(
     if start is not None:
         network.load_state_dict(start)
     trainer = Trainer(
-        ActivityLearner(network, unseen), recipe, out, compute=compute, is_tuning=start is not None,
-        train=_batch_sampler(examples, recipe), validation=_fixed_batches(unseen, recipe.validation_batches), **options,
-    )  # fmt: skip
+        ActivityLearner(network, unseen),
+        recipe,
+        out,
+        compute=compute,
+        is_tuning=start is not None,
+        train=_batch_sampler(examples, recipe),
+        validation=_fixed_batches(unseen, recipe.validation_batches),
+        **options,
+    )
     trainer.run(listener)
     return trainer
 
@@ -135,3 +145,28 @@ def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> Tensor:
         parts = zip(examples.doppler.split(AT_ONCE), examples.angle.split(AT_ONCE), strict=True)
         scores = [network(one.float().to(device), other.float().to(device)) for one, other in parts]
         return torch.cat(scores).cpu()
+
+
+def write_activity_weights(
+    out: Path, data: Path, trainer: Trainer[ActivityLearner], scores: Figures | None = None
+) -> Path:
+    """Writes weights and page of recipe `activity`; returns the path of the weights. `scores`: of `activity_scores`."""
+    return write_recipe_weights(
+        out,
+        data,
+        trainer,
+        splits=TRAIN_SPLITS,
+        page=ACTIVITY,
+        figures=scores or activity_scores(data, trainer),
+        label_names=list(labels_of(data)),
+    )
+
+
+def activity_scores(data: Path, trainer: Trainer[ActivityLearner]) -> Figures:
+    """Accuracy in validation, and on what a labelled set holds out for tests, of the best network and of chance."""
+    own = {"accuracy": 1 - trainer.best.figures["wrong"]}
+    if is_activity_set(data) and SPLITS[2] in read_labelled(data).columns["split"]:
+        unseen = activity_examples(data, (SPLITS[2],))
+        right = scores_of(trainer.learner.network, unseen).argmax(dim=1) == unseen.label
+        own["test_accuracy"] = float(right.float().mean())
+    return {OWN: own, "chance": dict.fromkeys(own, 1 / len(labels_of(data)))}

@@ -14,7 +14,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import sha256_of
@@ -25,19 +24,17 @@ from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
 from mmweaver.training.device import ComputeDevice
-from mmweaver.training.model_card import model_card
+from mmweaver.training.model_card import WEAVER
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples, sample_batch
 from mmweaver.training.network_training import (
-    CARD_FILE,
     EXPLAINED,
     VALIDATION_SEED,
     NetworkLearner,
     TrainingRecipe,
-    card_of,
     compare_with_start,
     initial_network,
-    save_trained,
 )
+from mmweaver.training.trained_weights import weights_card, write_trained
 from mmweaver.training.trainer import BatchSampler, Listener, Trainer
 
 STATIC_HEADS = ("point", "face")
@@ -98,7 +95,7 @@ class CaptureLearner(NetworkLearner):
 class TuningResult:
     """Result of fine-tuning, with the calibration of the recordings."""
 
-    trainer: Trainer
+    trainer: Trainer[CaptureLearner]
     rooms: list[RecordedRoom]
     held_out: RecordedRoom | None  # None with a single capture
     loss_before: float  # validation loss of the initial weights
@@ -135,9 +132,15 @@ def tune(
     validation = _batch_sampler([held_out or rooms[0]], recipe, VALIDATION_SEED + recipe.seed, maps)
     learner.shown = lambda: validation(0, (0, 1))
     trainer = Trainer(
-        learner, recipe, out, train=_batch_sampler(used, recipe, recipe.seed, maps), validation=validation,
-        compute=compute, is_tuning=True, **options,
-    )  # fmt: skip
+        learner,
+        recipe,
+        out,
+        train=_batch_sampler(used, recipe, recipe.seed, maps),
+        validation=validation,
+        compute=compute,
+        is_tuning=True,
+        **options,
+    )
     before = _loss_of(trainer, initial_network(recipe, start))
     trainer.run(listener)
     return TuningResult(trainer=trainer, rooms=rooms, held_out=held_out, loss_before=before, gain=gain)
@@ -146,28 +149,31 @@ def tune(
 def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
     """Writes `out`/weights.safetensors and its README.md; returns the path of the weights."""
     digest = hashlib.sha256("".join(room.sha256 for room in tuned.rooms).encode()).hexdigest()
-    more = {"tuned_from": sha256_of(start), "licence": licence_of_start}
-    file = save_trained(out, tuned.trainer, digest, **more)
-    used = len(tuned.rooms) - (tuned.held_out is not None)
-    known = sum(room.has_joints for room in tuned.rooms[:used])
-    about = (
-        f"{used} captures of the user's own, {known} of them with joints, on top of the data of the initial weights."
+    trainer, used = tuned.trainer, len(tuned.rooms) - (tuned.held_out is not None)
+    card = weights_card(
+        trainer,
+        dataset_sha256=digest,
+        radar=trainer.learner.radar.config.name,
+        tuned_from=sha256_of(start),
+        licence=licence_of_start,
     )
+    known = sum(room.has_joints for room in tuned.rooms[:used])
     held_out = "One held-out capture" if tuned.held_out is not None else "The captures themselves (one only)"
-    figures = compare_with_start(tuned.trainer, initial_network(tuned.trainer.recipe, start))
-    card = card_of(tuned.trainer, digest, **more)
-    with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(
-            model_card(card, file, data=about, evaluated_on=f"{held_out}; {EXPLAINED}", figures=figures),
-            encoding="utf-8",
-        )
-    return file
+    return write_trained(
+        out,
+        trainer,
+        card,
+        evaluated_on=f"{held_out}; {EXPLAINED}",
+        page=WEAVER,
+        data=f"{used} captures of the user's own, {known} of them with joints, on top of the data of the initial"
+        " weights.",
+        figures=compare_with_start(trainer, initial_network(trainer.recipe, start)),
+    )
 
 
-def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
+def _loss_of(trainer: Trainer[CaptureLearner], network: WeaverNetwork) -> float:
     """The validation loss of another network."""
     learner = trainer.learner
-    assert isinstance(learner, NetworkLearner)
     own, learner.network = learner.network, network.to(learner.device)
     loss = trainer.validation_loss()
     learner.network = own

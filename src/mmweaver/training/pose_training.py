@@ -65,7 +65,7 @@ def mean_pose_m(windows: PoseWindows) -> np.ndarray:
 def train_pose(
     windows: PoseWindows, unseen: PoseWindows, out: Path, recipe: PoseRecipe, *,
     start: dict[str, Tensor] | None = None, listener: Listener | None = None, **options: Any,
-) -> Trainer:  # fmt: skip
+) -> Trainer[PoseLearner]:  # fmt: skip
     """Trains on windows, or resumes from `out`/checkpoint.pt. The returned Trainer holds the network that is best on
     the recordings of `unseen`. `start`: weights to fine-tune. `options` go to `Trainer`.
 

@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import torch
@@ -95,10 +95,11 @@ class Progress:
 
 
 BatchSampler = Callable[[int, Share], Any]
+LearnerT = TypeVar("LearnerT", bound=Learner, covariant=True)
 Listener = Callable[[Progress], object]
 
 
-class Trainer:
+class Trainer(Generic[LearnerT]):
     """One training run.
 
     `train(step, share)` samples the part of a step's batch that belongs to one of several processes, `validation(index,
@@ -108,7 +109,7 @@ class Trainer:
 
     def __init__(
         self,
-        learner: Learner,
+        learner: LearnerT,
         recipe: LoopRecipe,
         out: Path,
         *,

@@ -13,8 +13,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.weights import read_card
-from mmweaver.training.activity_training import ActivityRecipe, train_activity
-from mmweaver.training.recipe_weights import write_activity_weights
+from mmweaver.training.activity_training import ActivityRecipe, train_activity, write_activity_weights
 from studies.paper.paper_method import load_paper
 from studies.run import main
 

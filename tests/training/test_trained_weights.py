@@ -7,8 +7,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import load_activity
-from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe, train_activity
-from mmweaver.training.recipe_weights import write_activity_weights
+from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe, train_activity, write_activity_weights
 
 pytest.importorskip("zarr")
 
