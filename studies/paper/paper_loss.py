@@ -24,14 +24,20 @@ def paper_loss(
     similarity = torch.stack([_ssim(part(made), part(truth), span).mean() for part in (torch.real, torch.imag)]).mean()
     squared = (made - truth).abs().square().mean() / 2
     with torch.no_grad():
-        wanted = perceiver.perceived(truth.flatten(0, 1) * unit_sqrt_mw)
-    found = perceiver.perceived(made.flatten(0, 1) * unit_sqrt_mw)
+        wanted = perceived(perceiver, truth.flatten(0, 1) * unit_sqrt_mw)
+    found = perceived(perceiver, made.flatten(0, 1) * unit_sqrt_mw)
     features = torch.stack([(one - two).abs().mean() for one, two in zip(found, wanted, strict=True)]).mean()
     return {
         "cssim": SHARE_CSSIM * (1 - similarity),
         "mse": SHARE_MSE * squared,
         "perceptual": SHARE_PERCEPTUAL * features,
     }
+
+
+def perceived(network: ActivityNetwork, values: Tensor) -> list[Tensor]:
+    """Convolutional features of complex maps (map, range, doppler, antenna)."""
+    doppler, angle = network.maps(values)
+    return network.doppler(doppler) + network.angle(angle)
 
 
 def _ssim(made: Tensor, truth: Tensor, span: Tensor) -> Tensor:

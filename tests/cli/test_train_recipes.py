@@ -46,7 +46,7 @@ def test_a_set_of_ones_own_room_is_trained_on(
     assert label_names_of(weights) == ("waving", "walking", "squatting")
     network = load_activity(weights, AWR1843)
     stored = read_activity_set(activity_set)
-    assert network.of_cubes(torch.from_numpy(stored.cube(0).values)[None]).shape == (1, 3)
+    assert network(*network.maps(torch.from_numpy(stored.cube(0).values)[None])).shape == (1, 3)
     assert "held out" in (tmp_path / "a" / "README.md").read_text()
 
 

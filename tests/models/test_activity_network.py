@@ -20,15 +20,7 @@ def test_a_cube_gives_twelve_scores_whatever_its_frames():
     network = ActivityNetwork(AWR1843).eval()
     for frames in (20, 7):
         cubes = 1e-4 * torch.randn(2, frames, 64, 32, 12, dtype=torch.complex64)
-        assert network.of_cubes(cubes).shape == (2, 12)
-
-
-def test_its_features_pass_slopes_to_the_cube():
-    network = ActivityNetwork(AWR1843).eval().requires_grad_(False)
-    patch = (1e-4 * torch.randn(2, 21, 32, 12, dtype=torch.complex64)).requires_grad_()
-    torch.stack([part.square().mean() for part in network.perceived(patch)]).sum().backward()
-    assert patch.grad is not None
-    assert float(patch.grad.abs().sum()) > 0
+        assert network(*network.maps(cubes)).shape == (2, 12)
 
 
 def test_a_file_comes_back_and_others_are_refused(tmp_path: Path):
@@ -40,7 +32,7 @@ def test_a_file_comes_back_and_others_are_refused(tmp_path: Path):
     save_weights(tmp_path / "a.safetensors", network, card, half=False)
     again = load_activity(tmp_path / "a.safetensors", AWR1843)
     cubes = 1e-4 * torch.randn(1, 4, 64, 32, 12, dtype=torch.complex64)
-    assert torch.equal(again.of_cubes(cubes), network.of_cubes(cubes))
+    assert torch.equal(again(*again.maps(cubes)), network(*network.maps(cubes)))
     save_weights(tmp_path / "b.safetensors", network, WeightsCard(**{**card.__dict__, "recipe": "paper"}))
     with pytest.raises(InputError, match="mmweaver train activity"):
         load_activity(tmp_path / "b.safetensors", AWR1843)

@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.core.range_window import chosen_range
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
-    from mmweaver.datasets.dataset_plan import MOST, DatasetPlan, check_for_leaks
+    from mmweaver.datasets.dataset_plan import MOST, DatasetPlan
     from mmweaver.datasets.dataset_store import PLAN_FILE
     from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
     from mmweaver.formats.radar_file import load_radar
@@ -100,7 +100,6 @@ def run(arguments: argparse.Namespace) -> int:
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
         geometry_only=arguments.geometry_only, board=_board(arguments),
     )  # fmt: skip
-    check_for_leaks(plan.rooms())
     cost = estimate_cost(plan, config, arguments.out)
     if arguments.dry_run:
         print(json.dumps(asdict(cost)) if arguments.json else cost.summary(workers))

@@ -215,28 +215,3 @@ def shell_words(command: Any) -> str:
 def room_name(kind: str, layout: int) -> str:
     """The name of a room's folder."""
     return f"{kind.replace(' ', '_')}_{layout:03d}"
-
-
-def check_for_leaks(rooms: list[RoomSpec]) -> None:
-    """Raises InputError where a held-out property, or the seed of a test sequence, occurs in training."""
-    of = {split: [(room, s) for room in rooms for s in room.sequences if s.split == split] for split in SPLITS}
-    train = of["train"]
-    checks = {
-        "test_room": {room.kind for room, _ in train},
-        "validation": {room.kind for room, _ in train},
-        "test_layout": {(room.kind, room.layout) for room, _ in train},
-        "test_person": {s.person for _, s in train},
-        "test_activity": {s.activity for _, s in train},
-    }
-    for split, seen in checks.items():
-        for room, s in of[split]:
-            value = {
-                "test_room": room.kind, "validation": room.kind, "test_layout": (room.kind, room.layout),
-                "test_person": s.person, "test_activity": s.activity,
-            }[split]  # fmt: skip
-            if value in seen:
-                raise InputError(f"leak: {value!r} of split {split} also occurs in training")
-    seeds = [s.seed for _, s in train]
-    tested = {s.seed for split in SPLITS[1:] for _, s in of[split]}
-    if tested & set(seeds):
-        raise InputError("leak: a seed occurs both in training and in a test split")

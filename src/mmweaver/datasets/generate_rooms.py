@@ -14,7 +14,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.staging import sweep
 from mmweaver.datasets.consolidated_rooms import consolidate_rooms
 from mmweaver.datasets.data_card import write_rooms_card
-from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec, check_for_leaks
+from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec
 from mmweaver.datasets.dataset_store import is_done
 from mmweaver.datasets.dataset_writer import AXES, open_dataset, remove_damaged, write_room
 
@@ -46,7 +46,6 @@ def generate_dataset(
     """
     check_packages(ray_address)
     rooms = plan.rooms()
-    check_for_leaks(rooms)
     if repair:
         remove_damaged(folder, plan)
     open_dataset(folder, plan, config)

@@ -41,10 +41,6 @@ class ActivityNetwork(nn.Module):
         per_frame = WIDTHS[-1] * 2 * velocities + WIDTHS[-1] * 2
         self.head = TimeHead(per_frame, num_labels)
 
-    def of_cubes(self, values: Tensor) -> Tensor:
-        """Complex cubes (sequence, frame, range, doppler, antenna) in sqrt(mW) -> (sequence, label)."""
-        return self(*self.maps(values))
-
     def forward(self, doppler: Tensor, angle: Tensor) -> Tensor:
         return self.head(self.frames(doppler, angle))
 
@@ -55,11 +51,6 @@ class ActivityNetwork(nn.Module):
         places = self.angle(angle.flatten(0, 1))[-1]
         seen = torch.cat([_pooled(speeds, (2,)), _pooled(places, (2, 3))], dim=1)
         return seen.unflatten(0, shape)
-
-    def perceived(self, values: Tensor) -> list[Tensor]:
-        """Convolutional features of complex maps (map, range, doppler, antenna), for a perceptual loss."""
-        doppler, angle = self.maps(values)
-        return self.doppler(doppler) + self.angle(angle)
 
 
 class MapFeatures(nn.Module):

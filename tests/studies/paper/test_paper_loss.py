@@ -6,7 +6,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.metrics.cube_errors import complex_ssim
 from mmweaver.models.activity_network import ActivityNetwork
-from studies.paper.paper_loss import SHARE_CSSIM, paper_loss
+from studies.paper.paper_loss import SHARE_CSSIM, paper_loss, perceived
 from tests.cubes import point_cube
 
 
@@ -40,3 +40,11 @@ def test_wrong_phases_cost_more_than_zeros_where_waves_are_compared():
     assert turned["cssim"] > zeros["cssim"]
     assert turned["mse"] > zeros["mse"]
     assert turned["perceptual"] < zeros["perceptual"]  # which compares powers
+
+
+def test_its_features_pass_slopes_to_the_cube():
+    network = ActivityNetwork(AWR1843).eval().requires_grad_(False)
+    patch = (1e-4 * torch.randn(2, 21, 32, 12, dtype=torch.complex64)).requires_grad_()
+    torch.stack([part.square().mean() for part in perceived(network, patch)]).sum().backward()
+    assert patch.grad is not None
+    assert float(patch.grad.abs().sum()) > 0
