@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.scene.procedural.builder import Size
-from mmweaver.scene.procedural.furniture import make_piece
+from mmweaver.scene.procedural.furniture import Span, make_piece
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, PlacedPiece, bounding_boxes
 
@@ -43,7 +42,7 @@ class GroupBuilder:
         return make_piece(name, self.palette, self.rng, **sizes)
 
     def put(
-        self, piece: str | Piece, x: Size = 0.0, y: Size = 0.0, z: float = 0.0, turn: Size = 0.0, sway: float = 0.0
+        self, piece: str | Piece, x: Span = 0.0, y: Span = 0.0, z: float = 0.0, turn: Span = 0.0, sway: float = 0.0
     ) -> PlacedPiece:
         """Places a piece, or makes it first by its name; ranges are sampled afterwards.
 
@@ -101,7 +100,7 @@ def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> Furni
 @group()
 def desk_place(g: GroupBuilder):
     """Desk with monitor, keyboard and cup, and an office chair."""
-    desk = g.make("desk", width_m=(1.2, 1.6))
+    desk = g.make("desk", width=(1.2, 1.6))
     y, top, half = g.at_wall(desk).y_m, desk.top_m, float(desk.high_m[0])
     screen = g.put("monitor", (-0.1, 0.2), y + 0.14, top)
     g.put("keyboard", screen.x_m, y - 0.16, top)
@@ -115,7 +114,7 @@ def desk_place(g: GroupBuilder):
 @group()
 def laptop_desk(g: GroupBuilder):
     """Desk with laptop and lamp, and a plain chair."""
-    desk = g.make("desk", width_m=(1.0, 1.25))
+    desk = g.make("desk", width=(1.0, 1.25))
     y, top = g.at_wall(desk).y_m, desk.top_m
     away = float(-desk.low_m[1]) + g.uniform(0.24, 0.4)
     g.put("laptop", 0.0, y - 0.08, top)
@@ -126,7 +125,7 @@ def laptop_desk(g: GroupBuilder):
 @group()
 def lab_bench_place(g: GroupBuilder):
     """Laboratory bench with instruments and a stool."""
-    bench = g.make("lab bench", width_m=(1.5, 2.1))
+    bench = g.make("lab bench", width=(1.5, 2.1))
     y, half = g.at_wall(bench).y_m, float(bench.high_m[0])
     g.put("instrument", -half + 0.4, y - 0.05, 0.90)
     g.put("monitor", half - 0.45, y + 0.02, 0.90)
@@ -136,7 +135,7 @@ def lab_bench_place(g: GroupBuilder):
 @group()
 def workbench_place(g: GroupBuilder):
     """Workbench with a carton, and a stool."""
-    bench = g.make("workbench", width_m=(1.4, 1.8))
+    bench = g.make("workbench", width=(1.4, 1.8))
     y = g.at_wall(bench).y_m
     g.put("carton", -0.3, y - 0.03, bench.parts[4].high_m[2])
     g.put("stool", (0.0, 0.4), y - 0.62)
@@ -166,8 +165,8 @@ def pupils_place(g: GroupBuilder):
 @group(BACK)
 def teacher_place(g: GroupBuilder):
     """A whiteboard with a desk in front of it."""
-    desk, y = g.make("desk", width_m=1.3), -1.25
-    g.put(g.make("whiteboard", width_m=2.0))
+    desk, y = g.make("desk", width=1.3), -1.25
+    g.put(g.make("whiteboard", width=2.0))
     g.put(desk, 0.9, y, turn=180.0)
     g.put("laptop", 0.9, y, desk.top_m, turn=180.0)
     g.put("chair", 0.9, y + 0.68)
@@ -232,13 +231,13 @@ def small_dining_place(g: GroupBuilder):
 @group()
 def kitchen_row(g: GroupBuilder):
     """Counter, cooker, refrigerator, cabinets above."""
-    counter, oven, fridge = g.make("counter", width_m=(1.4, 1.9)), g.make("oven"), g.make("refrigerator")
+    counter, oven, fridge = g.make("counter", width=(1.4, 1.9)), g.make("oven"), g.make("refrigerator")
     width = 2 * float(counter.high_m[0])
     left = -(width + 0.6 + 0.62) / 2
     x = g.at_wall(counter, left + width / 2).x_m
     g.at_wall(oven, left + width + 0.31)
     g.at_wall(fridge, left + width + 0.62 + 0.31)
-    g.put(g.make("wall cabinet", width_m=width - 0.2), x)
+    g.put(g.make("wall cabinet", width=width - 0.2), x)
     sink = counter.parts[3]
     away = 0.28 - width / 2 if sink.low_m[0] + sink.high_m[0] > 0 else width / 2 - 0.28  # the end without the sink
     g.put("microwave", x + away, -0.22, 0.91)
@@ -247,13 +246,13 @@ def kitchen_row(g: GroupBuilder):
 @group()
 def counter_place(g: GroupBuilder):
     """A counter with cabinets above."""
-    counter = g.at_wall(g.make("counter", width_m=(1.2, 1.6))).piece
-    g.put(g.make("wall cabinet", width_m=2 * float(counter.high_m[0])))
+    counter = g.at_wall(g.make("counter", width=(1.2, 1.6))).piece
+    g.put(g.make("wall cabinet", width=2 * float(counter.high_m[0])))
 
 
 def _bookcases(g: GroupBuilder, count: int):
     width, height = g.uniform(0.75, 0.95), g.uniform(1.7, 2.1)
-    cases = [g.make("bookcase", width_m=width, height_m=height) for _ in range(count)]
+    cases = [g.make("bookcase", width=width, height=height) for _ in range(count)]
     start = -(count - 1) * (width + 0.005) / 2
     for k, case in enumerate(cases):
         g.at_wall(case, start + k * (width + 0.005))
