@@ -33,22 +33,22 @@ def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: A
     builder = Builder(palette, rng, record.get("class", "furniture-other"))
     known = builder.sampled({**record.get("sizes", {}), **sizes})
     for surface, *spans, options in ((*row, {}) if len(row) == 4 else row for row in record["parts"]):
-        if _value(options.get("if", True), known):
+        if evaluate(options.get("if", True), known):
             repeat = REPEATS[options.get("repeat", "box")]
             own = {key: options[key] for key in options if key not in ("if", "repeat")}
             own |= {key: known.get(own[key], own[key]) for key in ("shape", "count") if key in own}
-            repeat(builder, known.get(surface, surface), *(_value(span, known) for span in spans), **own)
-    seats = [LocalSeat(*(float(_value(number, known)) for number in row)) for row in record.get("seats", ())]
+            repeat(builder, known.get(surface, surface), *(evaluate(span, known) for span in spans), **own)
+    seats = [LocalSeat(*(float(evaluate(number, known)) for number in row)) for row in record.get("seats", ())]
     return Piece(
         name=record.get("called", name), parts=tuple(builder.parts), seats=(*seats, *builder.seats),
         **{flag: record[flag] for flag in _FLAGS if flag in record},
     )  # fmt: skip
 
 
-def _value(formula: Any, sizes: dict[str, Any]) -> Any:
-    """A number, a range, or what a formula of the sizes gives."""
+def evaluate(formula: Any, sizes: dict[str, Any]) -> Any:
+    """A number or a range (as they are), or what a formula of the sizes gives."""
     if isinstance(formula, tuple):
-        return tuple(_value(part, sizes) for part in formula)
+        return tuple(evaluate(part, sizes) for part in formula)
     if not isinstance(formula, str):
         return formula
     return eval(_compiled(formula), {"__builtins__": {"min": min, "max": max}}, sizes)
@@ -80,7 +80,7 @@ class Builder:
             if isinstance(size, dict):
                 known[name] = size.get("yes", True) if self.chance(size["share"]) else size.get("no", False)
             else:
-                value = _value(size, known)
+                value = evaluate(size, known)
                 known[name] = self.uniform(*value) if isinstance(value, tuple) else value
         return known
 
