@@ -56,7 +56,7 @@ def _placed(record: dict[str, Any], palette: Palette, rng: np.random.Generator) 
     ):
         name = options.get("name", piece_name.replace(" ", "_"))
         known[name] = None
-        if "chance" in options and not draw.chance(options["chance"]) or not evaluate(options.get("if", "1"), known):
+        if ("chance" in options and not draw.chance(options["chance"])) or not evaluate(options.get("if", "1"), known):
             continue
         known["drawn"] = draw.uniform(*options["draw"]) if "draw" in options else None
         sizes = {size: evaluate(value, known) for size, value in options.get("sizes", {}).items()}
