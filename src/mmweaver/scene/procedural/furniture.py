@@ -26,12 +26,12 @@ def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: A
         rng: random sizes are sampled from it, in the order of the record.
         **sizes: replace those of the record; a pair is a range.
     """
-    record = RECORDS[name]
+    record: dict[str, Any] = RECORDS[name]
     if "form" in record:
         form = RECORDS[record["form"]]
-        record = {**form, **record, "sizes": {**form["sizes"], **record["sizes"]}}
+        record = form | record | {"sizes": form["sizes"] | record["sizes"]}
     builder = Builder(palette, rng, record.get("class", "furniture-other"))
-    known = builder.sampled({**record.get("sizes", {}), **sizes})
+    known = builder.sampled(record.get("sizes", {}) | sizes)
     for surface, *spans, options in ((*row, {}) if len(row) == 4 else row for row in record["parts"]):
         if evaluate(options.get("if", True), known):
             repeat = REPEATS[options.get("repeat", "box")]
