@@ -14,7 +14,7 @@ from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import preview_figure
+from mmweaver.figures.preview import draw_preview
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
@@ -124,7 +124,7 @@ class Generation(ShownByFacts):
 
     def plot(self) -> "Figure":
         """The page of preview.png as a matplotlib figure."""
-        return preview_figure(self.figure_data)
+        return draw_preview(self.figure_data, None)
 
     def show(self) -> Any:
         """Plays the sequence in a notebook: room, people, points and maps. Needs the extra 'notebook'."""

@@ -12,7 +12,7 @@ from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
-from mmweaver.motion.empty_place import NOBODY, says_nobody
+from mmweaver.motion.empty_scene import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.step_names import with_what_is_shown

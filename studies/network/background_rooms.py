@@ -16,8 +16,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.photo_panel import draw_photo
-from mmweaver.figures.power_panels import draw_azimuth_with_clutter, power_bar
+from mmweaver.figures.panels import draw_azimuth_with_clutter, draw_photo, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room

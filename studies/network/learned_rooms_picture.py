@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.photo_panel import draw_photo
-from mmweaver.figures.power_panels import draw_azimuth_with_clutter, draw_micro_doppler, power_bar
+from mmweaver.figures.panels import draw_azimuth_with_clutter, draw_micro_doppler, draw_photo, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.geometry.aligned_photo import AlignedPhoto

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.figures.pose_strip import draw_pose_strips
+from mmweaver.figures.motion_strip import draw_pose_strips
 from mmweaver.models.point_frames import middle_m, near
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator

@@ -11,7 +11,6 @@ import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import Scene
-from mmweaver.figures.body_in_photo import project
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -78,7 +77,7 @@ def draw_found(path: Path, pairs: list[tuple[str, Scene, Scene | None]]) -> None
 
 
 def _mark(axes: "Axes", scene: Scene, place_m: np.ndarray, word: str, colour: str) -> None:
-    column, row, _ = project(place_m[None], AlignedPhoto.of(scene))[0]
+    column, row = AlignedPhoto.of(scene).project(place_m[None])[0][0]
     if np.isfinite(column):
         axes.text(
             column, row, word, fontsize=6, color="white", ha="center", clip_on=True,

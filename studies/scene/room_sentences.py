@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels
+from mmweaver.figures.body_in_photo import BodyPainter
 from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.power_panels import draw_micro_doppler, draw_range_time, power_bar
+from mmweaver.figures.panels import draw_micro_doppler, draw_range_time, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Generation, Room
@@ -93,7 +93,7 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     photo, scene = result.photo, result.scene
     height, width = photo.rgb.shape[:2]
     picture = small(photo.rgb).copy()
-    painter = BodyPainter(PhotoPixels.whole(AlignedPhoto.of(scene), picture.shape[:2]))
+    painter = BodyPainter(AlignedPhoto.of(scene), picture.shape[:2])
     instants = np.round(np.array(_SHARES) * (len(result.pose.time_s) - 1)).astype(int)
     bodies = bodies_of(result.pose, instants)
     painter.paint(

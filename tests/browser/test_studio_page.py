@@ -317,7 +317,7 @@ def test_twenty_seconds_live(page: Any, address: Running):
     assert resident[-1] - resident[0] < 60, resident
 
 
-def test_a_room_without_a_floor_offers_ways_on(page: Any, tmp_path: Path):
+def test_a_room_without_a_floor_offers_recovery_options(page: Any, tmp_path: Path):
     """A wall at 0.45 m fills the picture: nobody can stand before it."""
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(tmp_path / "rgb.png")
     Image.fromarray(np.full((480, 640), 450, np.uint16)).save(tmp_path / "depth.png")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
-from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels, project
+from mmweaver.figures.body_in_photo import BodyPainter
 from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import FigureData
 
@@ -20,7 +20,7 @@ def painted(view: FigureData, depth_m: np.ndarray | None = None, scale: int = 1)
     size = (120 * scale, 160 * scale)
     picture = np.full((*size, 3), 200, np.uint8)
     body = bodies_of(view.poses[0], np.array([0]))[0]
-    BodyPainter(PhotoPixels.whole(replace(aligned, photo=photo), size)).paint(picture, [(body, RED)])
+    BodyPainter(replace(aligned, photo=photo), size).paint(picture, [(body, RED)])
     return picture
 
 
@@ -28,23 +28,12 @@ def red(picture: np.ndarray) -> np.ndarray:
     return (picture[:, :, 0] > 60) & (picture[:, :, 1] < 20)
 
 
-def test_projection_follows_the_pinhole(view: FigureData):
-    assert view.aligned is not None
-    points_m = np.array([[0.0, 2.0, 0.0], [0.5, 2.0, 0.0], [0.0, 2.0, 0.5], [0.0, -1.0, 0.0]])
-    pixels = project(points_m, view.aligned)
-    lens = view.aligned.photo.intrinsics
-    assert pixels[0] == pytest.approx([lens.cx, lens.cy, 2.0])
-    assert pixels[1] == pytest.approx([lens.cx + lens.fx * 0.25, lens.cy, 2.0])  # right is right
-    assert pixels[2] == pytest.approx([lens.cx, lens.cy - lens.fy * 0.25, 2.0])  # up is up
-    assert np.isnan(pixels[3]).all()  # behind the camera
-
-
 @pytest.mark.parametrize("scale", [1, 2])
 def test_the_body_is_at_its_projection(view: FigureData, scale: int):
     assert view.aligned is not None
     is_red = red(painted(view, scale=scale))
     for name in ("pelvis", "left_wrist", "right_knee", "head"):
-        column, row, _ = project(view.poses[0].joints_m[0][[joint(name)]], view.aligned)[0]
+        column, row = view.aligned.project(view.poses[0].joints_m[0][[joint(name)]])[0][0]
         assert is_red[round((row + 0.5) * scale - 0.5), round((column + 0.5) * scale - 0.5)], name
     assert is_red.any(axis=0).sum() < 0.4 * 160 * scale  # and nowhere else
 

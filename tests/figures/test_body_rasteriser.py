@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import PoseSequence
-from mmweaver.figures import face
-from mmweaver.figures.body_rasteriser import CapsulesInPicture, bodies_of, rasterise, seen_width
+from mmweaver.figures.body_rasteriser import FACE_COUNT, CapsulesInPicture, bodies_of, rasterise, seen_width
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.geometry.body_capsules import CAPSULES, TRUNK_WIDTH_PER_DEPTH
 
@@ -51,5 +50,5 @@ def test_bodies_have_the_girth_of_the_person(view: FigureData):
     pose = view.poses[0]
     stout = PoseSequence(time_s=pose.time_s, joints_m=pose.joints_m, height_m=pose.height_m, girth=1.2)
     (body,), (wide_body,) = bodies_of(pose, np.array([0])), bodies_of(stout, np.array([0]))
-    assert body.ends_m.shape == (len(CAPSULES) + face.COUNT, 2, 3)
+    assert body.ends_m.shape == (len(CAPSULES) + FACE_COUNT, 2, 3)
     assert wide_body.radius_m[0] == pytest.approx(1.2 * body.radius_m[0])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
-from mmweaver.figures.face import face_capsules, head_axes
+from mmweaver.figures.body_rasteriser import face_capsules, head_axes
 from mmweaver.motion.empty_floor import act_out
 
 

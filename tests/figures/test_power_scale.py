@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.figures.power_scale import LEAST_ABOVE_NOISE_DB, PowerScale
+from mmweaver.figures.power_scale import MIN_ABOVE_NOISE_DB, PowerScale
 
 
 def test_levels_are_absolute_where_the_scale_is_known():
@@ -12,14 +12,13 @@ def test_levels_are_absolute_where_the_scale_is_known():
     assert scale.noise_db == pytest.approx(-130.0)
     assert (scale.low_db, scale.high_db) == (-135.0, -80.0)
     assert scale.decibels(np.array([1.0, 1e-2, 0.0])).tolist() == pytest.approx([-80.0, -100.0, -135.0])
-    assert scale.shares(np.array([1.0, 0.0, 10.0])).tolist() == pytest.approx([1.0, 0.0, 1.0])
 
 
 def test_noise_alone_stays_at_the_dark_end():
     scale = PowerScale.of(peak=4.0, noise=1.0, scale=float("nan"))
     assert scale.unit == "dB relative to one count"
-    assert scale.high_db >= scale.noise_db + LEAST_ABOVE_NOISE_DB
-    assert scale.shares(np.array([4.0]))[0] < 0.35
+    assert scale.high_db >= scale.noise_db + MIN_ABOVE_NOISE_DB
+    assert scale.decibels(np.array([4.0]))[0] < scale.low_db + 0.35 * (scale.high_db - scale.low_db)
 
 
 def test_a_strong_leakage_does_not_hide_the_noise():

@@ -10,7 +10,7 @@ from PIL import Image
 from mmweaver.core.presets import AWR1843, BGT60, PRESETS
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_preview, preview_figure
+from mmweaver.figures.preview import draw_preview
 from tests.figures.views import breathing_view, noise_view
 
 
@@ -61,19 +61,19 @@ def test_the_same_view_gives_the_same_bytes(view: FigureData, tmp_path: Path):
 
 
 def titles(view: FigureData) -> list[str]:
-    return [axes.get_title(loc="left") for axes in preview_figure(view).axes]
+    return [axes.get_title(loc="left") for axes in draw_preview(view, None).axes]
 
 
 def test_power_has_one_scale_and_a_row_one_colour_bar(view: FigureData):
-    figure = preview_figure(view)
+    figure = draw_preview(view, None)
     limits = {
         image.get_clim()
         for axes in figure.axes for image in axes.images
         if image.get_array().ndim == 2 and axes.get_title(loc="left")
     }  # fmt: skip
     assert limits == {(view.scale.low_db, view.scale.high_db)}
-    bars = [axes for axes in figure.axes if any(text.get_text() in ("dBm", "noise") for text in axes.texts)]
-    assert len(bars) == 2  # of the rows of power; the last row has that of velocities
+    bars = [child.get_ylabel() for axes in figure.axes for child in axes.child_axes if child.get_ylabel()]
+    assert bars == ["dBm", "dBm", "radial velocity (m/s), away +"]
 
 
 def test_noise_looks_empty(view: FigureData, tmp_path: Path):
@@ -116,14 +116,15 @@ def test_no_label_is_cut_off_or_over_another(view: FigureData):
     far = replace(AWR1843, first_range_bin=0, num_range_bins=256, num_loops=8)
     aop = replace(PRESETS["iwr6843aop"], num_loops=8)
     for shown in (view, breathing_view(view), noise_view(BGT60, 3), noise_view(far, 1), noise_view(aop, 3)):
-        figure = preview_figure(shown)
-        renderer = FigureCanvasAgg(figure).get_renderer()
+        figure = draw_preview(shown, None)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
         boxes = []
-        for axes in figure.axes:
+        for axes in (one for whole in figure.axes for one in (whole, *whole.child_axes)):
             titled = [text for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
             for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *titled):
                 if text.get_text():
-                    boxes.append((text.get_text(), text.get_window_extent(renderer)))
+                    boxes.append((text.get_text(), text.get_window_extent(canvas.get_renderer())))
         for name, box in boxes:
             inside = box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.width and box.y1 <= figure.bbox.height
             assert inside, (shown.title, name, box)

@@ -361,11 +361,11 @@ def test_a_drawn_path_is_walked(page: TestClient):
     assert "'--path=0.3,2.3 0.3,1.5 0.7,1.4'" in header["command"]
 
 
-def test_a_room_without_a_place_offers_ways_on(page: TestClient, monkeypatch: pytest.MonkeyPatch):
+def test_a_room_without_a_place_offers_recovery_options(page: TestClient, monkeypatch: pytest.MonkeyPatch):
     ways = {"nearest_place_m": [0.0, 5.0], "range_m": [4.0, 6.0], "radars": ["awr1843", "hupr"]}
 
     def none(*_: Any, **__: Any) -> None:
-        raise NoRoomError("no room", ways_on=ways)
+        raise NoRoomError("no room", recovery_options=ways)
 
     monkeypatch.setattr(Weaver, "generate", none)
     answer = page.post("/api/generate", json=WALK, headers=session(page))

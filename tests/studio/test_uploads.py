@@ -14,9 +14,9 @@ from mmweaver.core.presets import PRESETS
 from mmweaver.scene.photo.estimated_depth import EstimatedDepth
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.studio import uploads
+from mmweaver.studio.recovery_options import NoWayError
 from mmweaver.studio.sessions import Session, Sessions
 from mmweaver.studio.uploads import place_of, said_names, take
-from mmweaver.studio.ways_on import NoWayError
 from tests import captures
 from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
 from tests.fuzz.corpus import corpus
@@ -80,7 +80,7 @@ def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, mo
     monkeypatch.setattr(uploads, "is_installed", lambda _: True)
     with pytest.raises(NoWayError, match="a photo alone") as refused:
         take(session, tmp_path, AWR)
-    (way,) = refused.value.ways_on
+    (way,) = refused.value.recovery_options
     photo, _ = sample_photo()
     depth_m = np.where(np.isfinite(photo.depth_m), photo.depth_m, np.nan)
     found = EstimatedDepth(depth_m=depth_m, focal_px=photo.intrinsics.fx, model="made")
@@ -96,7 +96,7 @@ def test_without_the_package_it_says_what_to_install(session: Session, tmp_path:
     monkeypatch.setattr(uploads, "is_installed", lambda _: False)
     with pytest.raises(NoWayError, match=r"mmweaver\[pretrained\]") as refused:
         take(session, tmp_path, AWR)
-    assert refused.value.ways_on == []
+    assert refused.value.recovery_options == []
 
 
 def test_a_radar_alone_is_a_radar(session: Session, tmp_path: Path):

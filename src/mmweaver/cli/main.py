@@ -55,7 +55,9 @@ def _status(argv: list[str]) -> int:
         return status
     except InputError as error:
         if "--json" in (sys.argv[1:] if argv is None else argv):
-            print(json.dumps({"error": str(error), "ways_on": getattr(error, "ways_on", {})}, ensure_ascii=False))
+            print(
+                json.dumps({"error": str(error), "ways_on": getattr(error, "recovery_options", {})}, ensure_ascii=False)
+            )
         return _fail(str(error))
     except KeyboardInterrupt as stopped:
         _fail(f"interrupted; {str(stopped) or _kept()}")

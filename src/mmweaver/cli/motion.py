@@ -38,7 +38,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Animates the sentence and writes the requested files. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
-    from mmweaver.motion.empty_place import says_nobody
+    from mmweaver.motion.empty_scene import says_nobody
     from mmweaver.motion.language.step_names import doing
 
     _check_files(arguments)

@@ -95,7 +95,7 @@ def _profiles(axes: "Axes", comparison: "Comparison") -> None:
         axes.plot(range_m, maps.range_profile_db, color=colour, linewidth=1.3, label=letter)
     axes.margins(x=0)
     label_axes(axes, "Static clutter along range", "range (m)", comparison.axes.reference, grid=True)
-    axes.legend(loc="upper right")
+    axes.legend()
 
 
 def _clouds(axes: "Axes", comparison: "Comparison") -> None:
@@ -107,7 +107,7 @@ def _clouds(axes: "Axes", comparison: "Comparison") -> None:
     axes.plot(0, 0, "^", color=INK, markersize=7)
     axes.set(xlim=(-0.7 * far_m, 0.7 * far_m), ylim=(0, far_m))
     label_axes(axes, "Points of all frames from above", "right of the radar (m)", "away (m)")
-    axes.legend(loc="upper right", markerscale=3)
+    axes.legend(markerscale=0)
 
 
 def _effects(axes: "Axes", comparison: "Comparison") -> None:

@@ -20,25 +20,25 @@ class InputError(ValueError):
 
 
 class NoRoomError(InputError):
-    """A motion finds no room in a photo; `ways_on` says what would help.
+    """A motion finds no room in a photo; `recovery_options` says what would help.
 
     Keys, where known: `nearest_place_m` (x, y), `range_m` (near, far) of the window that it needs, None where the radar
     cannot have it, `radars` (names of presets that have such a window).
     """
 
-    def __init__(self, message: str, *, ways_on: Mapping[str, Any] | None = None) -> None:
-        self.ways_on: dict[str, Any] = dict(ways_on or {})
-        super().__init__(message + _in_words(self.ways_on))
+    def __init__(self, message: str, *, recovery_options: Mapping[str, Any] | None = None) -> None:
+        self.recovery_options: dict[str, Any] = dict(recovery_options or {})
+        super().__init__(message + _in_words(self.recovery_options))
 
 
-def _in_words(ways_on: Mapping[str, Any]) -> str:
-    if not ways_on:
+def _in_words(recovery_options: Mapping[str, Any]) -> str:
+    if not recovery_options:
         return ""
-    x, y = ways_on["nearest_place_m"]
-    radars = f"--radar {' or '.join(ways_on['radars'])}" if ways_on["radars"] else ""
-    if ways_on["range_m"] is None:
+    x, y = recovery_options["nearest_place_m"]
+    radars = f"--radar {' or '.join(recovery_options['radars'])}" if recovery_options["radars"] else ""
+    if recovery_options["range_m"] is None:
         return f"; the nearest free place is {x:g},{y:g}: try {radars}"
-    near_m, far_m = ways_on["range_m"]
+    near_m, far_m = recovery_options["range_m"]
     radars = f" (or without it {radars})" if radars else ""
     return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}{radars}"
 

@@ -1,7 +1,8 @@
 """A shaded body of capsules in numpy: which pixels it covers, how bright and how deep they are.
 
 A capsule appears as the discs of all spheres along its axis. A pixel takes the sphere that is nearest to it in the
-picture, and its depth and normal there; a depth buffer decides between capsules.
+picture, and its depth and normal there; a depth buffer decides between capsules. A body has a face: without one nobody
+sees in a picture that a head nods, shakes or looks around.
 """
 
 from dataclasses import dataclass
@@ -10,12 +11,17 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.records import PoseSequence
-from mmweaver.figures import face
-from mmweaver.figures.face import face_capsules
-from mmweaver.geometry.body_capsules import pose_capsules, radii_m, widths_per_depth
+from mmweaver.core.skeleton import joint
+from mmweaver.geometry.body_capsules import pose_capsules, radii_m, scale_of, widths_per_depth
 
 Array = np.ndarray
 LIGHT = np.array([-0.45, -0.62, 0.64])  # unit vector to the light: from the left, above and behind the viewer
+REST_TILT_RAD = float(np.arctan2(0.016, 0.052))  # of the head's joint ahead of the neck's, upright
+MAX_YAW_RAD, MAX_PITCH_RAD = 1.4, 1.0  # of the head
+# Face and nose of somebody of reference height, in the head's frame (ahead, up from the head's joint), and their radii.
+_FACE_M = np.array([[(0.042, 0.015), (0.042, 0.1)], [(0.1, 0.075), (0.135, 0.045)]])
+_FACE_RADIUS_M = np.array([(0.066, 0.072), (0.014, 0.02)])
+FACE_COUNT = len(_FACE_M)  # of the capsules
 AMBIENT = 0.46  # brightness of a surface along which the light falls; what is turned away is darker
 
 
@@ -58,8 +64,8 @@ def bodies_of(pose: PoseSequence, instants: Int[Array, " instant"]) -> list[Body
     face_m, face_radius_m = face_capsules(pose.joints_m[instants], pose.height_m)
     ends_m = np.concatenate([ends_m, face_m], axis=1)
     radius_m = np.concatenate([radii_m(pose.height_m, pose.girth), face_radius_m])
-    wider = np.append(widths_per_depth(), np.ones(face.COUNT))
-    wide = np.concatenate([posed.rotation[..., 0], np.repeat(posed.rotation[:, :1, :, 0], face.COUNT, axis=1)], axis=1)
+    wider = np.append(widths_per_depth(), np.ones(FACE_COUNT))
+    wide = np.concatenate([posed.rotation[..., 0], np.repeat(posed.rotation[:, :1, :, 0], FACE_COUNT, axis=1)], axis=1)
     return [
         Body(ends_m=ends, radius_m=radius_m, wide=own, width_per_depth=wider)
         for ends, own in zip(ends_m, wide, strict=True)
@@ -107,6 +113,14 @@ def rasterise(body: CapsulesInPicture, size: tuple[int, int]) -> BodyPixels | No
     )
 
 
+def blend(picture: np.ndarray, seen: BodyPixels, colour: np.ndarray, alpha: np.ndarray | float = 1.0) -> None:
+    """Paints a body of a colour, or of one of each pixel, 0 to 1, into a picture (row, column, 3) uint8."""
+    shown = picture[seen.rows, seen.columns]
+    below = shown.astype(np.float32)
+    shaded = seen.light[:, :, None] * (255.0 * colour)
+    shown[:] = np.rint(below + (alpha * seen.cover)[:, :, None] * (shaded - below)).astype(np.uint8)
+
+
 def _one(
     body: CapsulesInPicture, one: int, columns: Float[Array, " column"], rows: Float[Array, "row 1"]
 ) -> tuple[Float[Array, "row column"], Float[Array, "row column"], Float[Array, "row column"]]:
@@ -130,3 +144,41 @@ def _one(
 
 def _between(ends: Float[Array, "2"], share: Float[Array, "row column"]) -> Float[Array, "row column"]:
     return np.float32(ends[0]) + np.float32(ends[1] - ends[0]) * share
+
+
+def face_capsules(
+    joints_m: Float[np.ndarray, "time 22 3"], height_m: float
+) -> tuple[Float[np.ndarray, "time 2 2 3"], Float[np.ndarray, "2 2"]]:
+    """Ends and radii in metres of the face and of its nose."""
+    ahead, up = head_axes(joints_m)
+    place_m = _FACE_M * scale_of(height_m)
+    head = joints_m[:, None, None, joint("head")]
+    ends = head + place_m[..., :1] * ahead[:, None, None] + place_m[..., 1:] * up[:, None, None]
+    return ends, _FACE_RADIUS_M * scale_of(height_m)
+
+
+def head_axes(
+    joints_m: Float[np.ndarray, "time 22 3"],
+) -> tuple[Float[np.ndarray, "time 3"], Float[np.ndarray, "time 3"]]:
+    """Unit vectors to where the head faces and to its crown.
+
+    The 22 joints hold no rotation of the head. But the head's joint is a little in front of the neck's, so half of a
+    turn of the head and half of a nod move it relative to the chest, which gives the whole.
+    """
+    left = _unit(joints_m[:, joint("left_collar")] - joints_m[:, joint("right_collar")])
+    up = (joints_m[:, joint("left_collar")] + joints_m[:, joint("right_collar")]) / 2 - joints_m[:, joint("spine3")]
+    up = _unit(up - (up * left).sum(-1, keepdims=True) * left)
+    ahead = np.cross(left, up)
+    bone = joints_m[:, joint("head")] - joints_m[:, joint("neck")]
+    x, y, z = ((bone * axis).sum(-1) for axis in (ahead, left, up))
+    tilt = np.arctan2(np.hypot(x, y), z)
+    clear = np.clip(tilt / REST_TILT_RAD, 0.0, 1.0) * (x > 0)  # a head above its neck does not say where it faces
+    yaw = np.clip(2.0 * np.arctan2(y, np.maximum(x, 1e-9)) * clear, -MAX_YAW_RAD, MAX_YAW_RAD)[:, None]
+    signed = np.where(x >= 0, tilt, -tilt)
+    pitch = np.clip(2.0 * (signed - REST_TILT_RAD), -MAX_PITCH_RAD, MAX_PITCH_RAD)[:, None]
+    level = np.cos(yaw) * ahead + np.sin(yaw) * left
+    return np.cos(pitch) * level - np.sin(pitch) * up, np.sin(pitch) * level + np.cos(pitch) * up
+
+
+def _unit(vector: Float[np.ndarray, "time 3"]) -> Float[np.ndarray, "time 3"]:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

@@ -22,6 +22,7 @@ from mmweaver.dsp.spectra import (
 )
 from mmweaver.dsp.windows import SHORTEST_HANN
 from mmweaver.figures.power_scale import PowerScale
+from mmweaver.figures.theme import evenly_spaced
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 MAX_FRAMES = 100  # longer sequences are thinned out
@@ -51,7 +52,7 @@ class FigureData:
     def frames(self) -> Int[Array, " shown"]:
         """Indices of the shown frames: all, or evenly spaced ones."""
         count = len(self.cube.grid.frame_time_s)
-        return np.unique(np.linspace(0, count - 1, min(count, MAX_FRAMES)).round().astype(int))
+        return evenly_spaced(count, MAX_FRAMES)
 
     @cached_property
     def time_s(self) -> PerFrame:

@@ -1,5 +1,6 @@
 """A motion as a strip: the shaded body at evenly spaced times, side by side; left limbs blue, right limbs red."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,8 +10,8 @@ from jaxtyping import Float
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import PoseSequence
-from mmweaver.core.skeleton import joint
-from mmweaver.figures.body_rasteriser import Body, CapsulesInPicture, bodies_of, rasterise, seen_width
+from mmweaver.core.skeleton import BONES, JOINT_NAMES, joint
+from mmweaver.figures.body_rasteriser import Body, CapsulesInPicture, blend, bodies_of, rasterise, seen_width
 from mmweaver.figures.theme import STYLE
 from mmweaver.geometry.body_capsules import CAPSULES
 
@@ -25,7 +26,7 @@ TILT = 0.18  # upward shift per metre of distance
 PX_PER_M = 110.0
 BELOW_M, ABOVE_M = 0.25, 0.12  # shown below the floor and above the highest point
 LABEL_M, LIMB_M = 0.09, 0.08  # height of the seconds' line, and a limb's thickness with a margin
-LEAST_HIPS_M = 0.1  # distance of the hips on the floor plan from which a facing is read
+MIN_HIPS_M = 0.1  # distance of the hips on the floor plan from which a facing is read
 SHADOW_HEIGHT_M = 0.2  # limbs so high above the floor darken it by a third of what they do on it
 
 
@@ -94,7 +95,7 @@ def _facing_the_radar(pose: PoseSequence) -> PoseSequence:
     """The motion turned about the vertical to begin facing -y: a body seen from its side hides what it does."""
     across = (pose.joints_m[0, joint("left_hip")] - pose.joints_m[0, joint("right_hip")])[:2]
     length_m = float(np.hypot(*across))
-    if length_m < LEAST_HIPS_M:  # lying on a side: the hips do not say where it faces
+    if length_m < MIN_HIPS_M:  # lying on a side: the hips do not say where it faces
         return pose
     cos, sin = across / length_m
     turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
@@ -115,11 +116,8 @@ def _paint(picture: np.ndarray, body: Body, origin_m: Float[np.ndarray, "3"], or
         ),
         (picture.shape[0], picture.shape[1]),
     )  # fmt: skip
-    if seen is None:
-        return
-    shown = picture[seen.rows, seen.columns]
-    colour = 255.0 * COLOURS[seen.capsule] * seen.light[:, :, None]
-    shown[:] = np.rint(shown + seen.cover[:, :, None] * (colour - shown)).astype(np.uint8)
+    if seen is not None:
+        blend(picture, seen, COLOURS[seen.capsule])
 
 
 def _darken(
@@ -160,3 +158,43 @@ def _colour_of(name: str) -> tuple[float, float, float]:
 
 
 COLOURS = np.array([*(_colour_of(capsule.end) for capsule in CAPSULES), FACE_COLOUR, NOSE_COLOUR], np.float32)
+
+
+Joints = Float[np.ndarray, "frame 22 3"]
+PITCH_M, LOWEST_M, HIGHEST_M = 1.5, -1.25, 1.15  # heights over the pelvis
+LEFT, RIGHT, TRUNK, BEHIND = "#2b78b8", "#c2431c", "#444a52", "#b9bec6"
+
+
+def draw_pose_strips(
+    strips: Sequence[tuple[str, Joints, Joints | None]], path: Path, *, frame_rate_hz: float, count: int = 8
+) -> None:
+    """Writes a picture of a strip for each (title, joints, joints behind or None); both are set on their pelvises."""
+    import matplotlib.pyplot as plt
+
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(len(strips), 1, figsize=(10.0, 2.1 * len(strips)), squeeze=False)
+        for cell, (title, joints_m, behind_m) in zip(axes[:, 0], strips, strict=True):
+            chosen = np.linspace(0, len(joints_m) - 1, min(count, len(joints_m))).round().astype(int)
+            for place, frame in enumerate(chosen):
+                if behind_m is not None and np.isfinite(behind_m[frame]).all():
+                    _draw_skeleton(cell, behind_m[frame], place * PITCH_M, is_behind=True)
+                _draw_skeleton(cell, joints_m[frame], place * PITCH_M, is_behind=False)
+                cell.text(place * PITCH_M, LOWEST_M, f"{frame / frame_rate_hz:.1f} s", ha="center", fontsize=7)
+            cell.set(title=title, xlim=(-0.8, (count - 0.45) * PITCH_M), ylim=(LOWEST_M - 0.05, HIGHEST_M))
+            cell.set_aspect("equal")
+            cell.axis("off")
+        figure.tight_layout(pad=0.4)
+        with atomic_file(path) as temporary:
+            figure.savefig(temporary, dpi=100, format=path.suffix.removeprefix(".") or "png")
+        plt.close(figure)
+
+
+def _draw_skeleton(axes: "Axes", joints_m: Float[np.ndarray, "22 3"], place_m: float, *, is_behind: bool) -> None:
+    flat = (joints_m - joints_m[:1])[:, [0, 2]] + [place_m, 0.0]
+    for start, end in BONES:
+        name = JOINT_NAMES[end]
+        colour = LEFT if name.startswith("left") else RIGHT if name.startswith("right") else TRUNK
+        axes.plot(
+            *flat[[start, end]].T, color=BEHIND if is_behind else colour, linewidth=4.0 if is_behind else 1.4,
+            solid_capstyle="round",
+        )  # fmt: skip

@@ -14,8 +14,8 @@ from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
+from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.more_room import with_more_room
 from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Placement, place
 from mmweaver.motion.planning.targets import without_targets
@@ -126,7 +126,7 @@ def compose(
 
         return least_collision(candidates, animate, CollisionMap.of(scene))
 
-    plan, best, room_notes = with_more_room(
+    plan, best, room_notes = relax_constraints(
         plan, floor, compose_on, may_touch=may_touch, depth_m=_depth_m, farthest_m=farthest_m
     )
     placed, described = best.placement, (person.note,) if person.described else ()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.empty_place import NOBODY, says_nobody
+from mmweaver.motion.empty_scene import NOBODY, says_nobody
 from mmweaver.motion.language.sentence_parser import parse_sentence
 
 MAX_LABELS, MAX_SENTENCES = 1000, 1000

@@ -19,7 +19,7 @@ from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.empty_place import NOBODY
+from mmweaver.motion.empty_scene import NOBODY
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.random_scene import Variation
 from mmweaver.recognition.sensor_model import PointRadar, observed_cloud

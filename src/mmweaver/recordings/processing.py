@@ -67,10 +67,8 @@ class ProcessedRecording:
         if found.cells and found.slow_doppler is not None and found.slow_velocity_mps is not None:
             signs = found.vital_signs
             rates = {} if signs is None else {"breathing": signs.breathing, "heart": signs.heart}
-            draw_slow_time(
-                folder / "slow_time.png", title, self.cube, found.slow_doppler, found.slow_velocity_mps, found.cells,
-                rates,
-            )  # fmt: skip
+            slow = found.slow_doppler, found.slow_velocity_mps
+            draw_slow_time(folder / "slow_time.png", title, self.cube, slow, found.cells, rates)
         if found.micro_doppler is not None:
             draw_micro_doppler(folder / "micro_doppler.png", title, found.micro_doppler, self.cube.scale)
         if found.people:

@@ -264,8 +264,8 @@ def _packed(content: bytes) -> Response:
 
 
 async def _refused(_: Request, error: Exception) -> Response:
-    ways_on: list[Any] = getattr(error, "ways_on", [])
-    return JSONResponse({"error": " ".join(str(error).split()), "ways_on": ways_on}, status_code=422)
+    recovery_options: list[Any] = getattr(error, "recovery_options", [])
+    return JSONResponse({"error": " ".join(str(error).split()), "ways_on": recovery_options}, status_code=422)
 
 
 async def _busy(_: Request, __: Exception) -> Response:

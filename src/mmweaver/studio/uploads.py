@@ -17,9 +17,9 @@ from mmweaver.scene.photo.estimated_depth import AUTO
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
 from mmweaver.scene.scan_folders import scan_kind
 from mmweaver.studio.recorded import SETTINGS, read_recorded
+from mmweaver.studio.recovery_options import NoWayError
 from mmweaver.studio.rooms import read_room
 from mmweaver.studio.sessions import BroughtRoom, Session
-from mmweaver.studio.ways_on import NoWayError
 
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 200

@@ -23,9 +23,9 @@ from mmweaver.studio.compared import compared
 from mmweaver.studio.live import Live
 from mmweaver.studio.live_labels import OfferedRecognisers
 from mmweaver.studio.recorded import OfferedRecordings
+from mmweaver.studio.recovery_options import offer_recovery_options
 from mmweaver.studio.rooms import DEMO, OfferedRooms
 from mmweaver.studio.sessions import Result, Session, Sessions
-from mmweaver.studio.ways_on import ways_on_for_the_page
 
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
 BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
@@ -111,7 +111,7 @@ class Workshop:
         room = self.room_of(session, asked.room)
         radar, motion = self.radar_of(session, asked.radar), self.motion_of(session, asked.motion)
         weaver, board = self._weaver(asked, radar), self.board_of(session, asked.board, radar)
-        with ways_on_for_the_page(asked):
+        with offer_recovery_options(asked):
             generation = weaver.generate(room, motion=motion, board=board, **asked.request)
         if asked.room in session.rooms:
             options, call = list(session.rooms[asked.room].options), session.rooms[asked.room].call

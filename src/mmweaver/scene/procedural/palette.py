@@ -1,5 +1,6 @@
 """The surfaces of a room by name: fixed ones, and woods, fabrics, paints, walls and floor sampled from its seed."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +17,12 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-# kinds, furniture, finishes, textures, lightings
-TABLES = _frozen(read_toml(Path(__file__).with_name("rooms.toml")))
+def read_tables(name: str) -> Any:
+    """The tables of a TOML file in this folder, lists as tuples."""
+    return _frozen(read_toml(Path(__file__).with_name(name)))
+
+
+TABLES = read_tables("rooms.toml")  # kinds, finishes, colours, textures, lightings
 COLOURS = TABLES["colours"]
 
 Palette = dict[str, Appearance]
@@ -46,6 +51,7 @@ def sample_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tup
     palette = {name: Appearance(**row) for name, row in TABLES["finishes"].items()}
     palette["wood"] = varied(wood, "wood", pattern="grain")
     palette["dark_wood"] = varied(dark, "wood", pattern="grain")
+    palette["upright wood"] = replace(palette["wood"], pattern="upright")
     palette["cloth"] = varied(cloth, "fabric", pattern="weave")
     palette["accent"] = varied(accent, "fabric", pattern="weave")
     palette["white"] = varied(COLOURS["white"], "chipboard")

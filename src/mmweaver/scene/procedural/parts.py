@@ -67,6 +67,21 @@ class Piece:
         return np.max([part.high_m for part in self.parts], axis=0)
 
     @property
+    def half_m(self) -> float:
+        """Half the width, metres."""
+        return float(self.high_m[0])
+
+    @property
+    def back_m(self) -> float:
+        """From the origin to the back, metres."""
+        return float(self.high_m[1])
+
+    @property
+    def depth_m(self) -> float:
+        """From the origin to the front, metres."""
+        return -float(self.low_m[1])
+
+    @property
     def top_m(self) -> float:
         """Height of the surface for objects, metres: the highest top of a box that is larger than 0.1 m2."""
         sizes = [(part, np.subtract(part.high_m, part.low_m)) for part in self.parts if part.shape == "box"]

@@ -10,20 +10,22 @@ from mmweaver.studio.rooms import DEMO
 
 
 class NoWayError(InputError):
-    """A request that cannot be met; `ways_on` are buttons of the page: a label, and what they change."""
+    """A request that cannot be met; `recovery_options` are buttons of the page: a label, and what they change."""
 
-    def __init__(self, message: str, ways_on: list[dict[str, Any]]):
+    def __init__(self, message: str, recovery_options: list[dict[str, Any]]):
         super().__init__(message)
-        self.ways_on = ways_on
+        self.recovery_options = recovery_options
 
 
 @contextmanager
-def ways_on_for_the_page(asked: Asked) -> Iterator[None]:
+def offer_recovery_options(asked: Asked) -> Iterator[None]:
     """Turns what would help a motion that finds no room, or does not fit its path, into what the page can change."""
     try:
         yield
     except NoRoomError as error:
-        ways = [{"label": f"with {radar}", "change": {"radar": radar}} for radar in error.ways_on.get("radars", ())]
+        ways = [
+            {"label": f"with {radar}", "change": {"radar": radar}} for radar in error.recovery_options.get("radars", ())
+        ]
         if asked.room != DEMO:
             ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
         raise NoWayError(str(error), ways) from None

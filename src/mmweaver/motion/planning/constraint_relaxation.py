@@ -47,7 +47,7 @@ NARROW_FLOOR = (
 Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
-def with_more_room(
+def relax_constraints(
     plan: MotionPlan,
     floor: FloorMap,
     compose_on: Callable[[MotionPlan, FloorMap], Result],
@@ -79,7 +79,7 @@ def with_more_room(
         return min(deep, key=lambda one: depth_m(one[1]))
     assert first_error is not None
     if isinstance(first_error, NoRoomError):
-        raise NoRoomError(str(first_error), ways_on=ways_on(floor, plan, farthest_m)) from None
+        raise NoRoomError(str(first_error), recovery_options=recovery_options(floor, plan, farthest_m)) from None
     raise first_error
 
 
@@ -178,7 +178,7 @@ def falling(plan: MotionPlan, style: str) -> tuple[MotionPlan, tuple[str, ...]]:
     return replace(plan, steps=tuple(steps)), tuple(notes)
 
 
-def ways_on(floor: FloorMap, plan: MotionPlan, farthest_m: float = math.inf) -> dict[str, Any]:
+def recovery_options(floor: FloorMap, plan: MotionPlan, farthest_m: float = math.inf) -> dict[str, Any]:
     """Where there would be room: the nearest free place, the range window it needs, and presets that have it.
 
     Where the room has nothing of a place that the plan names, the nearest of that place. The window is one that the

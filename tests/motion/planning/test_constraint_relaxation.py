@@ -10,8 +10,13 @@ from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import APPROXIMATED
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.constraint_relaxation import (
+    NARROW_FLOOR,
+    going_on_elsewhere,
+    on_the_spot,
+    relax_constraints,
+)
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.more_room import NARROW_FLOOR, going_on_elsewhere, on_the_spot, with_more_room
 from tests.motion.rooms import WINDOW_M, room
 
 FULL = ((-3.0, 3.0, 0.0, 6.0),)
@@ -48,14 +53,14 @@ def test_an_error_names_the_nearest_place_the_window_it_needs_and_radars():
     far = room(boxes=((-3.0, 3.0, 0.0, 3.6),), depth_m=8.0, width_m=6.0)
     with pytest.raises(NoRoomError, match=r"nearest free place is .*try --range") as caught:
         _composed("a person waves", far)
-    x, y = caught.value.ways_on["nearest_place_m"]
-    near_m, far_m = caught.value.ways_on["range_m"]
+    x, y = caught.value.recovery_options["nearest_place_m"]
+    near_m, far_m = caught.value.recovery_options["range_m"]
     assert far_m > y > 3.6
     helped = compose(plan_motion("a person waves", 2.0), far, seed=0, range_window_m=(near_m, far_m))
     assert np.hypot(*(helped.pose.joints_m[0, 0, :2] - (x, y))) < 2.5
     with pytest.raises(NoRoomError) as caught:
         _composed("a person waves", room(boxes=FULL))
-    assert caught.value.ways_on == {}
+    assert caught.value.recovery_options == {}
 
 
 def test_a_place_outside_the_window_is_named_with_the_window_that_it_needs():
@@ -63,11 +68,13 @@ def test_a_place_outside_the_window_is_named_with_the_window_that_it_needs():
     text = "a person stands five metres away and waves"
     with pytest.raises(NoRoomError, match=r"nobody can be 5 m .*try --range") as caught:
         _composed(text, deep)
-    helped = compose(plan_motion(text, 2.0), deep, seed=0, range_window_m=tuple(caught.value.ways_on["range_m"]))
+    helped = compose(
+        plan_motion(text, 2.0), deep, seed=0, range_window_m=tuple(caught.value.recovery_options["range_m"])
+    )
     assert np.hypot(*helped.pose.joints_m[0, 0, :2]) == pytest.approx(5.0, abs=0.3)
     with pytest.raises(NoRoomError) as caught:
         _composed("a person stands 20 metres away", deep)
-    assert caught.value.ways_on == {}
+    assert caught.value.recovery_options == {}
 
 
 def test_who_has_no_room_to_walk_on_ahead_turns_and_it_is_said():
@@ -141,7 +148,7 @@ def test_where_floor_is_tight_the_way_that_gets_least_into_furniture_is_taken():
             tried.append((way_of, depths.get(way_of, 0.5)))
             return tried[-1]
 
-        return with_more_room(plan, floor, compose_on, depth_m=lambda result: result[1])[1][0]
+        return relax_constraints(plan, floor, compose_on, depth_m=lambda result: result[1])[1][0]
 
     assert composed({"there": 0.57, "spot, front": 0.01}) == "spot, front"
     assert composed({"there": 0.02}) == "there"
@@ -165,11 +172,11 @@ def test_an_advised_window_is_one_that_the_radar_has():
         far = room(boxes=((-3.0, 3.0, 0.0, first_free_m),), depth_m=9.0, width_m=6.0)
         with pytest.raises(NoRoomError) as caught:
             compose(plan, far, seed=0, range_window_m=WINDOW_M, farthest_m=5.07)
-        window_m = caught.value.ways_on["range_m"]
+        window_m = caught.value.recovery_options["range_m"]
         assert (window_m is not None) == sees_it
         if sees_it:
             assert window_m[1] <= 5.07
             compose(plan, far, seed=0, range_window_m=tuple(window_m))
         else:
             assert "--range" not in str(caught.value).split("try ")[-1]
-            assert caught.value.ways_on["radars"]
+            assert caught.value.recovery_options["radars"]
