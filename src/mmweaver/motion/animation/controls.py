@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 Array = np.ndarray
 LEFT, RIGHT = 0, 1
+OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
 TURNING = (0, 2)  # of the angles of an arm: flexion and twist go round
 
 
@@ -39,6 +40,22 @@ class Controls:
     def copy(self) -> "Controls":
         """A deep copy."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
+
+
+# Names of single angles: the array of Controls, and the index within it.
+CHANNELS: dict[str, tuple[str, int | None]] = {
+    name: (array, index)
+    for array, names in {
+        "pelvis_rad": "pelvis_roll pelvis_pitch pelvis_yaw",
+        "spine_rad": "spine_roll spine_pitch spine_yaw",
+        "head_rad": "head_pitch head_yaw",
+        "arm_rad": "flexion abduction twist elbow",
+        "foot_rad": "foot_yaw foot_pitch",
+    }.items()
+    for index, name in enumerate(names.split())
+}
+CHANNELS |= {name.removesuffix("_rad"): (name, None) for name in ("knee_out_rad", "knee_up_rad", "roll_over_rad")}
+CHANNELS |= {"heading": ("heading_rad", None), "contact": ("contact", None)}
 
 
 def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[Float[Array, "n 2"]]) -> Controls:

@@ -39,6 +39,11 @@ def wide_bump(u: Values) -> Values:
     return np.asarray(16 * (u * (1 - u)) ** 2)
 
 
+def raised_cosine(phase_rad: Values) -> Values:
+    """0 at phase 0, 1 at pi, 0 at 2 pi, and so on."""
+    return np.asarray(0.5 - 0.5 * np.cos(phase_rad))
+
+
 def plateau(time_s: Values, start_s: float, end_s: float, up_s: float, down_s: float) -> Values:
     """0 before start, up to 1 within `up_s`, down to 0 within `down_s` before the end; C2."""
     return np.asarray(rise((time_s - start_s) / up_s) * rise((end_s - time_s) / down_s))

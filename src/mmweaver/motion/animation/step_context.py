@@ -1,18 +1,34 @@
-"""What the function of an activity gets as input."""
+"""The step that is animated: what its function gets, and the building blocks by which it changes the Controls."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.registry import Registry
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.animation.arm_reach import reach
+from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls
 from mmweaver.motion.animation.habits import Habits
+from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
+from mmweaver.motion.animation.library.movement_primitives import (
+    Curve,
+    PerTime,
+    Span,
+    mix_arm,
+    sides,
+    spline_through,
+)
+from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.standing import STAND_STRETCH, upright
 from mmweaver.motion.language.plan import Step
 
-Array = np.ndarray
-
-
+BOTH = (LEFT, RIGHT)
+Place = Sequence[Curve] | Float[np.ndarray, "n 3"]  # ahead, outward, up
 STOOL_HEIGHT_M = 0.45  # of a seat where the scene has none
 
 
@@ -25,11 +41,11 @@ class PlacedStep:
     seat_height_m: float = STOOL_HEIGHT_M
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True)
 class StepContext:
     """One step of the motion. `time_s` covers the whole motion, so that neighbouring steps can be blended."""
 
-    time_s: Float[Array, " n"]
+    time_s: PerTime
     step: Step
     body: SkeletonProportions
     path: RootPath
@@ -42,19 +58,258 @@ class StepContext:
     arms_before: bool = False  # the step before holds the arms as this one does
     arms_after: bool = False  # the step after holds the arms as this one does
 
-    @property
-    def start_s(self) -> float:
-        return self.step.start_s
+    def __post_init__(self) -> None:
+        step = self.step
+        self.start_s, self.end_s, self.duration_s = step.start_s, step.end_s, step.end_s - step.start_s
+        self.hand, self.foot, self.direction, self.facing = step.hand, step.foot, step.direction, step.facing
+        self.style, self.count, self.speed = step.style, step.count, step.speed
+        self.height_m = self.body.height_m
+
+    @cached_property
+    def controls(self) -> Controls:
+        """The pose parameters that the activity changes: standing upright at first, for a gesture the posture's."""
+        return upright(self)
+
+    def stand(self) -> Controls:
+        """The controls; those of somebody upright are drawn now, before other random numbers."""
+        return self.controls
+
+    # ---- what the sentence and the seed decide
 
     @property
-    def end_s(self) -> float:
-        return self.step.end_s
+    def fewest(self) -> int:
+        """The least number of repetitions where the sentence names none: 2 where it says "several times"."""
+        return 2 if self.style == "several" else 1
 
-    @property
-    def duration_s(self) -> float:
-        return self.step.end_s - self.step.start_s
+    def by_speed(self, slow: float, usual: float, fast: float) -> float:
+        """One of three values, by the speed that the sentence names."""
+        return (usual, fast, slow)[self.speed]
 
     def tempo(self, slow: float, usual: float, fast: float, spread: float = 0.1) -> float:
         """A sampled rate: `slow` for 'slowly', `fast` for 'quickly', else `usual`; log-normal with `spread`."""
-        chosen = (usual, fast, slow)[self.step.speed] * self.step.pace
-        return chosen * float(np.exp(self.rng.normal(0.0, spread / 2)))
+        return self.by_speed(slow, usual, fast) * self.step.pace * float(np.exp(self.rng.normal(0.0, spread / 2)))
+
+    def uniform(self, low: float, high: float) -> float:
+        """A number between two, by the seed."""
+        return float(self.rng.uniform(low, high))
+
+    def sign(self) -> float:
+        """-1 or 1, by the seed."""
+        return float(self.rng.choice([-1.0, 1.0]))
+
+    def vary(self, value: float, spread: float = 0.12) -> float:
+        """A size with log-normal variation, clipped at twice the spread, and with the person's habit."""
+        size = float(np.exp(np.clip(self.rng.normal(0, spread), -2 * spread, 2 * spread)))
+        return value * self.habits.amplitude * size
+
+    def wander(self, slow_hz: float, fast_hz: float) -> PerTime:
+        """`profiles.wander` at the times of the motion."""
+        return wander(self.time_s, self.rng, slow_hz=slow_hz, fast_hz=fast_hz)
+
+    def one_side(self) -> int:
+        """The one arm that moves; of both, the right."""
+        return sides(self)[-1]
+
+    @property
+    def named_side(self) -> int:
+        """The left arm if the sentence names it, else the right one."""
+        return LEFT if self.hand == "left" else RIGHT
+
+    @property
+    def named_arms(self) -> tuple[int, ...]:
+        """The arms that the sentence names, else both."""
+        return sides(self) if self.hand else BOTH
+
+    def leg_side(self) -> int:
+        """The leg that moves: as the sentence says, else by the seed, the right one five times out of six."""
+        chosen = self.foot or ("right" if self.rng.random() < 5 / 6 else "left")
+        return LEFT if chosen == "left" else RIGHT
+
+    def standing_path(self) -> RootPath:
+        """The path of a body that stays where the step begins, facing as it does then."""
+        before_s = np.array([self.start_s - 0.001])
+        x, y = self.path.position_m(before_s)[0]
+        return RootPath(start_m=(float(x), float(y)), heading_rad=float(self.path.facing_rad(before_s)[0]))
+
+    # ---- functions of time
+
+    def repeats(self, natural_s: float, least_s: float, most_s: float, usual: int = 1) -> list[Span]:
+        """The repetitions: as many as the sentence asks for, else the usual number.
+
+        Several without a number are two, or more where the time allows it.
+        """
+        whole_body = self.style == "several" and not self.step.upper
+        count = self.count or (max(2, int(self.duration_s / natural_s)) if whole_body else usual)
+        wanted = natural_s / self.step.pace * self.by_speed(1.35, 1.0, 0.8) * float(np.exp(self.rng.normal(0, 0.07)))
+        each = float(np.clip(min(wanted, self.duration_s / count), least_s, most_s))
+        spare = 0.0 if count > 1 else max(self.duration_s - each, 0.0)
+        begin = self.start_s + min(0.1, 0.3 * spare)
+        return [Span(self.time_s, begin + k * each, each) for k in range(count)]
+
+    def in_turn(
+        self, usual_s: float, least_s: float, most_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
+    ) -> list[Span]:
+        """Repetitions that fill the step: as many as asked for, else as the time allows at `usual_s` each.
+
+        Each begins late by a share `lag`. `more` rounds their number otherwise than to the nearest.
+        """
+        fits = self.duration_s / usual_s
+        count = self.count or max(fewest, int(fits + more) if more else round(fits))
+        each = float(np.clip(self.duration_s / count, least_s, most_s))
+        return [Span(self.time_s, self.start_s + (k + lag) * each, each) for k in range(count)]
+
+    def cycles(self, slow: float, usual: float, fast: float, low_hz: float, high_hz: float) -> tuple[float, float]:
+        """Rate (Hz) and end in seconds of a periodic movement; a count in the sentence sets the rate within limits."""
+        rate_hz = self.tempo(slow, usual, fast)
+        if not self.count:
+            return rate_hz, self.end_s
+        rate = float(np.clip(self.count / max(self.duration_s - 0.2, 0.1), low_hz, high_hz))
+        return rate, self.start_s + self.count / rate
+
+    def phase(self, rate_hz: float) -> PerTime:
+        """Phase in radians of a periodic movement that begins with the step."""
+        return 2 * np.pi * rate_hz * (self.time_s - self.start_s)
+
+    def plateau(self, begin_s: float, end_s: float, up_s: float, down_s: float) -> PerTime:
+        """`profiles.plateau` at the times of the motion."""
+        return plateau(self.time_s, begin_s, end_s, up_s, down_s)
+
+    def since_start(self, low: float, slow: float, usual: float, fast: float, share: float) -> PerTime:
+        """Progress from 0 at the start to 1 after a share of the step, between `low` and a limit in seconds."""
+        return (self.time_s - self.start_s) / np.clip(share * self.duration_s, low, self.by_speed(slow, usual, fast))
+
+    def edges(self, up_s: float, down_s: float, after_s: float = 0.0) -> PerTime:
+        """1 within the step, rising from 0 at its start and falling at its end, unless the motion goes on there."""
+        ones = np.ones_like(self.time_s)
+        begin = ones if self.first else rise((self.time_s - self.start_s) / up_s)
+        return begin if self.last else begin * rise((self.end_s + after_s - self.time_s) / down_s)
+
+    # ---- changes of the controls
+
+    def add(self, curve: Curve, side: int | None = None, /, **gains: Curve) -> None:
+        """Adds gain times curve to channels (`controls.CHANNELS`), of one side or of both where a channel has two."""
+        for name, gain in gains.items():
+            array, index = CHANNELS[name]
+            values = getattr(self.controls, array)
+            values = values if index is None else values[..., index]
+            change = np.asarray(gain * curve)
+            if values.ndim == 2 and side is None:
+                change = change[..., None]
+            elif values.ndim == 2:
+                values = values[:, side]
+            values += change
+
+    def keyed(
+        self, u: PerTime, at: Sequence[float], gain: float = 1.0, side: int | None = None, **values: Sequence[float]
+    ) -> None:
+        """Adds smooth keyframes to channels: gain times `values` at `at` of a progress u (n,)."""
+        for name, keys in values.items():
+            self.add(spline_through(u, at, keys), side, **{name: gain})
+
+    def pelvis(self, ahead: Curve = 0.0, left: Curve = 0.0, up: Curve = 0.0) -> None:
+        """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""
+        cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
+        self.controls.pelvis_m[:, 0] += ahead * cos - left * sin
+        self.controls.pelvis_m[:, 1] += ahead * sin + left * cos
+        self.controls.pelvis_m[:, 2] += up
+
+    def move_foot(self, side: int, ahead: Curve = 0.0, out: Curve = 0.0, up: Curve = 0.0) -> None:
+        """Moves a foot ahead, outward and up; metres, (n,) or constant."""
+        cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
+        left = OUTWARD[side] * out
+        self.controls.foot_m[:, side, 0] += ahead * cos - left * sin
+        self.controls.foot_m[:, side, 1] += ahead * sin + left * cos
+        self.controls.foot_m[:, side, 2] += up
+
+    def bend_knees(self, room: Curve) -> None:
+        """Keeps at least so much room for bent knees, 0 to 1."""
+        self.controls.knee_room[:] = np.maximum(self.controls.knee_room, room)
+
+    def lift_weight(self, side: int, air: PerTime) -> None:
+        """Takes the weight off a foot as `air` (n,) goes to 1; both knees bend slightly."""
+        self.add(air, side, contact=-1)
+        self.bend_knees(0.8 * air)
+
+    def lean_over(self, side: int, share: PerTime) -> None:
+        """Shifts the body over one foot as `share` (n,) goes to 1; the trunk stays upright."""
+        self.pelvis(left=OUTWARD[side] * 0.043 * self.height_m * share)
+        self.add(share, spine_roll=-OUTWARD[side] * 0.05)
+
+    def crouch(self, depth: PerTime, lean_rad: float) -> None:
+        """Lowers the body by a share (n,) of the deepest squat: hips back, trunk forward, knees over the feet."""
+        body, knee, back = self.body, np.radians(118.0), 0.12 * self.height_m
+        leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
+        low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + 0.95 * body.hip_below_pelvis_m
+        self.pelvis(-back * depth, 0.0, -depth * (body.pelvis_height_m(STAND_STRETCH) - low))
+        self.add(
+            depth, pelvis_pitch=0.6 * lean_rad, spine_pitch=0.7 * lean_rad, head_pitch=-0.5 * lean_rad, knee_out=0.2
+        )
+
+    def arm(self, angles: Sequence[float] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
+        """Blends arms, both by default, to angles of flexion, abduction, twist and elbow as `weight` (n,) goes to 1."""
+        for side in sides or BOTH:
+            mix_arm(self.controls, side, np.asarray(angles), weight)
+
+    def hand_to(
+        self,
+        side: int | tuple[int, ...],
+        target: Place,
+        weight: Curve = 1.0,
+        elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0),
+    ) -> None:
+        """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
+        self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
+
+    def hand_to_m(
+        self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: tuple[float, float, float]
+    ) -> None:
+        """The same in metres; the elbow points in the direction `elbow`."""
+        self.arm(reach(self.body, self._points(target), elbow), weight, *np.atleast_1d(side))
+
+    def _points(self, target: Place) -> Float[np.ndarray, "n 3"]:
+        if isinstance(target, np.ndarray):
+            return target
+        return np.stack([np.broadcast_to(np.asarray(part, float), self.time_s.shape) for part in target], axis=1)
+
+    def mouth_m(self, side: int) -> Float[np.ndarray, "n 3"]:
+        """Place (n, 3) in metres of the mouth for an arm: ahead, outward and up of spine3 in the chest's frame."""
+        head_rad = self.controls.head_rad
+        half = about_z(head_rad[:, 1] / 2) @ about_y(head_rad[:, 0] / 2)
+        head = self.body.offset_m[joint("neck")] + rotated(half, self.body.offset_m[joint("head")])
+        return (head + rotated(half @ half, self.body.mouth_m)) * [1.0, OUTWARD[side], 1.0]
+
+
+POSTURES: Registry[Callable[[StepContext], Controls]] = Registry("movement", [])
+GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry("gesture", [])
+Animate = Callable[[StepContext], None]
+
+
+def posture(key: str, *, stands: bool = True) -> Callable[[Animate], Animate]:
+    """Registers the function of a body activity; it starts from `controls` upright, drawn first if it `stands`."""
+
+    def register(animate: Animate) -> Animate:
+        def perform(act: StepContext) -> Controls:
+            if stands:
+                act.stand()
+            animate(act)
+            return act.controls
+
+        POSTURES.register(key, perform)
+        return animate
+
+    return register
+
+
+def gesture(key: str) -> Callable[[Animate], Animate]:
+    """Registers the function of a hand activity, which changes arms, trunk and head of the posture's `controls`."""
+
+    def register(animate: Animate) -> Animate:
+        def perform(act: StepContext, controls: Controls) -> Controls:
+            act.controls = controls
+            animate(act)
+            return controls
+
+        GESTURES.register(key, perform)
+        return animate
+
+    return register

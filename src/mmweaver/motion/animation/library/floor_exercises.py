@@ -1,23 +1,20 @@
-"""On the floor: push-ups, sit-ups and crawling. Down there already, as in the middle of the exercise."""
+"""On the floor: push-ups, sit-ups, crawling and forward rolls.
+
+Arms of a roll are solved from the floor while hands lie on it. Whole turns are taken out of angles once a roll is over:
+joints do not see it, and what follows begins at zero.
+"""
 
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.kinematics import ankle_from_foot
-from mmweaver.motion.animation.library.movement_primitives import (
-    cycles,
-    hand_to,
-    mix_arm,
-    place,
-    shift_foot,
-    shift_pelvis,
-    vary,
-)
+from mmweaver.motion.animation.arm_reach import reach
+from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
+from mmweaver.motion.animation.kinematics import ankle_from_foot, chest_of
+from mmweaver.motion.animation.library.movement_primitives import PerTime, spline_through
 from mmweaver.motion.animation.library.on_the_floor import KNEELING_M, lying
-from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, STAND_STRETCH, upright
-from mmweaver.motion.animation.profiles import rise
-from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.animation.profiles import cap, plateau, raised_cosine, rise
+from mmweaver.motion.animation.standing import ANKLE_BEHIND, STAND_STRETCH
+from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 _UP_RAD, _DOWN_RAD = 0.32, 0.06  # of the straight body over the floor, arms stretched and bent
 _ON_TOES_RAD = 1.35  # pitch of the feet
@@ -27,91 +24,141 @@ _FASTEST_TURNING_MPS = 0.35  # of limbs in a turn: before they are on the floor,
 _STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
 
 
-def plank(context: StepContext) -> Controls:
+@posture("plank")
+def plank(act: StepContext) -> None:
     """The upper position of a push-up, held."""
-    return _on_hands(context, np.zeros_like(context.time_s))
+    _support_on_hands(act, np.zeros_like(act.time_s))
 
 
-def push_ups(context: StepContext) -> Controls:
+@posture("push_ups", stands=False)
+def push_ups(act: StepContext) -> None:
     """The body stays straight from the heels to the head and goes down and up on the arms; the root is at the feet."""
-    rate, end = cycles(context, context.tempo(0.35, 0.55, 0.8), 0.3, 1.1)
-    until = np.minimum(context.time_s, end) if context.step.count else context.time_s  # a count ends stretched
-    phase = 2 * np.pi * rate * (until - context.start_s)
-    return _on_hands(context, 0.5 - 0.5 * np.cos(phase))
+    _support_on_hands(act, _counted_cycles(act, 0.35, 0.55, 0.8, 0.3, 1.1))
 
 
-def _on_hands(context: StepContext, down: Float[np.ndarray, " n"]) -> Controls:
+def _counted_cycles(act: StepContext, *rates_hz: float) -> PerTime:
+    """0 to 1 and back (n,) again and again; a count ends at 0. The controls are drawn after the rate."""
+    rate, end_s = act.cycles(*rates_hz)
+    act.stand()
+    return raised_cosine(2 * np.pi * rate * (np.minimum(act.time_s, end_s if act.count else np.inf) - act.start_s))
+
+
+def _support_on_hands(act: StepContext, down: PerTime) -> None:
     """down (n,) = 0 arms stretched, 1 bent."""
-    controls, body, h = upright(context), context.body, context.body.height_m
-    depth = vary(context, 0.92, 0.05)
-    slope = _UP_RAD + np.minimum(depth, 1.0) * down * (_DOWN_RAD - _UP_RAD)
-    leg, pitch = 0.995 * (body.leg_m + body.hip_below_pelvis_m), np.array([_ON_TOES_RAD])
-    ankle = ankle_from_foot(body, np.zeros(1), pitch)[0]
-    stand = body.pelvis_height_m(STAND_STRETCH)
-    ahead = ankle[0] - ANKLE_BEHIND * h + leg * np.cos(slope)
-    shift_pelvis(controls, ahead, 0.0, ankle[2] + leg * np.sin(slope) - stand)
-    controls.pelvis_rad[:, 1] += 0.5 * np.pi - slope
-    controls.spine_rad[:] = 0.0
-    controls.head_rad[:, 0] -= 0.35
-    for side in (LEFT, RIGHT):
-        controls.foot_rad[:, side, 1] += _ON_TOES_RAD
-    controls.knee_up_rad[:] -= 1.45
-    controls.knee_room[:] = 1.0
-    straight = np.tile([1.57 - 0.3, 0.15, 0.0, 0.1], (len(down), 1))
-    bent = np.tile([-0.25, 0.45, 0.0, 1.95], (len(down), 1))
-    for side in (LEFT, RIGHT):
-        mix_arm(controls, side, straight + down[:, None] * (bent - straight), np.ones_like(down))
-    return controls
+    body, h, n = act.body, act.height_m, len(down)
+    slope = _UP_RAD + np.minimum(act.vary(0.92, 0.05), 1.0) * down * (_DOWN_RAD - _UP_RAD)
+    leg = 0.995 * (body.leg_m + body.hip_below_pelvis_m)
+    ankle = ankle_from_foot(body, np.zeros(1), np.array([_ON_TOES_RAD]))[0]
+    up = ankle[2] + leg * np.sin(slope) - body.pelvis_height_m(STAND_STRETCH)
+    act.pelvis(ankle[0] - ANKLE_BEHIND * h + leg * np.cos(slope), up=up)
+    act.add(1, pelvis_pitch=0.5 * np.pi - slope, head_pitch=-0.35, foot_pitch=_ON_TOES_RAD, knee_up=-1.45)
+    act.controls.spine_rad[:] = 0.0
+    act.controls.knee_room[:] = 1.0
+    straight, bent = np.tile([1.57 - 0.3, 0.15, 0.0, 0.1], (n, 1)), np.array([-0.25, 0.45, 0.0, 1.95])
+    act.arm(straight + down[:, None] * (bent - straight))
 
 
-def sit_ups(context: StepContext) -> Controls:
+@posture("sit_ups", stands=False)
+def sit_ups(act: StepContext) -> None:
     """On the back, knees bent, arms crossed on the chest: the trunk curls up until it is upright, and goes down."""
-    rate, end = cycles(context, context.tempo(0.28, 0.42, 0.6), 0.25, 0.8)
-    until = np.minimum(context.time_s, end) if context.step.count else context.time_s  # a count ends lying
-    up = 0.5 - 0.5 * np.cos(2 * np.pi * rate * (until - context.start_s))
-    controls, n = lying(context), len(up)
-    rise_rad = min(vary(context, 1.2, 0.05), 1.3)
-    controls.pelvis_rad[:, 1] += rise_rad * up
-    controls.spine_rad[:, 1] += 0.7 * np.sin(0.5 * np.pi * up)
-    controls.head_rad[:, 0] += 0.25
-    shift_pelvis(controls, 0.0, 0.0, 0.012 * context.body.height_m * up)
+    up = _counted_cycles(act, 0.28, 0.42, 0.6, 0.25, 0.8)
+    lying(act)
+    act.add(up, pelvis_pitch=min(act.vary(1.2, 0.05), 1.3))
+    act.add(np.sin(0.5 * np.pi * up), spine_pitch=0.7)
+    act.add(1, head_pitch=0.25)
+    act.pelvis(up=0.012 * act.height_m * up)
     for side, ahead in ((LEFT, 0.13), (RIGHT, 0.105)):
-        hand_to(controls, context.body, side, place(ahead, -0.05, 0.03, n), np.ones(n), (-0.1, 0.8, -1.0))
-    return controls
+        act.hand_to(side, (ahead, -0.05, 0.03), 1.0, (-0.1, 0.8, -1.0))
 
 
-def crawling(context: StepContext) -> Controls:
+@posture("crawl")
+def crawling(act: StepContext) -> None:
     """On hands and knees; a knee and the opposite hand go ahead together."""
-    controls, body, h = upright(context), context.body, context.body.height_m
-    gone_m, going = _crawled(context)
-    phase = 2 * np.pi / vary(context, _STRIDE_M, 0.08) * gone_m
-    stand = body.pelvis_height_m(STAND_STRETCH)
-    shift_pelvis(controls, 0.0, 0.0, 0.95 * KNEELING_M * h - stand + 0.008 * h * np.cos(2 * phase))
-    controls.pelvis_rad[:, 1] += 1.25
-    controls.pelvis_rad[:, 2] += 0.08 * np.sin(phase)
-    controls.head_rad[:, 0] -= 0.7
-    controls.knee_room[:] = 1.0
-    for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
-        ahead = 0.5 * _STRIDE_M * np.sin(phase) * sign
+    h, (gone_m, going) = act.height_m, _crawled(act)
+    phase = 2 * np.pi / act.vary(_STRIDE_M, 0.08) * gone_m
+    act.pelvis(up=0.95 * KNEELING_M * h - act.body.pelvis_height_m(STAND_STRETCH) + 0.008 * h * np.cos(2 * phase))
+    act.add(1, pelvis_pitch=1.25, pelvis_yaw=0.08 * np.sin(phase), head_pitch=-0.7, foot_pitch=1.42)
+    act.controls.knee_room[:] = 1.0
+    for side, sign in enumerate(OUTWARD):
         air = rise(sign * np.cos(phase) + 0.3) * going
-        shift_foot(controls, side, ahead - _SHIN * h, -0.01 * h, 0.02 * h * air)
-        controls.foot_rad[:, side, 1] += 1.42
-        swing = -sign * np.sin(phase)  # the opposite hand
-        arm = np.tile([1.3, 0.08, 0.0, 0.15], (len(phase), 1))
-        arm[:, 0] += 0.28 * swing
+        act.move_foot(side, 0.5 * _STRIDE_M * np.sin(phase) * sign - _SHIN * h, -0.01 * h, 0.02 * h * air)
+        arm: Float[np.ndarray, "n 4"] = np.tile([1.3, 0.08, 0.0, 0.15], (len(phase), 1))
+        arm[:, 0] += 0.28 * (-sign * np.sin(phase))  # the opposite hand
         arm[:, 3] += 0.35 * rise(-sign * np.cos(phase) + 0.3) * going
-        mix_arm(controls, side, arm, np.ones_like(phase))
-    return controls
+        act.arm(arm, 1.0, side)
 
 
-def _crawled(context: StepContext) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
+def _crawled(act: StepContext) -> tuple[PerTime, PerTime]:
     """How far the limbs have carried the body, in metres, and 1 while it goes or turns; at an even pace on the spot."""
-    time_s, path = context.time_s, context.path
-    if not context.moves:
-        return 0.15 * (time_s - context.start_s), np.ones_like(time_s)
+    time_s, path = act.time_s, act.path
+    if not act.moves:
+        return 0.15 * (time_s - act.start_s), np.ones_like(time_s)
     turning_mps = _TURNING_M * np.abs(path.facing_rad(time_s + 1e-3) - path.facing_rad(time_s - 1e-3)) / 2e-3
     speed_mps = path.speed_mps(time_s) + np.minimum(turning_mps, _FASTEST_TURNING_MPS)
     steps_m = 0.5 * (speed_mps[1:] + speed_mps[:-1]) * np.diff(time_s)
     gone_m = np.concatenate([[0.0], np.cumsum(steps_m)])
     before_m, after_m = (np.interp(time_s + lag, time_s, gone_m) for lag in (-_LIFTING_S, _LIFTING_S))
     return gone_m, rise((after_m - before_m) / (2 * _LIFTING_S) / 0.12)
+
+
+AHEAD = 1.08  # of the height: how far on the body stands up again after a roll
+UPRIGHT_AGAIN = 0.82  # share of a roll after which trunk and feet have turned once
+_AT = (0.0, 0.27, 0.4, 0.47, 0.53, 0.6, 0.67, 0.73, 0.82, 1.0)  # shares of a roll
+_PELVIS_AHEAD = (0.0, 0.03, 0.16, 0.32, 0.5, 0.67, 0.79, 0.88, 1.0, AHEAD)  # of the height
+_PELVIS_UP = (0.0, 0.29, 0.38, 0.37, 0.24, 0.1, 0.085, 0.11, 0.25, 0.0)  # 0: as in standing
+_FOOT_AT = (0.36, 0.45, 0.52, 0.58, 0.64, 0.7, 0.75)
+_FOOT_AHEAD = (0.0, -0.02, 0.22, 0.68, 0.98, 1.07, AHEAD)
+_FOOT_UP = (0.0, 0.15, 0.55, 0.52, 0.3, 0.06, 0.0)
+_HANDS = (0.46, 0.12, 0.03)  # where they lie: ahead, outward, up
+
+
+@posture("forward_roll", stands=False)
+def rolling_forward(act: StepContext) -> None:
+    """Hands on the floor, over the rounded back, and up onto the feet again, one roll after the other."""
+    start, end = act.path.position_m(np.array([act.start_s - 0.001, act.end_s]))
+    act.path = act.standing_path()
+    act.stand()
+    rolls = act.repeats(2.9, 2.5, 4.0)
+    each_m = float(np.hypot(*(end - start))) / len(rolls)
+    for k, span in enumerate(rolls):
+        _roll_once(act, (act.time_s - span.begin_s) / span.lasts_s, each_m, k * each_m)
+
+
+def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float) -> None:
+    """One roll over `share` (n,) 0 to 1, after the body has gone `gone_m` ahead."""
+    h, stand = act.height_m, act.body.pelvis_height_m(STAND_STRETCH)
+    stretch, whole = length_m / (AHEAD * h), 2 * np.pi * (share >= UPRIGHT_AGAIN)
+    heights = [(z * h or stand) - stand for z in _PELVIS_UP]
+    act.pelvis(stretch * h * spline_through(share, _AT, _PELVIS_AHEAD), 0.0, spline_through(share, _AT, heights))
+    over = 1.0 * rise(share / 0.27) + (2 * np.pi - 1.0) * rise((share - 0.26) / (UPRIGHT_AGAIN - 0.26)) - whole
+    act.add(1, pelvis_pitch=over, knee_up=-over + 0.25 * np.pi * plateau(share, 0.1, 0.9, 0.2, 0.2))
+    act.add(plateau(share, 0.08, 0.95, 0.3, 0.3), spine_pitch=1.0)
+    act.add(plateau(share, 0.2, 0.85, 0.18, 0.2), head_pitch=0.9)
+    act.bend_knees(plateau(share, 0.0, 1.0, 0.15, 0.15))
+    # Both feet push off, go over the head with the legs, and come down together.
+    pitch = 2 * np.pi * rise((share - 0.33) / (UPRIGHT_AGAIN - 0.03 - 0.33))
+    pivot = ankle_from_foot(act.body, np.zeros(len(share)), pitch) - [0.0, 0.0, act.body.ankle_height_m]
+    pushing = 1 - plateau(share, _FOOT_AT[0], _FOOT_AT[-1], 0.05, 0.05)  # on the ball until it leaves the floor
+    ahead = stretch * h * spline_through(share, _FOOT_AT, _FOOT_AHEAD) - pivot[:, 0] + pushing * pivot[:, 0]
+    up = h * spline_through(share, _FOOT_AT, _FOOT_UP) - pivot[:, 2] + pushing * pivot[:, 2]
+    act.add(1, foot_pitch=pitch - whole)
+    for side in BOTH:
+        act.move_foot(side, ahead, 0.0, up)
+    for side in BOTH:
+        act.add(plateau(share, 0.33, 0.77, 0.08, 0.06), side, contact=-1)
+        act.arm((0.9, 0.15, 0.0, 0.9), plateau(share, 0.1, 0.98, 0.2, 0.25), side)
+        _put_hand_on_floor(act, side, share, gone_m)
+
+
+def _put_hand_on_floor(act: StepContext, side: int, share: PerTime, gone_m: float) -> None:
+    """One hand at its place on the floor while it carries weight."""
+    h, heading, start = act.height_m, act.controls.heading_rad, act.path.position_m(act.time_s)
+    ahead, left = _HANDS[0] * h + gone_m, OUTWARD[side] * _HANDS[1] * h
+    x = start[:, 0] + ahead * np.cos(heading) - left * np.sin(heading)
+    y = start[:, 1] + ahead * np.sin(heading) + left * np.cos(heading)
+    place, frame = chest_of(act.body, act.controls)
+    in_chest = np.einsum("nji,nj->ni", frame, np.stack([x, y, np.full(len(share), _HANDS[2] * h)], axis=1) - place)
+    in_chest[:, 1] *= OUTWARD[side]
+    arm = reach(act.body, in_chest, elbow=(-0.2, 0.9, -0.3))
+    arm[:, 0] = cap(arm[:, 0], 2.9, 0.4)  # the hands leave the floor when the shoulders have passed them
+    act.arm(arm, plateau(share, 0.12, 0.58, 0.15, 0.17), side)

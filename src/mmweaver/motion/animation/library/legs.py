@@ -1,259 +1,317 @@
-"""Leg activities on the spot: kicks, stamps, raised legs, standing and hopping on one leg, lunges, marching."""
+"""Legs on the spot: kicks, raised legs, balancing, lunges, stairs, crouching, yoga, exercises of rehabilitation.
 
-from dataclasses import replace
+Those of rehabilitation are of MARS (An and Ogras, 2021). How far the joints go was chosen by hand, that of side lunges,
+squats and front lunges after a look at its first subject (studies/motion/mars_exercises.py).
+"""
 
 import numpy as np
 
-from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library import gait
-from mmweaver.motion.animation.library.jumping import bounce
-from mmweaver.motion.animation.library.movement_primitives import (
-    OUTWARD,
-    crouched,
-    cycles,
-    lean_over,
-    leg_side,
-    lift_weight,
-    repeats,
-    shift_foot,
-    shift_pelvis,
-    spline_through,
-    vary,
-)  # fmt: skip
-from mmweaver.motion.animation.library.standing import upright
-from mmweaver.motion.animation.profiles import bump, plateau, rise
-from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.animation.controls import OUTWARD, RIGHT
+from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides
+from mmweaver.motion.animation.profiles import bump, reached, rise
+from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture, posture
 
 
-def kicking(context: StepContext) -> Controls:
+@posture("kick")
+def kicking(act: StepContext) -> None:
     """Weight on one leg; the other swings back, shoots forward with the knee extending, and comes back.
 
     In a kick to the back it shoots out behind the body, which leans ahead.
     """
-    controls, time_s, h = upright(context), context.time_s, context.body.height_m
-    side = leg_side(context)
-    high = (
-        float(context.rng.uniform(0.1, 0.3)) if context.step.style != "high" else float(context.rng.uniform(0.38, 0.46))
-    )
-    backwards = context.step.style == "back"
-    leans_back = -0.75 if backwards else 1.0
+    h, side = act.height_m, act.leg_side()
+    high = act.uniform(0.38, 0.46) if act.style == "high" else act.uniform(0.1, 0.3)
     reach = np.sqrt(0.44**2 - max(0.43 - high, 0.0) ** 2) if high < 0.43 else 0.42
-    for begin, lasts in repeats(context, 1.35, 1.0, 1.9):
-        at = [begin + share * lasts for share in (0.0, 0.2, 0.36, 0.6, 0.78, 1.0)]
-        way = [0.0, 0.0, 0.03, -0.75 * reach, -0.1, 0.0] if backwards else [0.0, -0.08, -0.16, 0.95 * reach, 0.12, 0.0]
-        ahead = spline_through(time_s, at, way)
-        up = spline_through(time_s, at, [0.0, 0.045, 0.1, high, 0.14, 0.0])
-        over = plateau(time_s, begin - 0.12 * lasts, begin + 1.1 * lasts, 0.32 * lasts, 0.34 * lasts)
-        air = plateau(time_s, begin, begin + lasts, 0.16 * lasts, 0.16 * lasts)
-        swing = plateau(time_s, begin + 0.32 * lasts, begin + 0.9 * lasts, 0.28 * lasts, 0.3 * lasts)
-        shift_foot(controls, side, ahead * h, -0.02 * h * over, np.maximum(up, 0.0) * h)
-        lean_over(controls, context.body, 1 - side, over)
-        lift_weight(controls, side, air)
-        shift_pelvis(controls, 0.0, 0.0, -0.012 * h * over)
-        controls.foot_rad[:, side, 1] += spline_through(time_s, at, [0.0, 0.5, 0.8, -0.25, 0.1, 0.0])
-        controls.pelvis_rad[:, 1] -= 0.22 * leans_back * swing
-        controls.spine_rad[:, 1] += 0.12 * leans_back * swing
-        controls.pelvis_rad[:, 2] += OUTWARD[1 - side] * 0.25 * swing
-        for arm in (LEFT, RIGHT):
-            controls.arm_rad[:, arm, 0] += (0.7 if arm != side else -0.45) * swing
-            controls.arm_rad[:, arm, 1] += 0.35 * over
-            controls.arm_rad[:, arm, 3] += 0.5 * over
-    return controls
+    lean, way = 1.0, [0.0, -0.08, -0.16, 0.95 * reach, 0.12, 0.0]
+    if act.style == "back":
+        lean, way = -0.75, [0.0, 0.0, 0.03, -0.75 * reach, -0.1, 0.0]
+    at = (0.0, 0.2, 0.36, 0.6, 0.78, 1.0)
+    for span in act.repeats(1.35, 1.0, 1.9):
+        ahead, up = span.keys(at, way), span.keys(at, [0.0, 0.045, 0.1, high, 0.14, 0.0])
+        over, swing = span.plateau(-0.12, 1.1, 0.32, 0.34), span.plateau(0.32, 0.9, 0.28, 0.3)
+        act.move_foot(side, ahead * h, -0.02 * h * over, np.maximum(up, 0.0) * h)
+        act.lean_over(1 - side, over)
+        act.lift_weight(side, span.plateau(0, 1, 0.16, 0.16))
+        act.pelvis(up=-0.012 * h * over)
+        act.add(span.keys(at, [0.0, 0.5, 0.8, -0.25, 0.1, 0.0]), side, foot_pitch=1)
+        act.add(swing, pelvis_pitch=-0.22 * lean, spine_pitch=0.12 * lean, pelvis_yaw=-OUTWARD[side] * 0.25)
+        act.add(swing, 1 - side, flexion=0.7)
+        act.add(swing, side, flexion=-0.45)
+        act.add(over, abduction=0.35, elbow=0.5)
 
 
-def stamping(context: StepContext) -> Controls:
-    """One knee goes up and the foot comes down hard and flat."""
-    controls, time_s, h = upright(context), context.time_s, context.body.height_m
-    side = leg_side(context)
-    for begin, lasts in repeats(context, 0.95, 0.75, 1.4):
-        at = [begin, begin + 0.42 * lasts, begin + 0.86 * lasts]
-        up = spline_through(time_s, at, [0.0, vary(context, 0.13, 0.08), 0.0])
-        over = plateau(time_s, begin - 0.15 * lasts, begin + 1.05 * lasts, 0.4 * lasts, 0.3 * lasts)
-        shift_foot(controls, side, 0.05 * h * np.maximum(up, 0) / 0.15, 0.0, np.maximum(up, 0.0) * h)
-        lean_over(controls, context.body, 1 - side, over)
-        lift_weight(controls, side, plateau(time_s, begin, begin + 0.8 * lasts, 0.2 * lasts, 0.2 * lasts))
-        controls.foot_rad[:, side, 1] += 0.25 * np.maximum(up, 0.0) / 0.15
-    return controls
-
-
-def raising_leg(context: StepContext) -> Controls:
-    """The knee comes up in front until the thigh is about level, and goes down again."""
-    controls, time_s = upright(context), context.time_s
-    side = leg_side(context)
-    high = float(context.rng.uniform(0.16, 0.24))
-    count = max(context.step.count, 1)
-    for begin, lasts in repeats(context, max(1.9, min(context.duration_s / count, 4.0)), 1.2, 4.5):
-        move = min(0.42 * lasts, 0.95)
-        _lift_leg(controls, context, side, plateau(time_s, begin, begin + lasts, move, move), high)
-    return controls
-
-
-def _lift_leg(controls: Controls, context: StepContext, side: int, share: np.ndarray, high: float) -> None:
-    """Raises a leg by `high` (of the body height) as `share` (n,) goes to 1, with the weight on the other."""
-    h = context.body.height_m
-    over = rise(np.clip(2.5 * share, 0, 1))
-    shift_foot(controls, side, 0.13 * h * share * (high / 0.2), -0.01 * h * share, high * h * share)
-    lean_over(controls, context.body, 1 - side, over)
-    shift_pelvis(controls, 0.0, 0.0, -0.008 * h * over)
-    lift_weight(controls, side, over)
-    controls.foot_rad[:, side, 1] += 0.35 * share
-    controls.spine_rad[:, 1] += 0.05 * share
-    for arm in (LEFT, RIGHT):
-        controls.arm_rad[:, arm, 1] += 0.35 * over
-
-
-def on_one_leg(context: StepContext) -> Controls:
-    """Balancing on one leg, the arms out and never quite still."""
-    controls, time_s = upright(context), context.time_s
-    side = 1 - leg_side(context) if context.step.foot else int(context.rng.integers(2))
-    begin = context.start_s if not context.first else context.time_s[0] - 2.0
-    end = context.end_s if not context.last else context.time_s[-1] + 2.0
-    up = plateau(time_s, float(begin), float(end), 0.8, 0.8)
-    _lift_leg(controls, context, side, up, float(context.rng.uniform(0.1, 0.2)))
-    rate = 2 * np.pi * context.rng.uniform(0.5, 0.9)
-    wobble = up * (np.sin(rate * time_s) + 0.6 * np.sin(1.7 * rate * time_s + 1.0))
-    out = float(context.rng.uniform(0.2, 0.8))
-    controls.spine_rad[:, 0] += 0.035 * wobble
-    shift_pelvis(controls, 0.0, 0.006 * wobble, 0.0)
-    for arm, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
-        controls.arm_rad[:, arm, 1] += up * out + 0.12 * sign * wobble
-    return controls
-
-
-def hopping_on_one_leg(context: StepContext) -> Controls:
-    """The other leg stays lifted behind; the body leans over the leg that hops."""
-    controls, time_s = upright(context), context.time_s
-    side = 1 - leg_side(context) if context.step.foot else int(context.rng.integers(2))
-    ready, h = 0.55, context.body.height_m
-    start = context.start_s if not context.first else context.start_s - ready
-    up = plateau(time_s, start, context.end_s + 0.6, ready, 0.6) if not context.last else rise((time_s - start) / ready)
-    inner = replace(context, step=replace(context.step, start_s=start + ready))
-    high = controls.pelvis_m[:, 2].copy()
-    bounce(controls, inner, one_leg=True)
-    bob = controls.pelvis_m[:, 2] - high
-    back = float(context.rng.uniform(0.12, 0.2))
-    shift_foot(
-        controls, side, -back * h * up, -0.01 * h * up, up * (0.14 * h + 0.5 * bob) - controls.foot_m[:, side, 2] * up
+@posture("roundhouse", stands=False)
+def roundhouse(act: StepContext) -> None:
+    """The leg swings around the side to the front, the body turning with it on the ball of the other foot, and back."""
+    high = act.uniform(0.42, 0.56) + (0.14 if act.style == "high" else 0.0)
+    way = (
+        (0.0, -0.1, -0.06, 0.4, 0.33, 0.08, 0.0),
+        (0.0, 0.04, 0.25, 0.04, -0.08, 0.04, 0.0),
+        (0.0, 0.07, 0.32, high, 0.9 * high, 0.22, 0.0),
     )
-    lean_over(controls, context.body, 1 - side, up)
-    lift_weight(controls, side, np.minimum(up, controls.contact[:, side]))
-    controls.foot_rad[:, side, 1] += 0.7 * up
-    for arm in (LEFT, RIGHT):
-        controls.arm_rad[:, arm, 1] += 0.45 * up
-        controls.arm_rad[:, arm, 3] += 0.5 * up
-    return controls
+    _kick_turned(act, way, turn_rad=act.uniform(1.2, 1.5))
 
 
-def lunging(context: StepContext) -> Controls:
+@posture("side_kick", stands=False)
+def side_kick(act: StepContext) -> None:
+    """The knee comes up, then the foot shoots out to the own side, the trunk leaning away from it."""
+    high = act.uniform(0.3, 0.42)
+    way = (
+        (0.0, 0.06, 0.1, 0.02, 0.02, 0.08, 0.0),
+        (0.0, 0.0, 0.05, 0.36, 0.36, 0.08, 0.0),
+        (0.0, 0.08, 0.25, high, 0.95 * high, 0.22, 0.0),
+    )
+    _kick_turned(act, way, turn_rad=0.3)
+
+
+def _kick_turned(act: StepContext, way: tuple[tuple[float, ...], ...], *, turn_rad: float) -> None:
+    """A kick over the standing foot that turns: standing, drawn back, knee up, hit, through, knee up, standing.
+
+    `way` is that of the foot, ahead, outward and up, in body heights.
+    """
+    act.stand()
+    h, side = act.height_m, act.leg_side()
+    away = -OUTWARD[side]  # the sign of a turn towards the standing leg
+    for span in act.repeats(1.65, 1.3, 2.3):
+        ahead, out, up = (span.keys((0.0, 0.17, 0.35, 0.54, 0.66, 0.83, 1.0), values) for values in way)
+        over, swing = span.plateau(-0.12, 1.1, 0.3, 0.32), span.plateau(0.14, 0.96, 0.4, 0.36)
+        act.move_foot(side, ahead * h, out * h, np.maximum(up, 0.0) * h)
+        act.lean_over(1 - side, over)
+        act.lift_weight(side, span.plateau(0, 1, 0.16, 0.16))
+        act.pelvis(up=-0.014 * h * over)
+        turn = away * turn_rad  # the way of the foot was given before the turn
+        act.add(swing, heading=turn, foot_yaw=turn, pelvis_roll=-away * 0.5, spine_roll=-away * 0.3)
+        act.add(swing, head_yaw=-away * min(turn_rad, 1.0))
+        act.add(swing, side, foot_pitch=0.75)
+        act.arm((0.55, 0.35, -0.5, 2.0), over)
+        act.add(swing, 1 - side, flexion=0.3)
+        act.add(swing, side, flexion=-0.7, elbow=-1.0)
+
+
+@posture("stomp")
+def stamping(act: StepContext) -> None:
+    """One knee goes up and the foot comes down hard and flat."""
+    h, side = act.height_m, act.leg_side()
+    for span in act.repeats(0.95, 0.75, 1.4):
+        up = np.maximum(span.keys((0.0, 0.42, 0.86), [0.0, act.vary(0.13, 0.08), 0.0]), 0)
+        act.move_foot(side, 0.05 * h * up / 0.15, 0.0, up * h)
+        act.lean_over(1 - side, span.plateau(-0.15, 1.05, 0.4, 0.3))
+        act.lift_weight(side, span.plateau(0, 0.8, 0.2, 0.2))
+        act.add(1, side, foot_pitch=0.25 * up / 0.15)
+
+
+@posture("raise_leg")
+def raising_leg(act: StepContext) -> None:
+    """The knee comes up in front until the thigh is about level, and goes down again."""
+    side, high = act.leg_side(), act.uniform(0.16, 0.24)
+    for span in act.repeats(max(1.9, min(act.duration_s / max(act.count, 1), 4.0)), 1.2, 4.5):
+        move = min(0.42 * span.lasts_s, 0.95)
+        _lift_leg(act, side, act.plateau(span.begin_s, span.at(1), move, move), high)
+
+
+def _lift_leg(act: StepContext, side: int, share: PerTime, high: float) -> None:
+    """Raises a leg by `high` (of the body height) as `share` (n,) goes to 1, with the weight on the other."""
+    h, over = act.height_m, rise(np.clip(2.5 * share, 0, 1))
+    act.move_foot(side, 0.13 * h * share * (high / 0.2), -0.01 * h * share, high * h * share)
+    act.lean_over(1 - side, over)
+    act.pelvis(up=-0.008 * h * over)
+    act.lift_weight(side, over)
+    act.add(share, side, foot_pitch=0.35)
+    act.add(share, spine_pitch=0.05)
+    act.add(over, abduction=0.35)
+
+
+@posture("one_leg")
+def balancing(act: StepContext) -> None:
+    """Balancing on one leg, the arms out and never quite still."""
+    time_s, rng = act.time_s, act.rng
+    side = 1 - act.leg_side() if act.foot else int(rng.integers(2))
+    begin = float(time_s[0] - 2.0) if act.first else act.start_s
+    up = act.plateau(begin, float(time_s[-1] + 2.0) if act.last else act.end_s, 0.8, 0.8)
+    _lift_leg(act, side, up, act.uniform(0.1, 0.2))
+    rate = 2 * np.pi * rng.uniform(0.5, 0.9)
+    wobble = up * (np.sin(rate * time_s) + 0.6 * np.sin(1.7 * rate * time_s + 1.0))
+    out = act.uniform(0.2, 0.8)
+    act.add(wobble, spine_roll=0.035)
+    act.pelvis(left=0.006 * wobble)
+    for arm, sign in enumerate(OUTWARD):
+        act.add(1, arm, abduction=up * out + 0.12 * sign * wobble)
+
+
+@posture("lunge")
+def lunging(act: StepContext) -> None:
     """A long step ahead with one leg, down until the thigh is nearly level, and back.
 
     A front lunge leaves the leg behind straight and goes less deep, again and again; half of those who do it keep both
     feet where they are in between, and many turn to the side of the leg ahead, as the first subject of MARS does.
     """
-    controls, time_s, h = upright(context), context.time_s, context.body.height_m
-    side, is_front = leg_side(context), context.step.style == "frontlunge"
-    long, deep = vary(context, 0.38, 0.06), 0.165
-    ahead, heel_rad, stays = 0.5, 0.75, False
+    h, side, is_front = act.height_m, act.leg_side(), act.style == "frontlunge"
+    long, deep, ahead, heel_rad, stays = act.vary(0.38, 0.06), 0.165, 0.5, 0.75, False
     if is_front:
-        long, deep, ahead, heel_rad = vary(context, 0.36, 0.06), vary(context, 0.068, 0.1), 0.68, 0.1
-        context, stays = _repeated(context, 3.0), context.rng.random() < 0.5
-        if context.step.foot:
-            _turn_aside(controls, context, side)
-    every = repeats(context, 3.0 if is_front else 2.2, 1.6, 3.6)
+        long, deep, ahead, heel_rad = act.vary(0.36, 0.06), act.vary(0.068, 0.1), 0.68, 0.1
+        stays = act.rng.random() < 0.5
+        if act.foot:  # the body turns to the side of the leg that goes ahead while the step lasts
+            turn_rad = OUTWARD[side] * (act.rng.uniform(0.0, 0.8) * act.plateau(act.start_s, act.end_s, 0.5, 0.5))
+            act.add(1, heading=turn_rad, foot_yaw=turn_rad)
+    spans = act.repeats(3.0, 1.6, 3.6, max(1, round(act.duration_s / 3.0))) if is_front else act.repeats(2.2, 1.6, 3.6)
     if stays:
-        _from_planted_feet(controls, context, every, side if context.step.foot else RIGHT, 0.85 * long * h, deep * h)
-        return controls
-    for k, (begin, lasts) in enumerate(every):
-        acting = side if k % 2 == 0 or context.step.foot else 1 - side
-        gone = plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
-        air = plateau(time_s, begin, begin + 0.3 * lasts, 0.14 * lasts, 0.14 * lasts)
-        air = air + plateau(time_s, begin + 0.7 * lasts, begin + lasts, 0.14 * lasts, 0.14 * lasts)
-        down = plateau(time_s, begin + 0.12 * lasts, begin + 0.88 * lasts, 0.36 * lasts, 0.36 * lasts)
-        shift_foot(controls, acting, long * h * gone, 0.0, 0.05 * h * air)
-        lift_weight(controls, acting, air)
-        controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * gone)
-        shift_pelvis(controls, ahead * long * h * gone, 0.0, -deep * h * down)
-        controls.foot_rad[:, 1 - acting, 1] += heel_rad * down
-        controls.spine_rad[:, 1] += 0.06 * down
-    return controls
+        _lunge_between_planted_feet(act, spans, side if act.foot else RIGHT, 0.85 * long * h, deep * h)
+        return
+    for k, span in enumerate(spans):
+        acting = side if k % 2 == 0 or act.foot else 1 - side
+        gone, down = span.plateau(0, 1, 0.3, 0.3), span.plateau(0.12, 0.88, 0.36, 0.36)
+        air = span.plateau(0, 0.3, 0.14, 0.14) + span.plateau(0.7, 1, 0.14, 0.14)
+        act.move_foot(acting, long * h * gone, 0.0, 0.05 * h * air)
+        act.lift_weight(acting, air)
+        act.bend_knees(0.8 * gone)
+        act.pelvis(ahead * long * h * gone, 0.0, -deep * h * down)
+        act.add(down, 1 - acting, foot_pitch=heel_rad)
+        act.add(down, spine_pitch=0.06)
 
 
-def _turn_aside(controls: Controls, context: StepContext, side: int) -> None:
-    """Turns the body to the side of the leg that goes ahead, by up to 45 degrees, while the step lasts."""
-    turned = context.rng.uniform(0.0, 0.8) * plateau(context.time_s, context.start_s, context.end_s, 0.5, 0.5)
-    controls.heading_rad[:] += OUTWARD[side] * turned
-    controls.foot_rad[:, :, 0] += OUTWARD[side] * turned[:, None]
-
-
-def _from_planted_feet(
-    controls: Controls, context: StepContext, every: list[tuple[float, float]], side: int, long_m: float, deep_m: float
-) -> None:
+def _lunge_between_planted_feet(act: StepContext, spans: list[Span], side: int, long_m: float, deep_m: float) -> None:
     """One step ahead; then the weight goes from between the feet over the leg ahead, again and again, and back."""
-    time_s, step_s = context.time_s, min(0.6, 0.15 * context.duration_s)
-    start_s, end_s = context.start_s, context.end_s
-    gone = plateau(time_s, start_s, end_s, step_s, step_s)
-    air = sum(plateau(time_s, at, at + step_s, 0.5 * step_s, 0.5 * step_s) for at in (start_s, end_s - step_s))
-    over = np.zeros_like(time_s)
-    for begin, lasts in every:
-        over += plateau(time_s, begin + 0.1 * lasts, begin + 0.95 * lasts, 0.4 * lasts, 0.4 * lasts)
+    step_s = min(0.6, 0.15 * act.duration_s)
+    gone = act.plateau(act.start_s, act.end_s, step_s, step_s)
+    air = sum(act.plateau(at, at + step_s, 0.5 * step_s, 0.5 * step_s) for at in (act.start_s, act.end_s - step_s))
+    over = np.zeros_like(gone)
+    for span in spans:
+        over += span.plateau(0.1, 0.95, 0.4, 0.4)
     over *= gone
-    shift_foot(controls, side, long_m * gone, 0.0, 0.03 * context.body.height_m * air)
-    lift_weight(controls, side, np.asarray(air))
-    controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * gone)
-    shift_pelvis(controls, long_m * (0.5 * gone + 0.35 * over), 0.0, -deep_m * (0.2 * gone + 0.9 * over))
-    controls.foot_rad[:, 1 - side, 1] += 0.15 * over
-    controls.spine_rad[:, 1] += 0.06 * over
+    act.move_foot(side, long_m * gone, 0.0, 0.03 * act.height_m * air)
+    act.lift_weight(side, np.asarray(air))
+    act.bend_knees(0.8 * gone)
+    act.pelvis(long_m * (0.5 * gone + 0.35 * over), 0.0, -deep_m * (0.2 * gone + 0.9 * over))
+    act.add(over, 1 - side, foot_pitch=0.15)
+    act.add(over, spine_pitch=0.06)
 
 
-def _repeated(context: StepContext, each_s: float) -> StepContext:
-    """The step with as many repetitions as its time allows, where the sentence names no number."""
-    count = context.step.count or max(1, round(context.duration_s / each_s))
-    return replace(context, step=replace(context.step, count=count))
-
-
-def crouching(context: StepContext) -> Controls:
+@posture("crouch")
+def crouching(act: StepContext) -> None:
     """Down into a deep crouch, and staying there."""
-    controls, time_s = upright(context), context.time_s
-    down = rise((time_s - context.start_s) / min(1.2, 0.8 * context.duration_s))
-    if not context.last:
-        down = down * rise((context.end_s + 0.3 - time_s) / 0.9)
-    crouched(controls, context.body, down * float(context.rng.uniform(0.8, 0.95)), lean_rad=0.9)
-    controls.arm_rad[:, :, 0] += (0.9 * down)[:, None]
-    controls.arm_rad[:, :, 3] += (0.6 * down)[:, None]
-    return controls
+    down = rise((act.time_s - act.start_s) / min(1.2, 0.8 * act.duration_s))
+    if not act.last:
+        down = down * rise((act.end_s + 0.3 - act.time_s) / 0.9)
+    act.crouch(down * act.uniform(0.8, 0.95), lean_rad=0.9)
+    act.add(down, flexion=0.9, elbow=0.6)
 
 
-def marching(context: StepContext) -> Controls:
-    """High knees on the spot, each arm swinging with the opposite leg."""
-    style = gait.walking_style(context, 1.3)
-    style = replace(
-        style, steps_hz=context.tempo(1.5, 1.85, 2.2), double_support=0.12,
-        spot_lift_m=float(context.rng.uniform(0.13, 0.2)),
-        arm_swing_rad=float(context.rng.uniform(0.35, 0.6)), elbow_rad=0.7, bob_m=0.01, sink=0.988,
-    )  # fmt: skip
-    spot = replace(context, step=replace(context.step, direction="spot"))
-    return gait.stepping(spot, style, jog=True)
-
-
-def stepping_up_and_down(context: StepContext) -> Controls:
+@posture("stairs")
+def stepping_up_and_down(act: StepContext) -> None:
     """On the spot, up a stair of 17 cm that is not there and backwards down again, one foot after the other."""
-    controls, h = upright(context), context.body.height_m
-    first = leg_side(context)
-    rate, _ = cycles(context, context.tempo(0.33, 0.45, 0.62), 0.25, 0.8)
-    share = 4.0 * rate * (context.time_s - context.start_s)  # a foot moves in each quarter of a cycle
-    if context.step.count:
-        share = np.clip(share, 0.0, 4.0 * context.step.count)
-    share = share % 4.0
+    h, first = act.height_m, act.leg_side()
+    rate, _ = act.cycles(0.33, 0.45, 0.62, 0.25, 0.8)
+    share = 4.0 * rate * (act.time_s - act.start_s)  # a foot moves in each quarter of a cycle
+    share = (np.clip(share, 0.0, 4.0 * act.count) if act.count else share) % 4.0
     height_m, tread_m = 0.17, 0.15 * h
     for side, begin in ((first, 0.0), (1 - first, 1.0)):
         on = rise(share - begin) - rise(share - begin - 2.0)
-        air = bump(share - begin) + bump(share - begin - 2.0)
-        shift_foot(controls, side, tread_m * on, 0.0, height_m * on + 0.06 * air)
-        controls.contact[:, side] -= air
-        controls.foot_rad[:, side, 1] += 0.25 * bump(share - begin) - 0.1 * bump(share - begin - 2.0)
-        controls.arm_rad[:, side, 0] += 0.3 * (bump((share - 1.0 + begin) / 2.0) - 0.5)
+        up, down = bump(share - begin), bump(share - begin - 2.0)
+        act.move_foot(side, tread_m * on, 0.0, height_m * on + 0.06 * (up + down))
+        act.add(up + down, side, contact=-1)
+        act.add(1, side, foot_pitch=0.25 * up - 0.1 * down)
+        act.add(bump((share - 1.0 + begin) / 2.0) - 0.5, side, flexion=0.3)
     up = rise((share - 0.7) / 1.2) - rise((share - 2.2) / 1.2)
-    shift_pelvis(controls, tread_m * (rise(share / 1.7) - rise((share - 2.0) / 1.7)), 0.0, height_m * up)
-    controls.knee_room[:] = 0.8
-    controls.spine_rad[:, 1] += 0.12 + 0.08 * bump(share / 2.0)
-    return controls
+    act.pelvis(tread_m * (rise(share / 1.7) - rise((share - 2.0) / 1.7)), 0.0, height_m * up)
+    act.controls.knee_room[:] = 0.8
+    act.add(1, spine_pitch=0.12 + 0.08 * bump(share / 2.0))
+
+
+def _hold_pose(act: StepContext, into_s: float) -> PerTime:
+    """0 standing, 1 in the pose: entered and left within the step."""
+    into_s = min(into_s, 0.35 * act.duration_s)
+    return act.plateau(act.start_s, act.end_s, into_s, into_s)
+
+
+@posture("tree_pose")
+def tree_pose(act: StepContext) -> None:
+    """One foot against the other leg's knee, that knee out to the side, palms together over the head."""
+    h, side, held = act.height_m, act.leg_side(), _hold_pose(act, 1.6)
+    act.lean_over(1 - side, reached(2.0 * held))
+    act.lift_weight(side, reached(3.0 * held))
+    act.move_foot(side, 0.02 * h * held, -act.vary(0.052, 0.05) * h * held, act.vary(0.24, 0.08) * h * held)
+    act.add(held, side, knee_out=1.25, foot_pitch=0.9)
+    act.arm((2.75, 0.35, 0.2, 0.75), held)
+
+
+@posture("warrior_pose")
+def warrior_pose(act: StepContext) -> None:
+    """A wide stance, one knee bent over its foot, the arms out to front and back, the face over the front hand."""
+    h, front, held = act.height_m, act.leg_side(), _hold_pose(act, 1.4)
+    wide = act.vary(0.26, 0.06) * h
+    act.move_foot(front, 0.0, 1.0 * wide * held, 0.03 * h * bump(held))
+    act.move_foot(1 - front, 0.0, 0.75 * wide * held)
+    act.add(held, front, foot_yaw=OUTWARD[front] * 1.3)
+    act.pelvis(0.0, OUTWARD[front] * 0.1 * h * held, -act.vary(0.12, 0.08) * h * held)
+    act.bend_knees(0.8 * held)
+    act.add(held, head_yaw=OUTWARD[front] * 1.2)
+    act.arm((0.0, 1.53, 0.0, 0.08), held)
+
+
+@posture("downward_dog")
+def downward_dog(act: StepContext) -> None:
+    """Hands and feet on the floor, the hips high: the body is a roof."""
+    h, held = act.height_m, _hold_pose(act, 1.5)
+    act.pelvis(0.27 * h * held, 0.0, -0.07 * h * held)
+    act.add(held, pelvis_pitch=2.05, spine_pitch=0.1, head_pitch=0.1, foot_pitch=0.35)
+    act.bend_knees(0.5 * bump(held))
+    act.arm((2.75, 0.12, 0.0, 0.08), held)
+
+
+def _there_and_back(act: StepContext, usual_s: float, least_s: float, most_s: float) -> PerTime:
+    """0 to 1 and back (n,), as often as asked for or as the time allows, each a little different and with a hold."""
+    spans, share = act.in_turn(usual_s, least_s, most_s), np.zeros_like(act.time_s)
+    hold = act.uniform(0.05, 0.3)
+    for span in spans:
+        high = act.vary(1.0, 0.06)
+        share += high * span.plateau(0, 0.98, 0.5 * (1 - hold), 0.5 * (1 - hold))
+    return share
+
+
+@posture("side_lunge")
+def side_lunging(act: StepContext) -> None:
+    """From a wide stance the weight goes over one bent knee; the arms are held out to the sides."""
+    h, side, down = act.height_m, act.leg_side(), _there_and_back(act, 3.0, 1.4, 5.0)
+    half = act.vary(0.1, 0.12) * h  # how much wider each foot stands
+    for foot in BOTH:
+        act.move_foot(foot, out=half)
+        act.add(1, foot, foot_yaw=OUTWARD[foot] * 0.25)
+    aside = OUTWARD[side] * act.vary(0.125, 0.1) * h * down
+    act.pelvis(-0.02 * h * down, aside, -(0.01 + act.vary(0.056, 0.1) * down) * h)
+    act.add(down, spine_roll=-OUTWARD[side] * 0.06, spine_pitch=act.vary(0.12, 0.3))
+    act.add(1, knee_out=0.25)
+    act.bend_knees(0.2)
+    abduction, ahead = float(act.rng.normal(1.5, 0.1)), float(act.rng.normal(0.1, 0.1))
+    act.arm((ahead, abduction, 0.0, 0.12))
+
+
+@posture("limb_extension")
+def limb_extension(act: StepContext) -> None:
+    """One leg goes out to the side, straight, and the arm of the same side up; then both come back."""
+    side, up, leg_m = act.leg_side(), _there_and_back(act, 2.8, 1.3, 4.5), act.body.leg_m
+    angle, over = act.vary(0.62, 0.2) * up, reached(2.5 * up)
+    act.lean_over(1 - side, over)
+    act.lift_weight(side, reached(3 * up))
+    act.move_foot(side, 0.0, leg_m * np.sin(angle), leg_m * (1 - np.cos(angle)))
+    act.add(up, spine_roll=OUTWARD[side] * 0.1)
+    _raise_arm_aside(act, side, up, act.vary(1.95, 0.1))
+    act.add(up, 1 - side, abduction=0.15)
+    act.controls.knee_out_rad[:, side] *= 1 - 0.5 * over
+
+
+@gesture("arm_extension")
+def arm_extension(act: StepContext) -> None:
+    """The straight arm goes up at the side until the hand is as high as the head, and comes down, again and again."""
+    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), sides(act)
+    for side in arms:
+        _raise_arm_aside(act, side, up, top)
+        act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(sides(act)) == 1))
+
+
+def _raise_arm_aside(act: StepContext, side: int, up: PerTime, top: float) -> None:
+    act.arm((act.rng.normal(0.1, 0.12), top, 0.1, 0.1), reached(up, 1.1), side)
+
+
+@gesture("hands_up")
+def hands_up(act: StepContext) -> None:
+    """Both hands next to or in front of the face, elbows bent and out, as many hold them in squats and lunges."""
+    act.arm((act.uniform(0.6, 1.2), act.uniform(0.5, 1.0), -0.3, act.uniform(1.9, 2.4)))

@@ -1,17 +1,20 @@
-"""Sitting, sitting down and standing up. The root is where the feet stand, in front of the seat."""
+"""Sitting, sitting down and standing up, and riding an exercise bike. The root is where the feet stand."""
 
 import numpy as np
-from jaxtyping import Float
 
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.controls import Controls
-from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, ARM_HANGING, upright
+from mmweaver.motion.animation.library.movement_primitives import PerTime
 from mmweaver.motion.animation.profiles import rise, wide_bump
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.animation.standing import ANKLE_BEHIND, ARM_HANGING, STAND_STRETCH
+from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-Array = np.ndarray
 PELVIS_OVER_SEAT = 0.068  # of the body height: from the seat's surface up to the pelvis joint
+MOUNTING_S = 1.2  # from standing to the saddle of a bike
+_CRANK_M, _AXLE_M = 0.17, 0.28  # length of a crank, height of the bottom bracket
+_SADDLE_BEHIND = 0.115  # of the height: from the bottom bracket back to the pelvis
+_LONGEST_LEG = 0.955  # of a leg's length, with the pedal at its lowest
+_HEEL_UP_RAD, _ANKLING_RAD = 0.22, 0.16
 
 
 def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> float:
@@ -26,48 +29,61 @@ def knees_ahead_m(body: SkeletonProportions, seat_height_m: float) -> float:
     return pelvis_behind_feet_m(body, seat_height_m) - ANKLE_BEHIND * body.height_m + 0.03
 
 
-def sitting(context: StepContext) -> Controls:
-    return _seated(context, np.ones_like(context.time_s))
+@posture("sit")
+def sitting(act: StepContext) -> None:
+    """Sitting still."""
+    _sit(act, np.ones_like(act.time_s))
 
 
-def sitting_down(context: StepContext) -> Controls:
-    """Hips back over the seat while the trunk leans forward, then down."""
-    begin = _settled_s(context)
-    lasts = float(np.clip(context.end_s - begin - 0.1, 0.75, 1.3 if context.step.speed >= 0 else 2.0))
-    return _seated(context, (context.time_s - begin) / lasts)
+@posture("sit_down")
+def sitting_down(act: StepContext) -> None:
+    """Hips back over the seat while the trunk leans forward, then down, once the root has almost stopped turning."""
+    late = act.start_s + np.linspace(0, max(act.duration_s, 0.1), 60)
+    turning = np.flatnonzero(np.abs(act.path.facing_rad(late) - act.path.facing_rad(late[-1:])[0]) > 0.6)
+    begin = float(late[turning[-1]]) if len(turning) else act.start_s
+    lasts = float(np.clip(act.end_s - begin - 0.1, 0.75, act.by_speed(2.0, 1.3, 1.3)))
+    _sit(act, (act.time_s - begin) / lasts)
 
 
-def standing_up(context: StepContext) -> Controls:
-    lasts = float(np.clip(context.duration_s - 0.1, 0.75, 1.2 if context.step.speed >= 0 else 1.9))
-    return _seated(context, 1 - (context.time_s - context.start_s) / lasts)
+@posture("stand_up")
+def standing_up(act: StepContext) -> None:
+    """The trunk leans forward until the weight is over the feet, then up."""
+    lasts = float(np.clip(act.duration_s - 0.1, 0.75, act.by_speed(1.9, 1.2, 1.2)))
+    _sit(act, 1 - (act.time_s - act.start_s) / lasts)
 
 
-def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
+def _sit(act: StepContext, u: PerTime) -> None:
     """u (n,) = 0 standing, 1 seated; in between the pelvis moves from one to the other."""
-    controls, body = upright(context), context.body
-    heading = controls.heading_rad
-    back = rise(u / 0.85) * pelvis_behind_feet_m(body, context.seat_height_m)
-    seat = context.seat_height_m + PELVIS_OVER_SEAT * body.height_m
-    down = rise((u - 0.08) / 0.92)
-    controls.pelvis_m[:, 2] += down * (seat - controls.pelvis_m[:, 2])
-    controls.pelvis_m[:, 0] -= back * np.cos(heading)
-    controls.pelvis_m[:, 1] -= back * np.sin(heading)
-    lean = wide_bump(u)
-    slouch = float(context.rng.uniform(0.05, 0.18))
-    controls.pelvis_rad[:, 1] += 0.5 * lean - slouch * down
-    controls.spine_rad[:, 1] += 0.35 * lean + 1.3 * slouch * down
-    controls.head_rad[:, 0] -= 0.5 * lean
-    controls.knee_out_rad[:] += (0.12 * down)[:, None]
-    target = np.array([0.145, 0.066, -0.13]) * body.height_m  # hands on the thighs, seen from spine3
-    lap = reach(body, target[None], elbow=(-0.6, 0.45, -1.0))
-    controls.arm_rad[:] += down[:, None, None] * (lap - np.array(ARM_HANGING))
-    controls.arm_rad[:, :, 0] += (0.35 * lean)[:, None]
-    return controls
+    down, lean, slouch = rise((u - 0.08) / 0.92), wide_bump(u), act.uniform(0.05, 0.18)
+    seat = act.seat_height_m + PELVIS_OVER_SEAT * act.height_m
+    back = rise(u / 0.85) * pelvis_behind_feet_m(act.body, act.seat_height_m)
+    act.pelvis(-back, up=down * (seat - act.controls.pelvis_m[:, 2]))
+    act.add(1, pelvis_pitch=0.5 * lean - slouch * down, spine_pitch=0.35 * lean + 1.3 * slouch * down)
+    act.add(lean, head_pitch=-0.5)
+    act.add(down, knee_out=0.12)
+    target = np.array([0.145, 0.066, -0.13]) * act.height_m  # hands on the thighs, seen from spine3
+    lap = reach(act.body, target[None], elbow=(-0.6, 0.45, -1.0))
+    act.controls.arm_rad[:] += down[:, None, None] * (lap - np.array(ARM_HANGING))
+    act.add(lean, flexion=0.35)
 
 
-def _settled_s(context: StepContext) -> float:
-    """Time in seconds when the root has almost stopped turning: sitting down begins only then."""
-    late = context.start_s + np.linspace(0, max(context.duration_s, 0.1), 60)
-    left = np.abs(context.path.facing_rad(late) - context.path.facing_rad(late[-1:])[0])
-    turning = np.flatnonzero(left > 0.6)
-    return float(late[turning[-1]]) if len(turning) else context.start_s
+@posture("pedal")
+def pedalling(act: StepContext) -> None:
+    """One turn of the cranks a second, after getting on; the root is under the saddle."""
+    body, h, on = act.body, act.height_m, act.edges(MOUNTING_S, MOUNTING_S, 0.2)
+    rate, _ = act.cycles(0.7, 1.05, 1.5, 0.5, 1.8)
+    phase = act.phase(rate)
+    leg_m, behind_m = _LONGEST_LEG * body.leg_m, _SADDLE_BEHIND * h
+    lowest_ankle_m = _AXLE_M - _CRANK_M + body.ankle_height_m + body.ball_m * np.sin(_HEEL_UP_RAD)
+    hip_m = lowest_ankle_m + float(np.sqrt(leg_m**2 - behind_m**2))
+    act.pelvis(up=on * (hip_m + body.hip_below_pelvis_m - body.pelvis_height_m(STAND_STRETCH)))
+    act.add(np.sin(phase), pelvis_roll=act.vary(0.03) * on)
+    act.add(on, pelvis_pitch=0.25, spine_pitch=act.vary(0.3, 0.15), head_pitch=-0.35)
+    act.bend_knees(rise(3 * on))
+    for side in BOTH:
+        sin, cos = np.sin(phase + side * np.pi), np.cos(phase + side * np.pi)
+        act.move_foot(side, on * (behind_m + ANKLE_BEHIND * h + _CRANK_M * sin), 0.0, on * (_AXLE_M + _CRANK_M * cos))
+        act.add(on, side, foot_pitch=_HEEL_UP_RAD - _ANKLING_RAD * sin)
+        act.add(rise(2 * on), side, contact=-1)
+        act.controls.knee_out_rad[:, side] *= 1 - on
+        act.hand_to(side, (0.25, 0.11, 0.04), on, (-0.4, 0.7, -0.9))

@@ -1,16 +1,18 @@
 """Standing: the pose that every other activity starts from and returns to, with sway and breathing."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT, Controls
 from mmweaver.motion.animation.profiles import wander
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.animation.step_context import StepContext
+
+if TYPE_CHECKING:
+    from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
-SIDE_SIGN = np.array([1.0, -1.0])  # left, right
-
 STAND_STRETCH = 0.9955  # of the legs' length
 ANKLE_BEHIND = 0.022  # of the height: the pelvis is a little in front of the ankles
 HALF_STANCE = 0.056  # of the height: from the middle to a foot
@@ -25,7 +27,7 @@ def home_feet(
     half_stance: float = HALF_STANCE,
 ) -> Float[Array, "n 2 3"]:
     """Positions (n, 2, 3) in metres of both feet, flat on the floor, for roots (n, 2) and headings (n,)."""
-    aside = SIDE_SIGN * half_stance * body.height_m
+    aside = np.array(OUTWARD) * half_stance * body.height_m
     behind = -ANKLE_BEHIND * body.height_m
     cos, sin = np.cos(heading_rad)[:, None], np.sin(heading_rad)[:, None]
     x = position_m[:, :1] + behind * cos - aside * sin
@@ -33,7 +35,7 @@ def home_feet(
     return np.stack([x, y, np.zeros_like(x)], axis=-1)
 
 
-def upright(context: StepContext) -> Controls:
+def upright(context: "StepContext") -> Controls:
     """Standing at the root, arms hanging, with sway and breathing."""
     body, time_s, rng = context.body, context.time_s, context.rng
     n = len(time_s)
@@ -42,7 +44,7 @@ def upright(context: StepContext) -> Controls:
     pelvis[:, :2] = position
     pelvis[:, 2] = body.pelvis_height_m(STAND_STRETCH)
     foot_rad = np.zeros((n, 2, 2))
-    foot_rad[:, :, 0] = heading[:, None] + SIDE_SIGN * TOES_OUT_RAD
+    foot_rad[:, :, 0] = heading[:, None] + np.array(OUTWARD) * TOES_OUT_RAD
     controls = Controls(
         pelvis_m=pelvis,
         heading_rad=heading,
@@ -76,10 +78,3 @@ def _sway(controls: Controls, time_s: Float[Array, " n"], rng: np.random.Generat
         controls.arm_rad[:, side, 0] += 0.025 * wander(time_s, rng, slow_hz=0.2, fast_hz=0.8) - 0.01 * breath
         controls.arm_rad[:, side, 1] += 0.012 * wander(time_s, rng, slow_hz=0.2, fast_hz=0.8)
         controls.arm_rad[:, side, 3] += 0.03 * rng.normal()
-
-
-def standing(context: StepContext) -> Controls:
-    """Standing still. Turning on the spot takes steps; see `gait.turning`."""
-    controls = upright(context)
-    controls.head_rad[:, 1] += 0.1 * wander(context.time_s, context.rng, slow_hz=0.05, fast_hz=0.25)
-    return controls
