@@ -54,7 +54,7 @@ def test_records_notes_and_steps_quote_the_sentence_as_it_was_given():
             "she waves goodbye over her shoulder",
             "hand repeatedly; 'over' and 'shoulder' are not shown",
         ),
-        ("a person claps above the head", "is shown as clapping repeatedly; 'above' is not shown"),
+        ("a person claps above the head", "is shown as clapping repeatedly; 'above' and 'head' are not shown"),
         ("he scratches his head thinking", "'thinking' has no movement that is shown"),
         ("a person bows to the left and then to the right", "is shown as bowing once; the side is not shown"),
         ("a person rides an exercise bike", "is shown as riding an exercise bike; the bike is not shown"),

@@ -39,6 +39,17 @@ LOST = {
     # what another step stands between
     "a man sits down and bows": "after getting up",
     "a person dances jazz, jumping": "one after the other",
+    # degrees, one more, the way back, which comes first
+    "a person crouches a bit": "bit",
+    "a person walks through the room": "through",
+    "a human lies on his side": "side",
+    "a person walks, doing faster steps in between": "between",
+    "a person does a front kick to the head": "head",
+    "a person walks in a tight, clockwise circle": "tight",
+    "a man is pushed from the right, stumbles to the left and sidesteps back to the place he stood": "way back",
+    "kicks a ball, then another one": "another",
+    "a person sits down after waving and clapping": "order",
+    "a person turns 360 degrees to the right during a jump": "during",
     # a hand of two
     "a person drinks with both hands": "both",
 }
@@ -65,6 +76,9 @@ SHOWN = (
     "he stirs a pot on the stove",
     "a person spins three times to the left",
     "a person waves with both hands",
+    "a person walks 1 m forward, turns around and walks another 1 m forward",
+    "a person bows after he waves",
+    "a person walks around and stands for a bit",
 )
 SPOKEN_TWICE = {  # a sentence whose second movement or way no step shows, were its first step left out
     "a person jumps, then claps and jumps again": ["jump", "clap", "jump"],

@@ -114,8 +114,6 @@ def _put_at(parsed: ParsedClause, place: Place) -> None:
     else:
         both = place if last.place is None else last.place.together_with(place)
         last = replace(last, place=both, target="" if place.is_goal else last.target)
-        if place.is_goal and last.direction in ("towards", "forwards", "seat"):
-            last = replace(last, direction="")
     parsed.steps[-1] = last
 
 
@@ -189,12 +187,6 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
     for i, word in enumerate(words):
         if word.text == "head" and i and words[i - 1].text not in ("to", "and", "then", "they"):
             continue  # the part of the body, as in "tilts the head" and "tilts head"
-        if (
-            word.lemma == "reach"
-            and words[i + 1 : i + 2]
-            and words[i + 1].text in ("the", "his", "her", "its", "their")
-        ):
-            continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
@@ -217,8 +209,6 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return _is_the_face(words, i) or bool(found)
     if word.text == "pace":
         return before not in ("to", "they", "i", "we", "you", "")  # "at a moderate pace", "increases pace"
-    if _is_adjective(words, i):
-        return True
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
@@ -263,13 +253,6 @@ def _is_the_face(words: list[Word], i: int) -> bool:
     put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
     aimed = after in _FACED or after in DIRECTIONS or after in OWN
     return put or before in (*OWN, "the", "a", "near") or (words[i].form == "base" and not aimed)
-
-
-def _is_adjective(words: list[Word], i: int) -> bool:
-    """ "Throws a skipping rock"."""
-    before, noun = words[i - 1].text if i else "", words[i + 1] if i + 1 < len(words) else None
-    is_article = words[i].form == "ing" and before in ("a", "an")
-    return is_article and noun is not None and not is_known(noun) and any(other.is_verb for other in words[:i])
 
 
 def _form(words: list[Word], at: int) -> str:

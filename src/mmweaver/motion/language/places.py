@@ -47,11 +47,6 @@ class Place:
         return replace(one, also=more if one.also is None else one.also.together_with(more))
 
     @property
-    def sides(self) -> set[str]:
-        """Of left and right, those that it names."""
-        return {self.relation} & {"left", "right"} | (set() if self.also is None else self.also.sides)
-
-    @property
     def is_goal(self) -> bool:
         """Whether a walk to it goes there, instead of beginning there."""
         return bool(self.landmark) or self.is_end or self.relation == "outside"

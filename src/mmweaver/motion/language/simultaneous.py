@@ -198,7 +198,8 @@ def _reads_as_at_once(before: ParsedClause, parsed: ParsedClause, *, is_last: bo
             BY_KEY[before.steps[-1].lower].once or BY_KEY[step.lower].once or before.steps[-1].posture != step.posture
         )
         return parsed.form == before.form == "ing" and on_the_spot and not (ends or before.steps[-1].count)
-    on_the_spot |= before.steps[-1].lower == "dance"  # "dances, moving the feet forward and back"
+    # "dances, moving the feet forward and back", "jumps, turning", not "walks forward, turning left"
+    on_the_spot |= before.steps[-1].lower == "dance" or (step.lower == "turn" and before.steps[-1].lower == "jump")
     alone = is_last or before.form != "ing"  # "is boxing, hopping", not "is walking, waving and jumping"
     return parsed.link == "comma" and parsed.form == "ing" and alone and on_the_spot
 

@@ -32,9 +32,11 @@ from mmweaver.motion.language.lexicon import (
     TARGETS,
     TIMES,
 )  # fmt: skip
+from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import ClauseRecord, Step
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.step_names import hand_of
+from mmweaver.motion.language.verb_steps import SLIGHT_TURN_DEG
 from mmweaver.motion.language.words import Word, word_of
 
 _TABLE = read_toml(Path(__file__).with_suffix(".toml"))
@@ -69,6 +71,7 @@ class _Token:
     part: int  # between two connectives
     is_kept: bool  # whether its clause still has it after rewriting
     own: Sequence[Step]
+    steps: Sequence[Step]
     sentence: list[str]
 
     @property
@@ -80,6 +83,10 @@ class _Token:
 
     def after(self, count: int) -> list[str]:
         return self.sentence[self.place + 1 : self.place + 1 + count]
+
+    def words_after(self, count: int) -> list[str]:
+        """The next words, whatever marks stand between them: "a few, slow steps"."""
+        return [text for text in self.after(count + 2) if text[0].isalnum()][:count]
 
 
 def not_covered(
@@ -131,7 +138,7 @@ def _tokens(text: str, steps: Sequence[Step], records: dict[int, ClauseRecord]) 
         part += one in SEPARATORS
         near = {numbers[place]} if kept[place] else {*numbers[place : place + 8], *rewritten}
         own = [step for step in steps if near & {*step.clauses}] or steps
-        tokens.append(_Token(one, place, numbers[place], part, kept[place], own, texts))
+        tokens.append(_Token(one, place, numbers[place], part, kept[place], own, steps, texts))
     return tokens
 
 
@@ -169,6 +176,8 @@ def _side(token: _Token) -> str:
 
 def _goes(step: Step, way: str) -> bool:
     """Whether a step goes left, right, ahead or back, or moves the hand or foot of that side."""
+    if way in ("back", "ahead") and step.lower == "sidestep":
+        return False
     if way == "back":
         back = step.direction in ("backwards", "back", "pacing", "away") or step.style == "back"
         return back or step.place is not None or step.lower in ("lie", "lie_down", "fall", "turn")
@@ -192,7 +201,9 @@ def _goes_aside(step: Step) -> bool:
 def _number(token: _Token) -> str:
     """How often something is done, or with how many steps."""
     text, own = token.text, token.own
-    following = [word_of(word) for word in token.after(3) if word not in SIZES | {"left", "right"}]
+    following = [
+        word_of(word) for word in token.words_after(3) if word not in SIZES | SPEEDS.keys() | {"left", "right"}
+    ]
     is_count = any(word.is_activity or word.text in ("step", "steps", "times", "circles") for word in following[:2])
     is_vague = bool({"after", "later", "legged", "handed", "side"} & {*token.before(2), *token.after(3)})
     if text == "step" and {"a", "an", "one", "another", "single"} & {*token.before(3)}:
@@ -201,10 +212,11 @@ def _number(token: _Token) -> str:
         return "that it is one step is not kept" if is_lost else ""
     if text in TIMES or (text == "times" and token.place):
         return "" if any(map(_is_counted, own)) else "how often is not kept"
+    is_count &= text != "some" or "steps" in token.words_after(2)
     if not is_count or is_vague or "".join(token.after(1)).startswith("deg"):
         return ""
     if text in _SETS["vague_numbers"]:
-        return "" if any(step.count or step.lower == "dance" for step in own) else f"{text!r} is not kept"
+        return "" if any(step.count or step.lower in ("dance", "stairs") for step in own) else f"{text!r} is not kept"
     if not (text in NUMBERS or text.isdigit()):
         return ""
     kept = {0.0, 1.0, *(number for step in own for number in _numbers_of(step))}
@@ -229,7 +241,9 @@ def _turn(token: _Token) -> str:
     if text.endswith("clockwise"):
         counter = text != "clockwise" or {"counter", "anti", "against"} & {*token.before(2)}
         sign, side = (1.0, "left") if counter else (-1.0, "right")
-        turns = any((s.arc_deg or s.turn_deg) * sign > 0 or (s.lower, s.direction) == ("turn", side) for s in own)
+        angles = [0.0 if step.style == "either" else step.arc_deg or step.turn_deg for step in own]
+        turns = any(angle * sign > 0 for angle in angles)
+        turns |= any((step.lower, step.direction) == ("turn", side) for step in own)
         return "" if turns or any(step.upper in _SETS["rounds"] for step in own) else f"{text!r} is not shown"
     if text in ("circle", "circles", "circular", "circularly"):
         return "" if any(map(_goes_round, own)) else "the circle is not shown"
@@ -248,6 +262,15 @@ def _angles(step: Step) -> set[float]:
     return {abs(step.turn_deg), abs(step.arc_deg), plain if step.lower == "turn" else 0.0}
 
 
+def _uses_both(step: Step) -> bool:
+    """Whether both hands or both legs do it."""
+    if step.upper:
+        return hand_of(step, step.upper) in ("both", "")
+    in_turn = step.count > 1 and step.lower in ("lunge", "walking_lunge")
+    on_both = step.posture == "knees" and step.style != "knee"
+    return in_turn or on_both or step.lower not in _SETS["single_foot"]
+
+
 # What shows a word besides the activities of its row in the table.
 _BY_FIELD: dict[str, Callable[[Step], bool]] = {
     "ahead": lambda step: _goes(step, "ahead"),
@@ -258,10 +281,15 @@ _BY_FIELD: dict[str, Callable[[Step], bool]] = {
     "wide": lambda step: step.style == "wide",
     "high": lambda step: step.style == "high",
     "up": lambda step: step.direction == "pacing" or step.style in ("high", "up"),
-    "moves": lambda step: step.moves,
+    "far": lambda step: bool(step.place or step.target or step.direction in ("pacing", "circle") or step.distance_m),
     "elsewhere": lambda step: step.moves or step.lower == "turn" or bool(step.place or step.facing),
+    "placed": lambda step: bool(step.place or step.target or step.direction == "towards"),
+    "round": lambda step: _goes_round(step) or step.direction in ("pacing", "around"),
+    "lasts": lambda step: bool(step.moves or step.seconds or abs(step.turn_deg) == SLIGHT_TURN_DEG),
+    "low": lambda step: step.lower != "stand",
+    "off": lambda step: BY_KEY[step.lower].counted_s is not None,
     "hands": lambda step: bool(step.upper),
-    "both": lambda step: not step.upper or hand_of(step, step.upper) in ("both", ""),
+    "both": _uses_both,
 }
 
 
@@ -270,8 +298,11 @@ def _way(token: _Token) -> str:
     text = token.text
     keys, *field = _SHOWN_BY.get(text, (frozenset(),))
     by_field = any(_BY_FIELD[name](step) for name in field for step in token.own)
+    by_field |= any(text in _OF_ACTIVITY.get(key, ()) for step in token.own for key in _doing(step))
     if text not in _SHOWN_BY or by_field or any(_doing(step) & keys for step in token.own):
         return ""
+    if text in _AHEAD and ARMS & {*token.before(1)} and any(step.upper == "arms_out" for step in token.own):
+        return "" if any(step.arms_ahead for step in token.own) else f"{text!r} is not shown"
     before, after = token.before(2), token.after(3)
     in_front_of = before[-1:] == ["in"] and after[:1] == ["of"] and not any(step.upper for step in token.own)
     names_none = text in ("toward", "towards", "hand") and {"left", "right", "side"} & {*after}  # told by the side
@@ -290,7 +321,9 @@ def _verb(token: _Token) -> str:
 def _activity(token: _Token) -> str:
     """The activity that a verb names, "" for other words and for nouns."""
     word, before = token.word, token.before(1)
-    is_noun = token.text in _SETS["nouns"] or (word.form == "base" and before and before[0] not in ("and", "then"))
+    is_noun = token.text in _SETS["nouns"] or (
+        word.form == "base" and before and before[0] not in _SETS["before_verbs"]
+    )
     if token.text in _SHOWN_BY or not word.is_activity or is_noun:
         return ""
     return next(filter(None, reversed(ACTIVITY_OF_LEMMA[word.lemma])), "")
@@ -315,7 +348,7 @@ def _manner(token: _Token) -> str:
         return "" if often else f"{text!r} is not shown"
     if text in SPEEDS and text.endswith(("ly", "fast", "quick", "slow")) and text not in _SETS["no_manner"]:
         return "" if any(step.speed == SPEEDS[text] for step in own) else f"{text!r} is not shown"
-    sized = text in SIZES and _SETS["sized"] & {*token.after(3)} and not any(step.style == "high" for step in own)
+    sized = text in SIZES and _SETS["sized"] & {*token.words_after(3)} and not any(step.style == "high" for step in own)
     adverb = text.endswith("ly") and text not in FILLERS | _SETS["no_manner"] | _SHOWN_BY.keys()
     return f"{text!r} is not shown" if sized or adverb or text in MANNERS else ""
 
@@ -355,8 +388,47 @@ def _concerns(step: Step, noun: str) -> bool:
     return is_named or (noun in SEATS | TARGETS.keys() and bool(placed))
 
 
+def _again(token: _Token) -> str:
+    """One more of what has been shown: 'then another one', '90 more'."""
+    is_more = token.text == "another" or (token.text == "more" and not "".join(token.after(1)).endswith("ly"))
+    keys = [key for step in token.steps for key in _doing(step)]
+    often = len({*keys}) < len(keys) or any(step.count > 1 for step in token.own)
+    return f"{token.text!r} is not shown" if is_more and not often else ""
+
+
+def _back_to(token: _Token) -> str:
+    """The way back to where somebody was."""
+    after = token.after(4)
+    if token.text != "back" or after[:1] not in (["to"], ["where"]) or _SETS["postures"] & {*after}:
+        return ""
+    here = next((i for i, step in enumerate(token.steps) if token.clause in step.clauses), 0)
+    gone = [i for i, step in enumerate(token.steps[:here]) if step.moves]
+    ways = {step.direction for step in token.steps[:here]}
+    returns = any(
+        _goes(step, "back") or step.target or step.seat or OPPOSITE.get(step.direction) in ways
+        for step in (*token.own, *token.steps[here:])
+    )
+    return "the way back is not shown" if gone and not returns else ""
+
+
+def _order(token: _Token) -> str:
+    """What comes first where "after" may be an adverb or stand before two movements, and what is done at once."""
+    order = [min(step.clauses) for step in token.steps if step.clauses]
+    following = [word_of(text) for text in token.after(6)]
+    in_turn = len(token.own) > 1 and token.own[-1].lower not in ("stumble", token.own[0].lower)
+    if token.text == "during" and in_turn and any(word.is_activity for word in following[:3]):
+        return "'during' is not shown"
+    is_open = token.before(1) in (["and"], [","], ["then"]) or token.after(1) in ([","], [])
+    two = sum(word.form == "ing" for word in following) > 1 and len(token.steps) > 2
+    return (
+        "the order of the movements is ambiguous"
+        if token.text == "after" and order != sorted(order) and (is_open or two)
+        else ""
+    )
+
+
 _OF_REPLACED = (_limb_side, _side, _number, _turn, _verb)
-_CHECKS = (_limb_side, _side, _number, _turn, _way, _verb, _manner)
+_CHECKS = (_limb_side, _side, _number, _turn, _again, _back_to, _order, _way, _verb, _manner)
 
 
 def _unmatched_tokens(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_Token]:
@@ -424,5 +496,7 @@ def _way_named(token: _Token) -> str:
         return "" if is_pair or _LIMBS & {*after[:2]} or {"face", "faces"} & {*before} else side[1]
     if token.text in _AHEAD:
         return "" if last in ARMS or (following == "and" and {*after} & _BACK) else "ahead"
-    is_way = token.text in _BACK and last not in _SETS["before_back"] and following not in _SETS["after_back"]
+    is_side = following in ("left", "right")
+    is_way = is_side or (last not in _SETS["before_back"] and following not in _SETS["after_back"])
+    is_way &= token.text in _BACK
     return "back" if is_way and not (last == "and" and {*before} & _AHEAD) else ""

@@ -158,15 +158,11 @@ def _in_place(step: Step, words: list[Word]) -> Step:
 
 def _going_step(step: Step, words: list[Word], at: int) -> Step:
     texts, direction = {word.text for word in words}, step.direction
-    if not direction and texts & RADAR and "to" in texts:
-        direction = "towards"
     if direction == "around":
         direction = "pacing"
     if step.seat and direction in ("", "backwards", "forwards", "towards") and not texts & AROUND:
         direction = "seat"
     target = target_of(words)
-    if target and direction in ("towards", "forwards") and not texts & RADAR:
-        direction = "" if not step.seat else "seat"
     step = replace(step, direction=direction, hand="", target=target, facing=facing_of(words))
     aside = any(other.text == "sideways" and before.text not in ARMS for before, other in pairwise(words))
     if (aside and step.lower == "walk") or _is_step_aside(step, words, at):
@@ -293,8 +289,6 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
     onward = {"way", "direction", "off"} & {word.text for word in words} and step.direction != "spot"
     if step.lower == "march" and (onward or step.direction not in ("", "spot", "around")):
         return _going_step(replace(step, lower="walk"), words, at)
-    if step.lower == "lunge" and step.direction in SIDES and not step.foot:
-        raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
     if step.lower == "kick" and step.direction in ("back", "backwards"):
         step = replace(step, style="back")
     return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
