@@ -18,7 +18,9 @@ from mmweaver.cli.main import main
 from tests.advice.templates import Template, templates
 
 Words = list[str]
-Try = Callable[[Words, str], list[Words]]  # command and message -> the commands that the message advises, in order
+# Command and message -> the commands that the message advises, in order; one that a command prints itself is a function
+# of what that has printed.
+Try = Callable[[Words, str], list[Words | Callable[[str], Words]]]
 _VALUE = r"[ =](?P<value>'[^']*'|[^\s;)]+)"
 _PLACEHOLDER = re.compile(r"[A-Z][A-Z_]*")
 _PLAIN_WORD = re.compile(r"[a-z]+")
@@ -32,6 +34,7 @@ class Row:
     command: str  # {name}: one of the made inputs
     tries: tuple[Try, ...]
     before: Callable[[], object] = lambda: None  # makes files in the working folder
+    reads_photo: bool = False  # else the room is the sample room, whatever photo is named
 
     @property
     def template(self) -> Template:
@@ -139,6 +142,36 @@ def first(command: str, then: Try | None = None, **placeholders: str) -> Try:
     return changed
 
 
+def printed(start: str, *then: Words) -> Try:
+    """The command that the message (or what was run last) prints after these words, then others."""
+
+    def changed(words: Words, message: str) -> list[Words | Callable[[str], Words]]:
+        return [_command(start, message), *(then or [words])]
+
+    return changed
+
+
+def _command(start: str, text: str) -> Words:
+    found = re.search(re.escape(start) + r"(mmweaver [^;()]*?)(?:$|[;()]| or |, )", text, re.MULTILINE)
+    assert found, f"no command is advised: {text}"
+    return shlex.split(found[1])[1:]
+
+
+def repaired(said: str) -> Try:
+    """`mmweaver verify` is run as the message prints it, then what that prints, then the refused command again."""
+
+    def changed(words: Words, message: str) -> list[Words | Callable[[str], Words]]:
+        assert said in message, f"{said!r} is not advised: {message}"
+        found = re.search(r"mmweaver (verify) ([^\s;()]+)", message)
+        return [list(found.groups()) if found else [], _made_anew, words]
+
+    return changed
+
+
+def _made_anew(printed: str) -> Words:
+    return _command("make it anew with: ", printed)
+
+
 def edit(said: str, edited: Callable[[], object], then: Try | None = None) -> Try:
     """Files are changed as the message advises by these words; then the refused command runs again, or changed."""
 
@@ -197,7 +230,10 @@ def carry_out(row: Row, inputs: dict[str, Any], capsys: pytest.CaptureFixture[st
             status, printed = run(_filled(words, inputs), capsys)
             message = said(row.template, printed)
             assert message, f"not provoked: {printed}"
-            for again in advice(words, message):
+            steps = advice(words, message)
+            for step in steps:
+                again = step(printed) if callable(step) else step
                 status, printed = run(_filled(again, inputs), capsys)
-                assert status == 0, f"{message}\n-> {shlex.join(again)}\n{printed}"
+                reports_damage = again[0] == "verify" and step is not steps[-1]
+                assert status == reports_damage, f"{message}\n-> {shlex.join(again)}\n{printed}"
             assert not said(row.template, printed), f"{message}\n-> {shlex.join(again)}\n{printed}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,17 @@ from mmweaver.cli import generate, train
 from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.core.stages import Stages
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.generate import Weaver, compose_request
 from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
+from mmweaver.recordings.captures import read_capture
 from mmweaver.request import Request
+from mmweaver.scene.photo.estimated_depth import PROMPTED
+from mmweaver.scene.sample_photo import sample_photo
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES
@@ -105,7 +110,7 @@ def _motions(folder: Path) -> None:
 def _result(folder: Path) -> Path:
     """A folder of mmweaver generate, samples included."""
     with signals_made_once():
-        words = ["generate", "--demo", "--text", "a person waves", "--frames", "1", "--bin", "--no-pictures", "--quiet"]
+        words = ["generate", "--demo", "--text", "a person waves", "--frames", "2", "--bin", "--no-pictures", "--quiet"]
         assert main([*words, "--out", str(folder)]) == 0
     return folder
 
@@ -119,32 +124,88 @@ def _results(folder: Path) -> Path:
     return folder
 
 
-@contextmanager
-def signals_made_once() -> Iterator[None]:
-    """The room is the sample room, whatever is read, all signals are the first one, and nothing is trained.
+def load_model(source: str, *_: Any) -> tuple[Any, Any, Any]:
+    """As `load_pretrained`: "blind" sees nothing, "broken" refuses every picture."""
 
-    Motions are composed.
+    def processor(**_: Any) -> dict[str, Any]:
+        if source == "broken":
+            raise ValueError("a picture of another size was expected")
+        return {}
+
+    def estimated(_: Any, target_sizes: list[tuple[int, int]]) -> list[dict[str, Any]]:
+        import torch
+
+        return [{"predicted_depth": torch.full(target_sizes[0], 0.0 if source == "blind" else 2.0)}]
+
+    processor.post_process_depth_estimation = estimated
+    kind = PROMPTED if source == "prompted" else "depth_anything"
+    return SimpleNamespace(model_type=kind), processor, lambda **_: None
+
+
+@contextmanager
+def signals_made_once(*, reads_photo: bool = False) -> Iterator[None]:
+    """The room is the sample room, whatever is read, all signals of a radar are the first one, and nothing is trained.
+
+    Motions are composed. `reads_photo`: the photo that is named is read, though not reconstructed.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_photographed_room", _sample_room)
+        if reads_photo:
+            patch.setattr("mmweaver.scene.photo.estimated_depth.load_pretrained", load_model)
+            patch.setattr("mmweaver.scene.read_photo.refined_by_sam", lambda mask, *_: mask)
+            patch.setattr(Weaver, "_reconstruct", lambda *_: _sample_room())
+        else:
+            patch.setattr(generate, "_photographed_room", _named_room)
         patch.setattr(Weaver, "carry_out", _signal)
-        patch.setattr(train, "_trained", lambda *_: {"weights": "out", "steps": 0, "validation_loss": 0.0})
+        patch.setattr(train, "_trained", _trained)
         yield
+        _made.pop("other room", None)
 
 
-_made: dict[str, Any] = {}
+_made: dict[Any, Any] = {}
+_RADARS = (("hupr", 0), ("hupr", 2))  # whose signals matter
 _carry_out = Weaver.carry_out
 
 
-def _sample_room(weaver: Weaver, arguments: argparse.Namespace) -> Room:
+_reconstruct = Weaver._reconstruct
+
+
+def use_room_without(kind: str) -> None:
+    """Takes the planes of a kind out of the room, up to the end of the row."""
+    of_room = _sample_room()
+    planes = tuple(one for one in of_room.scene.planes if one.kind != kind)
+    _made["other room"] = replace(of_room, scene=replace(of_room.scene, planes=planes))
+
+
+def _named_room(_: Weaver, arguments: argparse.Namespace) -> Room:
     generate._further(arguments.further_photos)
+    return _sample_room()
+
+
+def _sample_room() -> Room:
     if "room" not in _made:
-        _made["room"] = weaver.sample_room()
-    return _made["room"]
+        photo, assumptions = sample_photo()
+        _made["room"] = _reconstruct(photo, assumptions, {"sample": "the bundled room"}, Stages())
+    return _made.get("other room", _made["room"])
+
+
+def _trained(arguments: argparse.Namespace, *_: Any) -> dict[str, Any]:
+    if arguments.start is not None:
+        train._start(arguments.start)
+    for folder in arguments.captures or ():
+        read_capture(folder, rgb=arguments.rgb, depth=arguments.depth, camera=arguments.camera)
+    return {"weights": "out", "steps": 0, "validation_loss": 0.0}
 
 
 def _signal(weaver: Weaver, request: Request, of_room: Room, people: Any = None) -> Generation:
     people = compose_request(request, of_room.scene) if people is None else people
-    if "signal" not in _made:
-        _made["signal"] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
-    return _made["signal"]
+    made = request.config.name, len(request.radar_poses)
+    made = made if made in _RADARS else ("awr1843", 0)
+    if made not in _made:
+        _made[made] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
+    if request.radar_poses:
+        return _made[made]
+    asked = {"text": request.text or people[0].plan.text, "seed": request.seed, "frames": request.frames}
+    placed = {name: getattr(request, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
+    board = weaver.board_of(request, of_room)[0].meta()
+    meta = {**_made[made].meta, **asked, "at": request.at, "placed": placed, "board": board}
+    return replace(_made[made], meta=meta)

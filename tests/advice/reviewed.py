@@ -5,7 +5,7 @@ PART = "a part of a command or of a file, not of a message"
 CANNOT = "takes a full disk, a network, several machines or a broken installation"
 NOTE = "says of a result what was assumed or is missing; nothing is refused"
 LONG = "the work that it advises takes long"
-INPUT = "takes a recording, scan or model that is not made here"
+PYTHON = "of the Python interface: no command prints it"
 
 REVIEWED: dict[str, str] = {
     # names only
@@ -90,6 +90,7 @@ REVIEWED: dict[str, str] = {
             "cannot be shared by □ processes evenly",
             "give a model of mmweaver recognise train by --model",
             "needs the package moge",
+            "make one: mmweaver export DIR --to rerun",
         ),
         CANNOT,
     ),
@@ -126,58 +127,22 @@ REVIEWED: dict[str, str] = {
             "or one recording (□)",
             "give those of: mmweaver train weaver",
             "train anew or take the mmweaver version",
-            "give one that mmweaver train wrote",
             "mmweaver train --config",
             "the mmweaver train command that made",
             "use fewer --frames",
             "try another text or --seed",
+            "; or give --draws free",  # hundreds of places are tried first
+            "--repair, with the options it was made with",
+            "--activities, with the options it was made with",
         ),
         LONG,
     ),
     **dict.fromkeys(
         (
-            "; or give --draws free",
-            "make one: mmweaver export DIR --to rerun",
-            "is no .mmwl file",
-            "find out what else is with: mmweaver verify",
-            "says how), or delete",
-            "□ is □; choose another --out",
-            "exists; choose another name, or add --overwrite",
-            "generate results with --bin",
-            "HuPR's second radar is rolled",
-            "generate with --radar hupr",
-            "cannot have made HuPR's arrays",
-            "finds no place next to the others",
-            "no wall was found in the photo",
-            "another direction or another start (--at)",
-            "has no photo of its room",
-            "has changed since □ was written",
-            "frames of the recording probably have",
-            "as with □ TX x □ RX",
-            "the packets of a frame came every",
-            "try --antennas □, or another --radar",
-            "give the raw recording",
-            "generate --text □, alone",
-            "holds no RealSense",
-            "takes no measured depth",
-            "gives no depth for this picture",
-            "is it whole? or give the picture",
-            "□ has no depth: give --depth, or a model",
-            "--classes already gives the classes",
-            "--sam finds edges, not classes",
-            "photo □ of the scan has no pose",
-            "generate it with --bin",
-            "give a file or folder that mmweaver wrote",
-            "--repair, with the options it was made with",
-            "--activities, with the options it was made with",
-            "as it was made",
-            "the command that wrote □, with --overwrite",
-            "(its □ is missing or damaged)",
-            "mmweaver rooms NEW_FOLDER",
-            "--out □ --overwrite",
-            "photo □ has no depth at all",
-            "--depth-model □ cannot process this picture",
+            "□ is no .mmwl file",  # of LosslessFile; the commands know such files by their content
+            "give the raw recording",  # for the detector of a plug-in
+            "□ has no depth: give --depth, or a model",  # of read_photo; the command asks earlier
         ),
-        INPUT,
+        PYTHON,
     ),
 }

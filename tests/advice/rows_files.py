@@ -1,10 +1,21 @@
 """Advice about files that are read and written: recordings, radars, results, compressed files, exports."""
 
+import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from tests.advice.harness import Row, add, drop, edit, first, flag, instead, plus
+from mmweaver.cli.main import main
+from mmweaver.core.antenna_tables import ANTENNAS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube
+from mmweaver.formats.dca1000 import upright, write_bin
+from mmweaver.formats.radar_options import RadarOptions, with_options
+from tests.advice.harness import Row, Try, Words, add, drop, edit, first, flag, instead, plus
+from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
+from tests.formats.test_peer_arrays import hupr_array, simulated_frame
+from tests.recordings.test_plausibility import RADAR, room
 
 PROCESS = "process {iq} --radar {radar} --no-pictures --no-analysis --out out"
 COMPRESS = "compress {walk}/radar.npz -o out.mmw"
@@ -27,8 +38,102 @@ def _floats() -> None:
     tone.astype(np.complex64).tofile("numbers.bin")
 
 
+def _recorded(adc: AdcCube, config: RadarConfig, *, wrong: RadarConfig) -> None:
+    write_bin(Path("adc.bin"), adc, counts_per_unit=1.0)
+    Path("radar.json").write_text(config.to_json())
+    Path("wrong.json").write_text(wrong.to_json())
+
+
+def _more_loops() -> None:
+    _recorded(room(RADAR, 20), RADAR, wrong=replace(RADAR, num_loops=32, frame_period_s=2 * RADAR.frame_period_s))
+
+
+def _fewer_transmitters() -> None:
+    wrong = replace(RADAR, tx_position_m=RADAR.tx_position_m[:2], tx_order=(0, 1), num_loops=24)
+    _recorded(room(RADAR), RADAR, wrong=wrong)
+
+
+def _another_board() -> None:
+    aop = with_options(RADAR, RadarOptions(antennas=ANTENNAS["aop"]))
+    adc = room(aop)
+    isk = with_options(aop, RadarOptions(antennas=ANTENNAS["isk"]))
+    _recorded(replace(adc, samples=upright(adc.samples, aop)), aop, wrong=isk)
+
+
+def _packets() -> None:
+    config = radar_of_cfg(Path())
+    Path("dca.pcap").write_bytes(pcap_of(packets_of(Path(), counts(config, 8))))
+    Path("radar.json").write_text(config.to_json())
+    Path("wrong.json").write_text(replace(config, frame_period_s=2 * config.frame_period_s).to_json())
+
+
+def _hupr_array() -> None:
+    np.save("frame.npy", hupr_array(simulated_frame()))
+
+
+def _two_radars() -> None:
+    _written("texts.txt", "a person waves\na person stands\n")
+    words = ["generate", "--demo", "--texts", "texts.txt", "--frames", "1", "--no-pictures", "--quiet", "--bin"]
+    assert main([*words, "--out", "level"]) == 0
+    for number in (0, 1):
+        Path(f"level/{number:04d}").rename(f"level/radar_{number + 1}")
+
+
+def _of_two_transmitters() -> None:
+    config = radar_of_cfg(Path())
+    write_bin(Path("adc.bin"), counts(config), iq_order="qi", counts_per_unit=1.0)
+    words = ["process", "adc.bin", "--radar", "made.cfg", "--no-pictures", "--no-analysis", "--quiet"]
+    assert main([*words, "--out", "other"]) == 0
+    Path("adc.bin").rename("other/adc_data.bin")
+
+
+OTHER_RADAR = "process adc.bin --radar wrong.json --no-pictures --no-analysis --out out --overwrite"
+IN_FRONT = "generate --demo --frames 1 --no-pictures --out made --text 'a person waves' --bin"
+
+
+def generated(said: str, *more: str, then: Try) -> Try:
+    """A result is generated with these options, as the message advises, and taken in place of the refused one."""
+
+    def changed(words: Words, message: str) -> list[Words]:
+        for option in more:
+            assert option in message or option == "hupr", f"{option} is not advised: {message}"
+        return [[*shlex.split(IN_FRONT), *more], *then(words, message)]
+
+    return changed
+
+
 ROWS = (
     # recordings
+    Row(
+        ": the frames of the recording probably have",
+        OTHER_RADAR,
+        (instead("--radar is probably another", "wrong.json", "radar.json"),),
+        before=_more_loops,
+    ),
+    Row(
+        "chirps one loop (",
+        OTHER_RADAR,
+        (instead("--radar is probably not the radar", "wrong.json", "radar.json"),),
+        before=_fewer_transmitters,
+    ),
+    Row(
+        "try --antennas □, or another --radar",
+        OTHER_RADAR,
+        (add("--antennas"), instead("or another --radar", "wrong.json", "radar.json")),
+        before=_another_board,
+    ),
+    Row(
+        "the packets of a frame came every",
+        "process dca.pcap --radar wrong.json --no-pictures --no-analysis --out out --overwrite",
+        (instead("--radar is probably not the radar", "wrong.json", "radar.json"),),
+        before=_packets,
+    ),
+    Row(
+        "cannot have made HuPR's arrays",
+        "process frame.npy --layout hupr --radar mmmesh --no-pictures --no-analysis --out out",
+        (drop("--radar"), add("--radar", "hupr")),
+        before=_hupr_array,
+    ),
     Row(
         "which recording? give a file",
         "process --radar {radar} --no-pictures --out out",
@@ -205,6 +310,52 @@ ROWS = (
         ),
     ),
     # results
+    Row(
+        "□ is □; choose another --out",
+        "generate --demo --frames 1 --no-pictures --out out --text 'a person waves'",
+        (instead("choose another --out", "out", "other"),),
+        before=lambda: _written("out"),
+    ),
+    Row(
+        "exists; choose another name, or add --overwrite",
+        "export {walk} --to mat --out walk.mat",
+        (instead("choose another name", "walk.mat", "other.mat"), flag("--overwrite")),
+        before=lambda: _written("walk.mat"),
+    ),
+    Row(
+        "needs raw samples, which a set does not keep",
+        "export a_set --to rf_genesis --out out",
+        (generated("generate results", "--bin", then=instead("with --bin", "a_set", "made")),),
+        before=lambda: _written("a_set/plan.json", "{}"),
+    ),
+    Row(
+        "□ holds no □, which this format needs; generate it with --bin",
+        "export {processed} --to rf_genesis --out out",
+        (generated("generate it", "--bin", then=instead("with --bin", "{processed}", "made")),),
+    ),
+    Row(
+        "HuPR's arrays have 3 TX, 4 RX",
+        "export other --to hupr --out out",
+        (generated("generate", "--radar", "hupr", then=instead("with --radar hupr", "other", "made")),),
+        before=_of_two_transmitters,
+    ),
+    Row(
+        "HuPR's second radar is rolled by 90 degrees",
+        "export level --to hupr --out out",
+        (
+            generated(
+                "generate",
+                "--radar",
+                "hupr",
+                "--radar-pose",
+                "0,0,0,0,0",
+                "--radar-pose",
+                "0.1,0,0,0,0,90",
+                then=instead("generate with", "level", "made"),
+            ),
+        ),
+        before=_two_radars,
+    ),
     Row(
         "give a result folder, --to FORMAT and --out DIR",
         "export {walk}",

@@ -215,6 +215,11 @@ ROWS = (
     Row("--stream is of one person", f"{STREAM} --at 0,2 --at 0.5,2", (instead("give --at once", "--at 0.5,2"),)),
     Row("--stream says every sentence once", f"{STREAM} --repeat 2", (drop("--repeat"),)),
     Row(
+        "□ is an empty place, a sequence of its own",
+        "generate --demo --no-pictures --out out --stream --text 'a person waves' --text nobody",
+        (instead("generate --text nobody, alone", "out --stream --text 'a person waves'", "other"),),
+    ),
+    Row(
         "--stream needs sentences",
         f"generate --demo --stream {SHORT}",
         (

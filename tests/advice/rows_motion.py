@@ -1,6 +1,7 @@
 """Advice where a sentence or a recorded motion does not fit its room or its time."""
 
 from tests.advice.harness import Row, add, both, drop, first, instead, plus
+from tests.advice.made_inputs import use_room_without
 
 SHORT = "--no-pictures --out out"
 DEMO = f"generate --demo {SHORT}"
@@ -32,11 +33,36 @@ ROWS = (
         (add("--range"), both(drop("--range"), add("--radar"))),
     ),
     Row(
-        "keep more range bins (--range)",
+        "take another radar (--radar) or a photo with more floor",
         f"{ONE} --range 0.7,1.0 --text 'a person waves'",
         (
             instead("keep more range bins", "0.7,1.0", "0.7,3.5"),
             plus("another radar", "--range", "0.5,3.5", "--radar", "iwr6843isk"),
+        ),
+    ),
+    Row(
+        "another direction (--heading), or keep more range bins (--range)",
+        f"{DEMO} --frames 20 --range 1.5,2 --text 'a person sits down on the chair, then walks to the wall'",
+        (
+            add("--heading", "90"),
+            instead("or keep more range bins (--range)", "1.5,2", "1.5,3"),
+        ),
+    ),
+    Row(
+        "□: no wall was found in the photo",
+        f"{ONE} --text 'a person stands in front of the wall'",
+        (
+            add("--landmark", "wall=0.3,2.3"),
+            instead("or say another place", "'a person stands in front of the wall'", "'a person stands'"),
+        ),
+        before=lambda: use_room_without("wall"),
+    ),
+    Row(
+        "finds no place next to the others",
+        f"{DEMO} --frames 20 --text 'a person walks' --text 'a person stands' --at 0,2 --at 0.1,2",
+        (
+            instead("fewer people", "--text 'a person stands' --at 0,2 --at 0.1,2"),
+            instead("or other places (--at for each)", "0.1,2", "0.7,2"),
         ),
     ),
     Row(

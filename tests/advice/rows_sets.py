@@ -1,10 +1,44 @@
 """Advice about data sets, training, recognisers and what else takes long: up to where the work would begin."""
 
-from tests.advice.harness import Row, add, drop, first, instead
+import json
+import shutil
+from pathlib import Path
+
+import torch
+from PIL import Image
+
+from mmweaver.cli.main import main
+from mmweaver.core.tensor_files import write_tensors
+from mmweaver.formats.dca1000 import write_bin
+from tests.advice.harness import Row, add, drop, edit, first, instead, plus
+from tests.advice.made_inputs import SAMPLE
+from tests.recordings.test_plausibility import RADAR, room
 
 SET = "dataset out --activities {activities} --dry-run"
 TRAIN = "train weaver --data {walk} --out out"
 ROOMS = "dataset out --layouts 1 --sequences 1 --dry-run"
+
+
+def _capture() -> None:
+    write_bin(Path("adc.bin"), room(RADAR, 2), counts_per_unit=1.0)
+    Path("radar.json").write_text(RADAR.to_json())
+    words = ["process", "adc.bin", "--radar", "radar.json", "--no-pictures", "--no-analysis", "--quiet"]
+    assert main([*words, "--out", "capture"]) == 0
+
+
+def _capture_of_another_photo() -> None:
+    _capture()
+    Path("capture/SHA256SUMS").unlink()
+    photo = {"path": str(SAMPLE / "rgb.webp"), "sha256": 64 * "0"}
+    Path("capture/meta.json").write_text(json.dumps({"inputs": {"rgb": photo}}))
+
+
+def _photo(folder: str) -> None:
+    for name in ("depth.png", "camera.json"):
+        shutil.copy(SAMPLE / name, Path(folder) / name)
+    with Image.open(SAMPLE / "rgb.webp") as picture:
+        picture.save(Path(folder) / "rgb.png")
+
 
 ROWS = (
     Row(
@@ -56,16 +90,38 @@ ROWS = (
             instead("add it to one", "{jumping}", "{activities}"),
         ),
     ),
-    # training: the options alone
+    # training: the options and what is read alone
+    Row(
+        "□ has no photo of its room",
+        "train weaver --captures capture --from {weights} --out out",
+        (
+            edit("put rgb.png, depth.png (or depth.npy) and camera.json into it", lambda: _photo("capture")),
+            edit("or into the folder above", lambda: _photo(".")),
+            plus("give --rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),
+        ),
+        before=_capture,
+    ),
+    Row(
+        "has changed since □ was written",
+        "train weaver --captures capture --from {weights} --out out",
+        (plus("give --rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}", "--camera", "{camera}"),),
+        before=_capture_of_another_photo,
+    ),
+    Row(
+        "is not a weight file of mmweaver; give one that",
+        "train weaver --captures {walk} --from foreign.safetensors --out out",
+        (instead("give one that mmweaver train wrote", "foreign.safetensors", "{weights}"),),
+        before=lambda: write_tensors(Path("foreign.safetensors"), {"a": torch.zeros(1)}, {}),
+    ),
     Row("what to train on? give --data", "train weaver --out out", (add("--data", "{walk}"),)),
     Row(
         "--captures fine-tunes existing weights",
         "train weaver --captures {walk} --out out",
-        (add("--from", "builtin"),),
+        (add("--from", "{weights}"),),
     ),
     Row(
         "--encoder is for recipe weaver on --data",
-        "train weaver --captures {walk} --from builtin --encoder none --out out",
+        "train weaver --captures {walk} --from {weights} --encoder none --out out",
         (drop("--encoder"),),
     ),
     Row(
@@ -75,7 +131,7 @@ ROWS = (
     ),
     Row(
         "--rgb and --depth belong together",
-        "train weaver --captures {walk} --from builtin --rgb {rgb} --out out",
+        "train weaver --captures {walk} --from {weights} --rgb {rgb} --out out",
         (add("--depth", "{depth}"),),
     ),
     Row(
@@ -97,8 +153,8 @@ ROWS = (
     ),
     Row(
         "--captures is for recipe weaver; recipe",
-        "train activity --captures {walk} --from builtin --out out",
-        (instead("is trained on --data", "--captures {walk} --from builtin", "--data {walk}"),),
+        "train activity --captures {walk} --from {weights} --out out",
+        (instead("is trained on --data", "--captures {walk} --from {weights}", "--data {walk}"),),
     ),
     # others
     Row(

@@ -26,7 +26,7 @@ class Template:
 
     def is_in(self, message: str) -> bool:
         """Whether a printed line holds this text, with any values."""
-        parts = [re.escape(" ".join(part.split())) for part in self.text.split(GAP)]
+        parts = [re.escape(" ".join(part.split())) for part in re.split(rf"{GAP}|{{\w+}}", self.text)]
         return re.search(r"\s*.*?\s*".join(parts), " ".join(message.split())) is not None
 
 

@@ -5,13 +5,20 @@ from typing import Any
 
 import pytest
 
-from tests.advice import rows_files, rows_generate, rows_motion, rows_sets
+from tests.advice import rows_files, rows_generate, rows_motion, rows_photos, rows_repairs, rows_sets
 from tests.advice.harness import Row, carry_out
 from tests.advice.made_inputs import make, signals_made_once
 from tests.advice.reviewed import REVIEWED
 from tests.advice.templates import templates
 
-ROWS: tuple[Row, ...] = (*rows_generate.ROWS, *rows_motion.ROWS, *rows_files.ROWS, *rows_sets.ROWS)
+ROWS: tuple[Row, ...] = (
+    *rows_generate.ROWS,
+    *rows_motion.ROWS,
+    *rows_files.ROWS,
+    *rows_sets.ROWS,
+    *rows_repairs.ROWS,
+    *rows_photos.ROWS,
+)
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +29,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.text)
 def test_advice_helps(row: Row, inputs: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    with signals_made_once():
+    with signals_made_once(reads_photo=row.reads_photo):
         carry_out(row, inputs, capsys, tmp_path)
 
 

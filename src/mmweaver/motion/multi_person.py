@@ -80,8 +80,8 @@ def compose_people(
     refused = plans[crowded]
     raise InputError(
         f"there is no room for {len(plans)} people who keep {LEAST_PELVIS_DISTANCE_M:g} m apart: person {crowded + 1},"
-        f" {refused.text if refused else ''!r}, finds no place next to the others; try fewer people, fewer frames or"
-        " other places (--at for each)"
+        f" {refused.text if refused else ''!r}, finds no place next to the others; try fewer people or other places"
+        " (--at for each)"
     )
 
 

@@ -148,7 +148,9 @@ def _pose_of(folder: Path, kind: str, pictures: Sequence[Path], index: int, turn
     """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
     pose = scan_pose(folder, kind, pictures[index])
     if pose is None:
-        raise InputError(f"{folder}: the scan says no pose for photo {index}; photos are joined by their poses")
+        raise InputError(
+            f"{folder}: photo {index} of the scan has no pose, by which photos are joined; choose another (--photo)"
+        )
     quarter = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # counterclockwise
     return pose @ np.linalg.matrix_power(quarter, turns).T
 

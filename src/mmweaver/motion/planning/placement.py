@@ -198,6 +198,6 @@ def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | N
     longest = floor.longest_free_m(4.0)
     return (
         f"there is no room{what}{from_there}: in the picture and the radar's window {len(cells) * floor.cell_m**2:.1f}"
-        f" m2 of floor are free, the longest straight path is about {longest:.1f} m; try fewer frames, 'slowly',"
-        " another direction or another start (--at)"
+        f" m2 of floor are free, the longest straight path is about {longest:.1f} m; try another direction"
+        " (--heading), or keep more range bins (--range)"
     )

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.scene.photo.number_table import number_table
 from mmweaver.scene.photo.posed_photo import Pose
@@ -44,10 +43,8 @@ def scan_pose(folder: Path, kind: str, frame: Path) -> Pose | None:
 
 
 def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[int]:
-    """The frames whose cameras stand and look most differently from the first and each other."""
+    """The frames whose cameras stand and look most differently from the first, whose pose is known, and each other."""
     known = {index: pose for index, pose in enumerate(poses) if pose is not None}
-    if first not in known:
-        raise InputError(f"photo {first} of the scan has no pose; choose another with --photo")
     places = {index: _place_and_direction(pose) for index, pose in known.items()}
     chosen = [first]
     while len(chosen) <= most:

@@ -1,0 +1,100 @@
+"""Advice about photos, scans and models of depth; the models are small functions of the models' interface."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from mmweaver.core.records import CameraIntrinsics
+from tests.advice.harness import Row, add, both, drop, instead, plus
+from tests.captures import write_camera
+from tests.scene.test_scan_folders import scannet
+
+SHORT = "--text 'a person waves' --frames 1 --no-pictures --out out"
+PHOTO = f"generate --rgb {{rgb}} --depth {{depth}} --camera {{camera}} {SHORT}"
+ESTIMATED = f"generate --rgb {{rgb}} --camera {{camera}} {SHORT}"
+CAPTURE = f"generate --capture capture {SHORT}"
+LENS = CameraIntrinsics(fx=60.0, fy=60.0, cx=31.5, cy=23.5, width=64, height=48)
+
+
+def _capture(depths_m: tuple[float, ...] = (2.0, 3.0)) -> None:
+    picture = np.full((96, 128, 3), 90, np.uint8)
+    Path("capture").mkdir()
+    write_camera(
+        Path("capture/realsense"), LENS, [np.full((48, 64), depth) for depth in depths_m], [picture] * len(depths_m)
+    )
+
+
+def _capture_without_video() -> None:
+    _capture()
+    Path("capture/realsense/color.avi").write_bytes(b"no video")
+    Image.new("RGB", (128, 96)).save("own.png")
+
+
+def _classes() -> None:
+    Image.fromarray(np.zeros((480, 640), np.uint8)).save("classes.png")
+
+
+def _scan_without_first_pose() -> None:
+    folder = Path("scan")
+    scannet(folder)
+    for name in ("color/0.jpg", "depth/0.png", "pose/0.txt"):
+        shutil.copy(folder / name, folder / name.replace("0.", "1."))
+    (folder / "pose/0.txt").write_text("-inf -inf -inf -inf\n" * 4)
+
+
+ROWS = tuple(
+    Row(text, command, tries, before, reads_photo=True)
+    for text, command, tries, before in (
+        (
+            "□ holds no RealSense",
+            f"generate --capture {{nothing}} {SHORT}",
+            (
+                both(
+                    instead("instead", "--capture {nothing}"),
+                    plus("--rgb and --depth", "--rgb", "{rgb}", "--depth", "{depth}"),
+                ),
+            ),
+            lambda: None,
+        ),
+        (
+            "□: photo □ has no depth at all; choose another (--photo)",
+            CAPTURE,
+            (add("--photo", "1"),),
+            lambda: _capture((0.0, 3.0)),
+        ),
+        (
+            "photo □ of the scan has no pose",
+            f"generate --capture scan --further-photos auto {SHORT}",
+            (add("--photo", "1"),),
+            _scan_without_first_pose,
+        ),
+        ("is it whole? or give the picture", CAPTURE, (add("--rgb", "own.png"),), _capture_without_video),
+        (
+            "--classes already gives the classes",
+            f"{PHOTO} --classes classes.png --segmenter builtin --sam edges",
+            (drop("--segmenter", "--sam"),),
+            _classes,
+        ),
+        ("--sam finds edges, not classes", f"{PHOTO} --sam edges", (add("--segmenter", "builtin"),), lambda: None),
+        (
+            "--depth-model □ takes no measured depth",
+            f"{PHOTO} --depth-model metric",
+            (drop("--depth"), drop("--depth-model"), instead("or give a Prompt Depth Anything", "metric", "prompted")),
+            lambda: None,
+        ),
+        (
+            "--depth-model □ gives no depth for this picture",
+            f"{ESTIMATED} --depth-model blind",
+            (instead("try another model", "blind", "metric"),),
+            lambda: None,
+        ),
+        (
+            "--depth-model □ cannot process this picture",
+            f"{ESTIMATED} --depth-model broken",
+            (instead("try another model", "broken", "metric"),),
+            lambda: None,
+        ),
+    )
+)
