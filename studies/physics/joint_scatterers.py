@@ -11,7 +11,7 @@ from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import ApparentPoint, Paths, ScenePaths
 from mmweaver.paths.ray_traced import Simulator, with_micro_motion
 from mmweaver.paths.receiver import Receiver
-from mmweaver.paths.seen_body import motion_through
+from mmweaver.paths.visible_body import motion_through
 
 TOTAL_M2 = 10**-0.5  # cross section of all joints together: -5 dBsm, as the skin has over all aspects
 

@@ -10,11 +10,11 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.exact import exact_frame
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import Impairments, Receiver
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.paths.static_paths import scattered_paths
-from tests.physics.test_synthesis_against_exact import direct_paths, moving_points
+from tests.physics.test_reference_sum import direct_paths, moving_points
 
 DEVICES = ["cpu", *(["cuda"] if torch.cuda.is_available() else [])]
 

@@ -12,7 +12,7 @@ from mmweaver.paths.body_model import body_of
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from mmweaver.paths.seen_body import occluded_by
+from mmweaver.paths.visible_body import occluded_by
 from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person
 
 

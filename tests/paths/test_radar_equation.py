@@ -7,7 +7,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.point_response import PointResponse
 from mmweaver.paths.antenna import pattern
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import carrier, pattern_towards_db, points_of
 
 

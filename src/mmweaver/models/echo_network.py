@@ -6,7 +6,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 
 
 class EchoNetwork(nn.Module):

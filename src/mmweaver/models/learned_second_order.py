@@ -20,8 +20,8 @@ from mmweaver.paths.body_room_paths import ROOM_MARGIN_M, BodyRoomPaths, PairSam
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths
-from mmweaver.paths.seen_body import BodyAtFrames, SeenBody
 from mmweaver.paths.static_paths import RayTracedRoom
+from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody
 
 SKIN_POINTS = 200
 SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's parts begin at fifth frames
@@ -39,9 +39,9 @@ def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], cloc
     return Paths.cat(each, dim=1)
 
 
-def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:
+def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> VisibleBody:
     body = _body(motion.subject, motion.height_m, motion.girth)
-    one = SeenBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
+    one = VisibleBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
     clear = room.is_clear(np.zeros(3), one.posed.place_m[:: SAMPLING.every], ROOM_MARGIN_M)
     one.visible &= np.repeat(clear, SAMPLING.every, axis=0)[: one.num_frames]
     for other in others:

@@ -12,8 +12,8 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
+from mmweaver.paths.image_sources import apparent_direction
 from mmweaver.paths.radar_equation import pattern_towards_db
 from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid

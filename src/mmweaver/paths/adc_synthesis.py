@@ -1,7 +1,7 @@
 """Paths -> noise-free ADC samples, exact in time: fast time x (slow time . antennas), one matrix product a block.
 
-Phases are counted in double precision, everything else in single, on the CPU or a GPU. `exact.py` is the sum that these
-factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
+Phases are counted in double precision, all else in single, on the CPU or a GPU. `reference_sum.py` is the sum that
+these factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
 import math

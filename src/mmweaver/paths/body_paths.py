@@ -12,9 +12,9 @@ from mmweaver.paths.body_room_paths import BodyRoomPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
-from mmweaver.paths.seen_body import BodyAtFrames, SeenBody, occluded_by
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.visibility import Visibility
+from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody, occluded_by
 
 GHOST_POINTS = 200
 GHOST_SLAB_ECHOES = 2  # of a face in body-wall paths: front, and back with all that goes to and fro within
@@ -27,7 +27,7 @@ CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine from
 SIDE_MARGIN = 0.05  # and in the sine to its right and left
 
 
-class BodyPaths(SeenBody):
+class BodyPaths(VisibleBody):
     """Paths of one person in one room, frame by frame.
 
     With a `known` visibility no ray is cast, and the room needs no ray caster.

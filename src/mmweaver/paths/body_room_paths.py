@@ -19,7 +19,7 @@ from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.room_patches import roulette
 
 if TYPE_CHECKING:
-    from mmweaver.paths.seen_body import SeenBody
+    from mmweaver.paths.visible_body import VisibleBody
 
 NEAREST_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
 ROOM_MARGIN_M = 0.06
@@ -63,7 +63,7 @@ class _Pairs:
 class BodyRoomPaths:
     """Second-order paths of one person, frame by frame."""
 
-    def __init__(self, seen: "SeenBody", sampling: PairSampling | None = None):
+    def __init__(self, seen: "VisibleBody", sampling: PairSampling | None = None):
         self.of, self.room, self.sampling = seen, seen.traced, sampling or PairSampling()
         self.patches = self.room.patches_all_round
         _, group = np.unique(part_of_capsule()[self.of.body.part], return_inverse=True)

@@ -13,8 +13,8 @@ from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, ScenePaths
-from mmweaver.paths.seen_body import hulls_of, occluded_by
 from mmweaver.paths.static_paths import RayTracedRoom
+from mmweaver.paths.visible_body import hulls_of, occluded_by
 
 
 class PeoplePaths:

@@ -8,7 +8,7 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.paths.antenna import pattern_db, scatterer_gain
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 
 
 def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:

@@ -16,20 +16,20 @@ from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.dsp.cube import static_samples
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.apparent_paths import static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.cube_rendering import CubeRenderer
+from mmweaver.paths.diffuse_clutter import diffuse_clutter
 from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.image_sources import static_points
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
 from mmweaver.paths.skin_scattering import SkinEcho
 from mmweaver.paths.static_paths import Propagation, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import unresolved_clutter
 from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -82,7 +82,7 @@ class Simulator:
         self.clock = self.synthesis.clock
         self.room = (room or RayTracedRoom(scene, built, micro_seed, propagation)).for_radar(built)
         if self.room.propagation.clutter:
-            self.room.paths = StaticPaths.cat([self.room.paths, unresolved_clutter(built, micro_seed)])
+            self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed)])
         if self.board is not None:
             self.room.paths = self.board.on_static(self.room.paths)
         self.background: BackgroundRecording | None = None

@@ -18,8 +18,8 @@ from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
-from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.model_card import Figures, model_card

@@ -23,20 +23,20 @@ from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.power_network import PowerNetwork
+from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.apparent_paths import signal_points, static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
-from mmweaver.paths.cell_echoes import CellEchoes
 from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.image_sources import signal_points, static_points
 from mmweaver.paths.mean_power import MeanPower
+from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
-from mmweaver.paths.random_phases import (
+from mmweaver.paths.receiver import quantise
+from mmweaver.paths.speckle import (
     place_of,
     sample_cells,
     sample_moving,
@@ -44,7 +44,6 @@ from mmweaver.paths.random_phases import (
     sample_static,
     strongest_first,
 )
-from mmweaver.paths.receiver import quantise
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20

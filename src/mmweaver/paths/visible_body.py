@@ -90,7 +90,7 @@ def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.nd
     return asked[blocked]
 
 
-class SeenBody:
+class VisibleBody:
     """One person in one room. Without a ray, as here, all skin that faces the radar is visible."""
 
     def __init__(self, room: PreparedRoom, body: ScatteringBody, posed: BodyAtFrames):
