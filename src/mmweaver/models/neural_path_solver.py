@@ -17,9 +17,6 @@ from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
 from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import cell_noise
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.layers import Layers
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
@@ -30,7 +27,7 @@ from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.image_sources import signal_points, static_points
+from mmweaver.paths.image_sources import static_points
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
 from mmweaver.paths.occlusion import occluded
@@ -119,16 +116,13 @@ class LearnedRoom:
         with torch.inference_mode(), one_thread():
             return self._paths(motions)
 
-    def _paths(
-        self, motions: Sequence[FrameMotion], first_frame: int = 0, *, of_second_order: bool = True
-    ) -> ScenePaths:
+    def _paths(self, motions: Sequence[FrameMotion], first_frame: int = 0) -> ScenePaths:
         if not motions:
             raise ValueError("without people the number of frames is not known; see `_paths_of_nobody`")
         moving = [
             self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions
         ]
-        has_second = self.given.traced.propagation.bounces > 1 and not self.reads_cells
-        if has_second and of_second_order:
+        if self.given.traced.propagation.bounces > 1 and not self.reads_cells:
             moving.append(second_order_paths(self.given.traced, motions, self.renderer.clock))
         noticed_m = self.static.departure_vertex_m[: self._num_noticed]
         by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
@@ -198,33 +192,6 @@ class LearnedRoom:
 
         return replace(paths, departure=moved(paths.departure), arrival=moved(paths.arrival))
 
-    def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
-        """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion.
-
-        Points have one place, so moving paths of second order are left out. Frames of several segments are fitted:
-        their paths fade into each other, which points of whole frames do not.
-        """
-        if len(self.renderer.clock.segments) > 1:
-            return self._fitted_field(self.paths(motions))
-        with torch.inference_mode(), one_thread():
-            paths = self._paths(motions, of_second_order=False)
-            window = FitWindow.of(self.config, len(paths.occluded), 0)
-            points = signal_points(paths.moving, self.renderer.clock, window.response)
-            layers = Layers(
-                points=points, static=self.layer / window.phasor[:, self.config.num_loops // 2],
-                calibration=torch.ones(self.config.num_antennas, dtype=torch.complex64), noise_power=self.noise_power,
-            )  # fmt: skip
-        return ScattererField(layers, window, CubeGrid.of(self.config, len(paths.occluded)), 1.0, 1.0)
-
-    def _fitted_field(self, paths: ScenePaths) -> ScattererField:
-        with torch.inference_mode():
-            values = self.renderer.moving(paths.moving)
-            self.renderer.add_static(values, self.layer)
-        grid = CubeGrid.of(self.config, len(paths.occluded))
-        field = ScattererField.fit(RadarCube(values=values.numpy(), grid=grid, config=self.config, scale=1.0))
-        field.layers = replace(field.layers, noise_power=self.noise_power / field.peak**2)
-        return field
-
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
         """The signal of everybody, what they occlude of the room taken away, and the receiver's noise.
 
@@ -255,7 +222,7 @@ class LearnedRoom:
                 drift = torch.from_numpy(self.board.drift(frames, seed)).to(torch.complex64)
                 layer = layer + drift[:, None, None] * self._layer_rate
             part = (first_frame,) if first_frame else ()
-            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded), 0)
+            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded))
             noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()

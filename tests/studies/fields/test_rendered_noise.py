@@ -5,11 +5,11 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.dsp.points import point_cloud
-from mmweaver.fields.sampling import finer_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from studies.fields.field_signals import StudySignal
 from studies.fields.rendered_noise import DEFINITIONS, far_points, noise_row, noise_scores
+from studies.fields.sampling import finer_grid
+from studies.fields.scatterer_field import ScattererField
 from tests.fields.echoes import crowd
 
 
