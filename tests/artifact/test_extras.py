@@ -48,7 +48,6 @@ FEATURES = (
     ("export made/ --to rerun --out out/", "rerun"),
     ("python 'from mmweaver.conversions import to_dataset; to_dataset(None, None, (), None, {})'", "xarray"),
     ("python 'from mmweaver.playback.notebook import player_widget; player_widget(None, None)'", "notebook"),
-    ("python 'import mmweaver.compression.zarr_codec'", "dataset"),
     ("python 'from mmweaver.models.push_to_hub import push_to_hub; push_to_hub(None, None)'", "weaver"),
 )  # fmt: skip
 NOT_IN_AN_EXTRA = {"moge", "liblzfse"}  # one is not on PyPI, one has no wheels; their messages say what to install

@@ -10,7 +10,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
-from mmweaver.dsp.cfar import CFAR_METHODS, CfarCells, CfarResult
+from mmweaver.dsp.cfar import CfarCells, CfarResult, ca_cfar
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
 from mmweaver.dsp.windows import SHORTEST_HANN
 
@@ -33,7 +33,6 @@ def point_cloud(
     cube: RadarCube,
     *,
     false_alarm_rate: float = 1e-4,
-    method: str = "ca",
     max_points_per_frame: int = 128,
     moving_only: bool = False,
     cells: CfarCells = CfarCells(),  # noqa: B008 (frozen)
@@ -42,21 +41,18 @@ def point_cloud(
 ) -> PointCloud:
     """Detections of each frame in the radar's frame of reference, the strongest (by SNR) up to a limit.
 
-    1. CFAR ("ca" or "os") on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
+    1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
        `moving_only` first removes the Doppler bins of static clutter.
     2. Azimuth by beamforming on the horizontal row: every peak within `azimuth_peak_db` of the cell's highest is a
        point of its own (at most `max_azimuth_peaks`).
     3. Elevation from the phase between two rows, 0 where the array has none.
-    Range, velocity and azimuth are interpolated between bins. Raises InputError for an unknown method or a limit
-    below 1.
+    Range, velocity and azimuth are interpolated between bins. Raises InputError for a limit below 1.
     """
-    if method not in CFAR_METHODS:
-        raise InputError(f"unknown CFAR method {method!r}; known: {', '.join(CFAR_METHODS)}")
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
     power = range_doppler_power(cube)
     used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
-    found = CFAR_METHODS[method](
+    found = ca_cfar(
         power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1],
         cells=cells.within(power.shape[2]),
     )  # fmt: skip
