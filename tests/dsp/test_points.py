@@ -90,7 +90,6 @@ def test_a_radar_with_few_loops_works():
 @pytest.mark.parametrize(
     ("change", "word"),
     [
-        ({"method": "go"}, "ca, os"),
         ({"max_points_per_frame": 0}, "at least 1, not 0"),
         ({"false_alarm_rate": 2.0}, "between"),
     ],

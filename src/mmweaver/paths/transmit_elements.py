@@ -88,13 +88,6 @@ class TransmitElements:
             mixed[:, :, first] = apart[self._tx][:, :, transmitter]
         return mixed.flatten(2).flatten(0, 1)
 
-    def with_weights(self, channels: np.ndarray) -> np.ndarray:
-        """Channel factors (tx, rx) -> (slot, rx): of simultaneous transmitters their weighted mean."""
-        if not self.is_coded:
-            return channels
-        share = np.abs(self._into_slots.numpy())
-        return (share @ channels[self._tx.numpy()] / share.sum(axis=1, keepdims=True)).astype(channels.dtype)
-
 
 def _summed(matrix: Tensor, values: Tensor, axis: int) -> Tensor:
     moved = values.movedim(axis, 0)
