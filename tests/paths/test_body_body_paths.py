@@ -90,7 +90,7 @@ def skin_towards(person: BodyPaths, out: np.ndarray) -> np.ndarray:
     half = np.sqrt(np.maximum(2 + 2 * np.einsum("poi,pi->po", out, towards), 1e-9))
     cos_half = np.clip((cos_in[:, None] + cos_out) / half, -1, 1)
     brightness = person.body.brightness[seen]
-    return person.body.echo.over(cos_in[:, None], cos_out, cos_half) * (person.body.area_m2 * brightness)[:, None]
+    return person.body.echo.bistatic(cos_in[:, None], cos_out, cos_half) * (person.body.area_m2 * brightness)[:, None]
 
 
 def test_who_is_named_first_does_not_matter():

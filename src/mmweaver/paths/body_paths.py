@@ -8,10 +8,10 @@ import torch
 
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_room_paths import BodyRoomPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
-from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
+from mmweaver.paths.paths import Interaction, Paths, StaticPaths
+from mmweaver.paths.second_order import BodyRoomPaths
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.visibility import Visibility
 from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody, occluded_by
@@ -128,8 +128,8 @@ class BodyPaths(VisibleBody):
         half = to_corner + self.towards[:, chosen]
         cos_half = (normal * half).sum(-1) / np.maximum(np.linalg.norm(half, axis=-1), 1e-6)
         skin = self.body.echo
-        mixed = over * direct * np.sqrt(skin.over(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
-        double = over**2 / self.gain * np.sqrt(skin.back(cos) * area_m2) * micro
+        mixed = over * direct * np.sqrt(skin.bistatic(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
+        double = over**2 / self.gain * np.sqrt(skin.monostatic(cos) * area_m2) * micro
         once = seen & self.visible[:, chosen]
         ghosts = [
             *(SkinPaths(None, face, chosen, mixed * echo, once, longer_m) for echo, longer_m in slab),
@@ -190,14 +190,9 @@ class SkinPaths:
         departure, arrival = (skin if face is None else face.image_of_motion(skin) for face in self.faces)
         if self.longer_m is not None:
             arrival[:, 0] *= 1 + (self.longer_m[frame, there] / np.linalg.norm(arrival[:, 0], axis=1))[:, None]
-        count = len(skin)
-        return Paths(
-            amplitude=torch.from_numpy(self.amplitude[frame, there].astype(np.complex64)),
-            departure=ApparentPoint.of(departure),
-            arrival=ApparentPoint.of(arrival),
-            is_reciprocal=torch.full((count,), self.departure is not self.arrival),
-            interaction=torch.full((count,), int(self.interaction), dtype=torch.uint8),
-        )
+        is_reciprocal = self.departure is not self.arrival
+        amplitude = self.amplitude[frame, there]
+        return Paths.of(amplitude, departure, arrival, self.interaction, is_reciprocal=is_reciprocal)
 
     @property
     def faces(self) -> tuple[SpecularReflector | None, SpecularReflector | None]:

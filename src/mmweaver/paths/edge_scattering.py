@@ -7,6 +7,7 @@ from scipy.spatial import KDTree
 
 from mmweaver.core.records import Scene
 from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.geometry.rotations import unit
 
 SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): what of an edge adds up in phase
 NEIGHBOURHOOD_M = 0.15  # about a piece, whose edges say where it runs
@@ -33,10 +34,9 @@ def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edg
     ends, opposite, face = _free_edges(scene.faces)
     vertices = scene.vertices_m.astype(float)
     middle = vertices[ends].mean(axis=1)
-    outward = middle - vertices[opposite]
+    outward = unit(middle - vertices[opposite])
     along = vertices[ends[:, 1]] - vertices[ends[:, 0]]
     length = np.linalg.norm(along, axis=1)
-    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
     behind = _reach(caster, middle + 0.04 * outward)
     seen = _reach(caster, middle - 0.01 * outward)
     distance = np.linalg.norm(middle, axis=1)
@@ -77,7 +77,7 @@ def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
     """How far a ray from the radar towards each target goes."""
-    direction = target_m / np.maximum(np.linalg.norm(target_m, axis=1, keepdims=True), 1e-9)
+    direction = unit(target_m)
     return caster.distance_m(np.zeros_like(direction), direction)
 
 

@@ -1,6 +1,6 @@
 """Several people at once: each occludes the others, their ghosts and the room as a body occludes itself.
 
-Paths from one person over another to the radar are of second order: `body_body_paths`; see docs/several_people.md.
+Paths from one person over another to the radar are of second order: `second_order`; see docs/several_people.md.
 """
 
 from itertools import combinations
@@ -8,11 +8,11 @@ from itertools import combinations
 import numpy as np
 import torch
 
-from mmweaver.paths.body_body_paths import BodyBodyPaths
 from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, ScenePaths
+from mmweaver.paths.second_order import BodyBodyPaths
 from mmweaver.paths.static_paths import RayTracedRoom
 from mmweaver.paths.visible_body import hulls_of, occluded_by
 

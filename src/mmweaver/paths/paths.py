@@ -99,6 +99,26 @@ class Paths(TensorRecord):
     interaction: Tensor  # (..., path) uint8, an `Interaction`
 
     @classmethod
+    def of(
+        cls,
+        amplitude: np.ndarray,
+        departure: np.ndarray,
+        arrival: np.ndarray,
+        interaction: Interaction,
+        *,
+        is_reciprocal: bool = False,
+    ) -> "Paths":
+        """Paths of one kind, of amplitudes (path,) and of the motion of their ends (..., path, 3, 3)."""
+        shape = departure.shape[:-2]
+        return cls(
+            amplitude=torch.from_numpy(amplitude.astype(np.complex64)).expand(shape),
+            departure=ApparentPoint.of(departure),
+            arrival=ApparentPoint.of(arrival),
+            is_reciprocal=torch.full(shape, is_reciprocal),
+            interaction=torch.full(shape, int(interaction), dtype=torch.uint8),
+        )
+
+    @classmethod
     def direct(cls, amplitude: Tensor, scatterer: ApparentPoint) -> "Paths":
         """Paths to moving scatterers and straight back."""
         return cls(
@@ -127,7 +147,8 @@ class Paths(TensorRecord):
     @classmethod
     def none(cls) -> "Paths":
         """No paths, (0,)."""
-        return cls.direct(torch.zeros(0, dtype=torch.complex64), ApparentPoint.of(np.zeros((0, 3, 3))))
+        nothing = np.zeros((0, 3, 3))
+        return cls.of(np.zeros(0), nothing, nothing, Interaction.BODY)
 
     def __len__(self) -> int:
         return len(self.amplitude)

@@ -111,7 +111,7 @@ class VisibleBody:
     @cached_property
     def direct(self) -> np.ndarray:
         """Amplitudes (frame, point) of direct echoes, were all skin visible, complex, in sqrt(mW)."""
-        cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
+        cross_section = self.body.echo.monostatic(self.cos) * self.body.area_m2 * self.body.brightness
         level = self.gain * self.pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return level * self.body.micro_phase
 
