@@ -39,7 +39,7 @@ def over_both(found: PeoplePaths, frame: int = 0) -> Paths:
 
 def test_lengths_and_rates_are_those_over_both():
     found = people()
-    between = found.between[0, 1]
+    between = found.between[0]
     for frame in range(2):
         paths, pairs = over_both(found, frame), between.pairs[frame]
         a = between.first.middles_m(frame)[pairs.first]

@@ -211,4 +211,4 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    occluded: Tensor  # (frame, static path) uint8: how many bodies take the path away, 1 at most unless they are apart
+    occluded: Tensor  # (frame, static path) uint8: 1 where somebody occludes the path

@@ -144,15 +144,15 @@ class Simulator:
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
-        mutual_occlusion: bool = True,
     ) -> Iterator[AdcCube]:
         """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
 
         `first_frame`: the number of the first one, in the time of the poses, whose noise and micro-motion go on so.
         People sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
-        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_occlusion` the signal is
-        the plain sum of people who do not occlude each other. Raises InputError where a pose does not cover the frames
-        or holds values that are not finite.
+        `pose` is one person, several, or an empty tuple for the room alone.
+
+        Raises:
+            InputError: where a pose does not cover the frames or holds values that are not finite.
         """
         poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
         for one in poses:
@@ -163,7 +163,7 @@ class Simulator:
         micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
         for first in range(first_frame, first_frame + num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, first_frame + num_frames))
-            people = self._people(poses, bodies, micro_motions, frames, mutual_occlusion)
+            people = self._people(poses, bodies, micro_motions, frames)
             samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
             samples = samples if unit == 1.0 else samples / np.float32(unit)
             yield AdcCube(samples=samples, config=self.config, scale=unit)
@@ -188,7 +188,6 @@ class Simulator:
         bodies: list[ScatteringBody],
         micro_motions: list[MicroMotion],
         frames: np.ndarray,
-        mutual: bool,
     ) -> PeoplePaths:
         joints_m, chests_m = [], []
         for pose, own in zip(poses, micro_motions, strict=True):
@@ -196,7 +195,7 @@ class Simulator:
             joints, chest = with_micro_motion(own, level_m, frames, self.clock, pose.height_m)
             joints_m.append(self.radar_pose.seen(joints))
             chests_m.append(chest)
-        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m, mutual=mutual)
+        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
 
     def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
         """What `Resynthesis` needs of a motion: joints at the clock's nodes (frame, node, 22, 3), and visibility.
