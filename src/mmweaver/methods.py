@@ -17,7 +17,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.board_effects import as_built
+from mmweaver.paths.board_effects import built_radar
 from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
@@ -238,7 +238,7 @@ def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> 
 
 def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
     """The radar with antennas where a board has them: all that rays depend on."""
-    return config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
+    return config if board is None else replace(built_radar(board, config), noise_figure_db=config.noise_figure_db)
 
 
 RoomT = TypeVar("RoomT")

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.records import RadarCube
-from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.metrics.scorecard import scorecard
+from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.fields.scatterer_field import ScattererField
 from studies.fields.signal_field import SignalField

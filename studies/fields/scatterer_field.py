@@ -24,6 +24,7 @@ from mmweaver.fields.scatterers.cell_noise import MIXED_POWER, cell_noise, num_s
 from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
+from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values
 from studies.fields.sampling import coordinates_on
 from studies.fields.signal_field import SignalField
 
@@ -34,12 +35,20 @@ STATIC_POINTS = 200  # scatterers that replace the static layer for another rada
 class ScattererField(SignalField):
     """Points and static layer (`layers`), their working frames (`fit_window`), and the amplitude of 1.0 (`peak`)."""
 
-    def __init__(self, layers: Layers, fit_window: FitWindow, grid: CubeGrid, scale: float, peak: float):
-        self.layers, self.fit_window = layers, fit_window
+    def __init__(
+        self,
+        layers: Layers,
+        fit_window: FitWindow,
+        grid: CubeGrid,
+        scale: float,
+        peak: float,
+        active_beams: np.ndarray | None = None,
+    ):
+        self.layers, self.fit_window, self.active_beams = layers, fit_window, active_beams
         self.config, self.grid, self.scale, self.peak = fit_window.config, grid, scale, peak
 
     @classmethod
-    def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
+    def fit(cls, cube: RadarCube, recipe: BudgetedRecipe | None = None) -> "ScattererField":
         """Fits scatterers to a cube. Raises InputError where the cube is all zeros or not finite.
 
         Without a recipe: 83 points per frame and a static layer.
@@ -52,12 +61,15 @@ class ScattererField(SignalField):
             raise InputError("the cube is all zeros: there is nothing to fit")
         fit_window = FitWindow.of(cube.config, len(values), overlap_hop(cube))
         working = fit_window.working(values / np.float32(peak))
-        recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
-        return cls(fitted(working, fit_window, recipe), fit_window, cube.grid, cube.scale, peak)
+        recipe = recipe or BudgetedRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
+        with torch.no_grad():
+            fit = BudgetedFit(working, fit_window, recipe)
+            layers = fit.run()
+        return cls(layers, fit_window, cube.grid, cube.scale, peak, fit.active_beams)
 
     @property
     def num_values(self) -> int:
-        return self.layers.num_values(self.fit_window.response)
+        return num_values(self.layers, self.active_beams, self.fit_window.response)
 
     def native(self, threads: int = 1) -> CubeValues:
         """Values on the native grid, complex64 (frame, range, doppler, antenna); frames are divided among `threads`."""

@@ -117,7 +117,7 @@ def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> di
     """Samples of the static paths of a room by kind, with other phases where `turned` samples them."""
     found = {}
     for kind in KINDS_OF_PATHS:
-        part = room.paths.of_kind(kind)
+        part = room.paths.select(kind)
         if turned is not None:
             cycles = turned.random(len(part))
             part = replace(part, amplitude=part.amplitude.abs() * torch.from_numpy(np.exp(2j * np.pi * cycles)))

@@ -44,7 +44,7 @@ def exact_samples(paths: Paths, config: RadarConfig) -> np.ndarray:
     for loop in range(config.num_loops):
         for m in range(config.num_tx):
             time = torch.from_numpy(clock.chirp_s[loop, m] - clock.middle_s[0] + ramp_s)
-            ends = [end.at(time).movedim(-1, 0) for end in (paths.departure, paths.arrival)]
+            ends = [end.positions_m(time).movedim(-1, 0) for end in (paths.departure, paths.arrival)]
             for k in range(config.num_rx):
                 for order, there in ((ends, torch.ones(len(paths))), (ends[::-1], paths.is_reciprocal)):
                     tau = ((order[0] - tx[m]).norm(dim=-1) + (order[1] - rx[k]).norm(dim=-1)) / SPEED_OF_LIGHT_MPS

@@ -34,7 +34,7 @@ def test_whatever_is_occluded_is_near_the_body(place_m: tuple[float, float, floa
     every = np.arange(len(room.room.paths))
     occluded = occluded_by(paths.posed.hulls[0], room.room.paths, every)
     assert len(occluded) > 10
-    assert np.isin(occluded, paths.near_body(0)).all()
+    assert np.isin(occluded, paths.occludable(0)).all()
 
 
 def test_furniture_hides_a_body_behind_it_and_none_in_front_of_it():

@@ -206,7 +206,7 @@ def test_a_roulette_keeps_the_mean_power_and_the_strong_ones():
 
 def test_room_room_paths_come_in_both_orders():
     room = Simulator(scene_of((floor(), back_wall())), AWR1843, IDEAL).room
-    paths = room.paths.of_kind(Interaction.ROOM_ROOM)
+    paths = room.paths.select(Interaction.ROOM_ROOM)
     count = len(paths)
     assert count > 20
     departures = {tuple(row) for row in np.round(paths.departure_vertex_m.numpy(), 5)}

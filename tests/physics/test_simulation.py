@@ -129,9 +129,9 @@ def test_one_wall_is_the_closed_form_image():
     assert np.allclose(path.corners_m, [[0, 2.5, 0]])
     material = MATERIALS["plasterboard"]
     gamma = reflection(material, np.ones(1), AWR1843.centre_frequency_hz)[0] * np.sqrt(1 - material.scattering**2)
-    assert path.echoes.at(AWR1843.centre_frequency_hz) == pytest.approx(gamma.conj(), rel=1e-3)
+    assert path.echoes.value(AWR1843.centre_frequency_hz) == pytest.approx(gamma.conj(), rel=1e-3)
     room = Simulator(scene_of((wall,)), AWR1843, IDEAL, propagation=SMOOTH).room
-    echoes = room.paths.of_kind(Interaction.SPECULAR)
+    echoes = room.paths.select(Interaction.SPECULAR)
     turned = np.exp(2j * np.pi * (echoes.length_m - echoes.length_m[0]).numpy()[:, 0, 0] / AWR1843.wavelength_m)
     total = (echoes.amplitude.numpy() * turned).sum()
     friis = 10 ** ((12 + 2 * 10.5) / 20) * AWR1843.wavelength_m / (4 * np.pi * 5.0)  # sqrt(mW) over the image's 5 m
@@ -147,7 +147,7 @@ def test_a_wall_reflects_as_the_exact_slab_at_every_frequency(name: str):
     wall = back_wall(y_m=2.0, material=name)
     synthesis, material = AdcSynthesis(AWR1843), MATERIALS[name]
     room = Simulator(scene_of((wall,)), AWR1843, IDEAL, propagation=SMOOTH).room
-    paths = room.paths.of_kind(Interaction.SPECULAR)
+    paths = room.paths.select(Interaction.SPECULAR)
     got = synthesis.static(paths)
     since_s = (np.arange(AWR1843.num_samples) - AWR1843.num_samples / 2) / AWR1843.sample_rate_hz
     frequency_hz = AWR1843.centre_frequency_hz + AWR1843.chirp_slope_hz_per_s * since_s
@@ -183,7 +183,7 @@ def test_a_corner_has_its_double_bounce_once():
     for mirror in specular_reflectors((back_wall(y_m=2.5), floor(-1.2))):
         expected *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), AWR1843.centre_frequency_hz))
     expected = expected.conjugate()
-    assert corner.echoes.at(AWR1843.centre_frequency_hz) == pytest.approx(expected, rel=0.05)
+    assert corner.echoes.value(AWR1843.centre_frequency_hz) == pytest.approx(expected, rel=0.05)
 
 
 def test_ghost_appears_where_the_mirror_says():

@@ -88,7 +88,7 @@ class LearnedRoom:
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
             if self.board is not None:
-                self.static = self.board.on_static(self.static)
+                self.static = self.board.recorded_static(self.static)
             if background is not None:
                 check_recording(background, self.nominal)
                 expected = self.radar.maps(static_points(self.static, self.radar.response)).range_azimuth
@@ -218,7 +218,7 @@ class LearnedRoom:
             grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
             frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
             if self.board is not None:
-                paths = replace(paths, moving=self.board.on_moving(paths.moving, frames, seed))
+                paths = replace(paths, moving=self.board.recorded_moving(paths.moving, frames, seed))
                 drift = torch.from_numpy(self.board.drift(frames, seed)).to(torch.complex64)
                 layer = layer + drift[:, None, None] * self._layer_rate
             part = (first_frame,) if first_frame else ()

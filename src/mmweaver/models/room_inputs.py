@@ -24,7 +24,7 @@ class GivenRoom:
     ) -> "GivenRoom":
         """Of a scene. `seed`: another one has other phases and other clutter."""
         traced = RayTracedRoom(scene, config, seed, propagation)
-        others = [traced.paths.of_kind(Interaction.ROOM_ROOM)]
+        others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:
             others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
         return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

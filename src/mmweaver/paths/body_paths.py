@@ -69,7 +69,7 @@ class BodyPaths(VisibleBody):
         """Indices of the static paths that the person occludes in one frame."""
         if self.known is not None:
             return np.flatnonzero(self.known.occluded[frame])
-        return occluded_by(self.posed.hulls[frame], self.room.paths, self.near_body(frame))
+        return occluded_by(self.posed.hulls[frame], self.room.paths, self.occludable(frame))
 
     def visibility(self) -> Visibility:
         """What the rays decided, to be kept."""
@@ -83,7 +83,7 @@ class BodyPaths(VisibleBody):
             occluded=occluded,
         )  # fmt: skip
 
-    def near_body(self, frame: int) -> np.ndarray:
+    def occludable(self, frame: int) -> np.ndarray:
         """Indices of the static paths that the body may occlude: a cone around it, between its right and its left."""
         away = -self.towards[frame]
         axis = self.posed.place_m[frame].mean(axis=0)
@@ -133,7 +133,7 @@ class BodyPaths(VisibleBody):
         once = seen & self.visible[:, chosen]
         ghosts = [
             *(SkinPaths(None, face, chosen, mixed * echo, once, longer_m) for echo, longer_m in slab),
-            *(SkinPaths(face, face, chosen, double * echo, seen, longer_m) for echo, longer_m in slab.twice),
+            *(SkinPaths(face, face, chosen, double * echo, seen, longer_m) for echo, longer_m in slab.doubled),
         ]
         ghosts = [ghost for ghost in (ghost.strongest(direct_power) for ghost in ghosts) if ghost.present.any()]
         if not ghosts:

@@ -42,7 +42,7 @@ def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edg
     distance = np.linalg.norm(middle, axis=1)
     step = np.isfinite(behind) & (behind > distance + STEP_OVER_M) & (np.abs(seen - distance) < 0.05)
     step &= length < 0.3  # longer ones are rims of completed planes, not furniture
-    pieces = _in_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
+    pieces = _merged_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
     return _straightened(pieces, middle[step], length[step]) if straight and len(pieces.length_m) else pieces
 
 
@@ -81,7 +81,7 @@ def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
     return caster.distance_m(np.zeros_like(direction), direction)
 
 
-def _in_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
+def _merged_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
     """One piece for each small cube of space: its mean place and main direction, no longer than the cube."""
     if len(middle) == 0:
         return Edges(place_m=middle, direction=along, length_m=length, material=material)

@@ -129,10 +129,10 @@ def specular_reflectors(
             facing.append(face)
     facing.sort(key=lambda face: -face.area_m2)
     faces = facing[:MAX_REFLECTORS]
-    return with_faces_before(faces) if hidden else faces
+    return layered_faces(faces) if hidden else faces
 
 
-def with_faces_before(faces: list[SpecularReflector]) -> list[SpecularReflector]:
+def layered_faces(faces: list[SpecularReflector]) -> list[SpecularReflector]:
     """Faces, each hidden where another one lies right before it."""
     return [replace(face, before=tuple(one for one in faces if one.is_before(face))) for face in faces]
 
@@ -195,7 +195,7 @@ def _path(
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
         tapers.append(float(face.inside(corner, fresnel_m)))
         cos = np.abs(unit(image - end) @ face.plane.normal)
-        echoes = echoes.then(face.echoes(cos, frequency_hz, most), frequency_hz)
+        echoes = echoes.combined(face.echoes(cos, frequency_hz, most), frequency_hz)
         end = corner
     share = _share_of_wave(np.array(corners), min(tapers), length)
     echoes = SlabEchoes(share * echoes.coefficient, echoes.longer_m)

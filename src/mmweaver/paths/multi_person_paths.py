@@ -61,6 +61,6 @@ class PeoplePaths:
         """Which static paths somebody occludes in one frame, bool (path,)."""
         found = np.zeros(len(self.room.paths), bool)
         if self.each:
-            near = np.unique(np.concatenate([one.near_body(frame) for one in self.each]))
+            near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))
             found[occluded_by(self.hulls[frame], self.room.paths, near)] = True
         return found

@@ -52,7 +52,7 @@ class ApparentPoint(TensorRecord):
         )
         return cls(position_m=position, velocity_mps=velocity, acceleration_mps2=acceleration)
 
-    def at(self, time_s: Tensor) -> Tensor:
+    def positions_m(self, time_s: Tensor) -> Tensor:
         """Positions (..., time, 3, path) in metres, float64, at times (time,) since the segment's middle."""
         position, velocity, acceleration = (
             part.mT.contiguous()[..., None, :, :]
@@ -200,7 +200,7 @@ class StaticPaths(TensorRecord):
     def __len__(self) -> int:
         return len(self.amplitude)
 
-    def of_kind(self, kind: Interaction) -> "StaticPaths":
+    def select(self, kind: Interaction) -> "StaticPaths":
         """Those of one kind."""
         return self[self.interaction == int(kind)]
 

@@ -84,7 +84,7 @@ class Simulator:
         if self.room.propagation.clutter:
             self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed)])
         if self.board is not None:
-            self.room.paths = self.board.on_static(self.room.paths)
+            self.room.paths = self.board.recorded_static(self.room.paths)
         self.background: BackgroundRecording | None = None
         with one_thread():
             if background is not None:
@@ -105,7 +105,7 @@ class Simulator:
         receiver = Receiver(self.room.config, self.impairments, self.radar_pose.noise_seed(seed), self.board)
         if self.background is None:
             return receiver
-        return receiver.with_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
+        return receiver.adopt_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
 
     def _leakage(self) -> torch.Tensor:
         """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
@@ -174,7 +174,7 @@ class Simulator:
             static, moving = self._static - self.synthesis.occluded(paths), paths.moving
             if self.board is not None:
                 static = static + self._drifted(frames, receiver.seed)
-                moving = self.board.on_moving(moving, frames, receiver.seed)
+                moving = self.board.recorded_moving(moving, frames, receiver.seed)
             return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
 
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
@@ -192,7 +192,7 @@ class Simulator:
         joints_m, chests_m = [], []
         for pose, own in zip(poses, micro_motions, strict=True):
             level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
-            joints, chest = with_micro_motion(own, level_m, frames, self.clock, pose.height_m)
+            joints, chest = add_micro_motion(own, level_m, frames, self.clock, pose.height_m)
             joints_m.append(self.radar_pose.seen(joints))
             chests_m.append(chest)
         return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
@@ -206,7 +206,7 @@ class Simulator:
         frames = np.arange(num_frames)
         joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
         own = MicroMotion(pose.subject, seed, MicroMotionSettings())
-        moved, chest = with_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
+        moved, chest = add_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
         return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
@@ -233,7 +233,7 @@ class Simulator:
             raise InputError("the motion has joints that are not numbers; mend the pose file")
 
 
-def with_micro_motion(
+def add_micro_motion(
     motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Joints at the nodes of frames (frame, node, 22, 3) with micro-motion, and how far the chest is raised, in m."""

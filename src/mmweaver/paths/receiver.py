@@ -58,7 +58,7 @@ class Receiver:
             deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
-    def with_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
+    def adopt_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
         """The same with thermal noise of this power a sample and a converter of this count."""
         other = copy(self)
         other.count_sqrt_mw = count_sqrt_mw

@@ -119,7 +119,7 @@ class PreparedRoom:
         return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
 
     @property
-    def of_first_order(self) -> StaticPaths:
+    def first_order(self) -> StaticPaths:
         """The static paths of STATIC_KINDS, in their order."""
         return self.paths[: sum(self.counts.values())]
 

@@ -69,7 +69,7 @@ class TransmitElements:
         apart = values.unflatten(-1, (len(self._tx), -1))
         return _summed(self._into_tx, apart, -2).flatten(-2)
 
-    def of_pairs(self, values: Tensor) -> Tensor:
+    def pair_values(self, values: Tensor) -> Tensor:
         """Values (..., tx, rx) of physical transmitters -> of elements (..., element, rx)."""
         return values[..., self._tx, :] if self.is_coded else values
 
