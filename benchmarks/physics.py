@@ -37,9 +37,9 @@ def simulation_costs() -> dict[str, float]:
     from mmweaver.motion.language.timing import plan_motion
     from mmweaver.paths.body_model import body_of
     from mmweaver.paths.body_paths import BodyPaths
-    from mmweaver.paths.exact import exact_frame
     from mmweaver.paths.paths import Interaction
     from mmweaver.paths.ray_traced import Simulator
+    from mmweaver.paths.reference_sum import exact_frame
 
     weaver = Weaver(method="physics", radar="awr1843")
     scene = weaver.sample_room().scene
@@ -95,7 +95,7 @@ def whole_command(name: str, *arguments: str) -> dict[str, float]:
 def synthesis_errors() -> dict[str, float]:
     """Error of the range-Doppler cube against the exact sum, dB, of 40 points that move as the names say."""
     sys.path.insert(0, str(ROOT))
-    from tests.physics.test_synthesis_against_exact import error_db
+    from tests.physics.test_reference_sum import error_db
 
     cases = {"at_rest": (0.0, 0.0), "at_0.5_mps": (0.5, 5.0), "at_3_mps": (3.0, 30.0)}
     return {f"synthesis_error_{name}_db": float(error_db(*case)) for name, case in cases.items()}

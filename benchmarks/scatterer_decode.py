@@ -6,7 +6,6 @@ Writes results/benchmark/scatterer_decode.json in the project's results schema a
 import sys
 from functools import partial
 
-import numpy as np
 import torch
 from measuring import least_cpu_seconds, least_seconds, report, results_folder
 
@@ -15,11 +14,10 @@ from mmweaver.core.records import CubeGrid
 from mmweaver.dsp.point_response import Points
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from studies.fields.scatterer_field import ScattererField
 
 NUM_FRAMES = 20
 REPEATS = 200  # so many that some run finds the machine free
-POINT_BY_POINT_CELLS = 20_000  # of 491,520; the rest is extrapolated
 
 
 def field_of(num_points: int) -> ScattererField:
@@ -48,10 +46,6 @@ def decode_costs() -> dict[str, float]:
         for threads in (1, 4):
             costs[f"{num_points}_points_{threads}_threads_s"] = least_seconds(partial(field.native, threads), REPEATS)
         costs[f"{num_points}_points_cpu_s"] = least_cpu_seconds(partial(field.native, 1), REPEATS)
-    cells = np.indices(field.grid.shape).reshape(4, -1).T.astype(np.float64)
-    some = cells[:: len(cells) // POINT_BY_POINT_CELLS]
-    share = len(cells) / len(some)
-    costs["point_by_point_83_points_s"] = share * least_seconds(lambda: field.sample(some), 1)
     # processor time on both sides of the ratio: other work on the machine hardly touches it
     a = torch.ones(2048, 2048)
     gemm_flop_per_s = 2 * 2048**3 / least_cpu_seconds(lambda: a @ a, 8)
@@ -59,7 +53,6 @@ def decode_costs() -> dict[str, float]:
     flop = 2 * NUM_FRAMES * 64 * (2 * 83) * (32 * 12 * 2)
     costs["gemm_gflop_per_s"] = gemm_flop_per_s / 1e9
     costs["times_gemm_limit_83_points"] = costs["83_points_cpu_s"] / (flop / gemm_flop_per_s)
-    costs["times_faster_than_point_by_point"] = costs["point_by_point_83_points_s"] / costs["83_points_1_threads_s"]
     return costs
 
 

@@ -25,7 +25,7 @@ from mmweaver.core.records import PoseSequence, RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.generate import Weaver
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion

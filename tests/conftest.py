@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from mmweaver.core.board import Board
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.records import RadarCube, RgbdPhoto, Scene
-    from mmweaver.models.learned_paths import LearnedRoom
+    from mmweaver.models.neural_path_solver import LearnedRoom
 
 # Many tests start processes, which would each compile the package anew.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

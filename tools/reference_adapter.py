@@ -21,7 +21,7 @@ from mmweaver import InputError as InputError
 from mmweaver import RadarCube, RadarPose, Weaver
 from mmweaver import read_radar_npz as read_radar_npz
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
-from mmweaver.compression.mmw_codec import compress_cube, errors_db
+from mmweaver.compression.mmw_codec import compress_cube, errors_db, values_of_bytes
 from mmweaver.compression.mmw_codec import read_cube as read_mmw
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
@@ -138,7 +138,7 @@ def encoded(cube: RadarCube, **how: Any) -> bytes:
 
 
 def decoding_errors(data: bytes, cube: RadarCube) -> dict[str, float]:
-    return errors_db(data, cube)
+    return errors_db(values_of_bytes(data), cube)
 
 
 def decoded(path: Path) -> np.ndarray:

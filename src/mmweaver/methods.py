@@ -17,14 +17,14 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.board_effects import as_built
+from mmweaver.paths.board_effects import built_radar
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import seed_of_room
 
 if TYPE_CHECKING:
-    from mmweaver.models.given_room import GivenRoom
-    from mmweaver.models.learned_paths import LearnedRoom, ScattererNetwork
+    from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
+    from mmweaver.models.room_inputs import GivenRoom
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -206,7 +206,7 @@ class Learned:
     def _encode(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> "LearnedRoom":
-        from mmweaver.models.learned_paths import LearnedRoom
+        from mmweaver.models.neural_path_solver import LearnedRoom
 
         given = self._given.get(scene, _with_antennas_of(board, config), None, None)
         return LearnedRoom(self._network, given, config, background=background, board=board)
@@ -219,14 +219,14 @@ class Learned:
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
-    from mmweaver.models.given_room import GivenRoom
+    from mmweaver.models.room_inputs import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
 
 
 def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
     """The radar with antennas where a board has them: all that rays depend on."""
-    return config if board is None else replace(as_built(board, config), noise_figure_db=config.noise_figure_db)
+    return config if board is None else replace(built_radar(board, config), noise_figure_db=config.noise_figure_db)
 
 
 RoomT = TypeVar("RoomT")

@@ -15,7 +15,6 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.fields.phase_centring import centring_phasor
 from mmweaver.figures.theme import POWER_MAP
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
@@ -23,6 +22,7 @@ from mmweaver.metrics.map_scores import SHOWN_DB, shown_db
 from studies.fields.field_fidelity import fit_scatterers
 from studies.fields.field_signals import SIGNALS
 from studies.fields.finer_radar import middle_delay_s
+from studies.fields.phase_centring import centring_phasor
 from studies.fields.super_resolution import finer_truths, methods
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit

@@ -21,10 +21,10 @@ from mmweaver.dsp.windows import hann
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.paths.static_paths import Propagation
-from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 

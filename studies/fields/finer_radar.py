@@ -11,8 +11,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.windows import hann
-from mmweaver.fields.phase_centring import centred, centring_phasor
-from mmweaver.fields.sampling import antenna_at, coordinates_on
+from studies.fields.phase_centring import centred, centring_phasor
+from studies.fields.sampling import antenna_at, coordinates_on
 
 NO_LIMITS_HZ = (1e9, 1e12)  # a finer radar exists in simulation alone
 

@@ -30,16 +30,12 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.fields.field import SignalField
-from mmweaver.fields.phase_centring import centred, centring_phasor
-from mmweaver.fields.sampling import finer_grid, sampled_grid
-from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.paths.receiver import IDEAL
+from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
 from studies.fields.finer_radar import (
@@ -51,6 +47,10 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
+from studies.fields.phase_centring import centred, centring_phasor
+from studies.fields.sampling import finer_grid, sampled_grid
+from studies.fields.scatterer_field import ScattererField
+from studies.fields.signal_field import SignalField
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows

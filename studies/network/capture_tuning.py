@@ -31,7 +31,7 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights, shipped_weights
 from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.reconstruction import reconstruct

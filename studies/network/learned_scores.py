@@ -38,13 +38,13 @@ from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequen
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation
-from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun

@@ -27,10 +27,10 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
 from mmweaver.paths.adc_synthesis import AdcSynthesis
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.paths import STATIC_KINDS, Interaction
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
@@ -117,7 +117,7 @@ def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> di
     """Samples of the static paths of a room by kind, with other phases where `turned` samples them."""
     found = {}
     for kind in KINDS_OF_PATHS:
-        part = room.paths.of_kind(kind)
+        part = room.paths.select(kind)
         if turned is not None:
             cycles = turned.random(len(part))
             part = replace(part, amplitude=part.amplitude.abs() * torch.from_numpy(np.exp(2j * np.pi * cycles)))

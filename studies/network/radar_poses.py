@@ -22,12 +22,12 @@ from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
-from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun

@@ -23,9 +23,9 @@ from jaxtyping import Complex, Float
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
-from mmweaver.fields.field import CHUNK_POINTS, SignalField
-from mmweaver.fields.phase_centring import centring_phasor, centring_phasor_at
-from mmweaver.fields.sampling import Coordinates, coordinates_on
+from studies.fields.phase_centring import centring_phasor, centring_phasor_at
+from studies.fields.sampling import Coordinates, coordinates_on
+from studies.fields.signal_field import SignalField
 from studies.paper.positional_encoding import (
     OCTAVES,
     Frequencies,
@@ -34,6 +34,7 @@ from studies.paper.positional_encoding import (
     positional_encoding,
 )
 
+CHUNK_POINTS = 1 << 18  # points of a grid that are sampled together
 HIDDEN_WIDTH = 32
 NUM_HIDDEN = 4
 NUM_OUTPUTS = 2  # I, Q
@@ -257,7 +258,7 @@ class InrField(SignalField):
     """A sequence represented by the proposed INR: theta for all frames, gamma and beta for each.
 
     Between frames gamma and beta are interpolated. `amplitude` is the value of the network's 1.0 in the unit of the
-    cube; `is_centred`: the network represents the phase-centred cube (see fields.phase_centring).
+    cube; `is_centred`: the network represents the phase-centred cube (see `phase_centring`).
     """
 
     def __init__(
@@ -357,6 +358,16 @@ class BaseInrField(SignalField):
         if self.is_centred:
             out *= centring_phasor_at(self.config, self.grid, coordinates).conj()
         return out
+
+    def on_grid(self, grid: CubeGrid) -> CubeValues:
+        axes = coordinates_on(self.grid, grid)
+        values = np.empty(grid.shape, np.complex64)
+        flat = values.reshape(-1)
+        for first in range(0, flat.size, CHUNK_POINTS):
+            index = np.unravel_index(np.arange(first, min(first + CHUNK_POINTS, flat.size)), grid.shape)
+            points = np.stack([axis[at] for axis, at in zip(axes, index, strict=True)], axis=1)
+            flat[first : first + CHUNK_POINTS] = self.sample(points)
+        return values
 
 
 def _complex(iq: torch.Tensor) -> np.ndarray:

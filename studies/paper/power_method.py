@@ -3,19 +3,19 @@
 from pathlib import Path
 
 import torch
+from mmweaver.paths.cell_echoes import CellEchoes
 from torch import Tensor
 
 from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.methods import Learned
-from mmweaver.models.learned_paths import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import WeightsCard, load_into, read_card
-from mmweaver.paths.cell_echoes import CellEchoes
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.paths import Paths
-from mmweaver.paths.random_phases import place_of, sample_cells
+from mmweaver.paths.speckle import place_of, sample_cells
 from studies.paper.power_cells import CellSizes
 from studies.paper.power_network import RECIPE, PowerEncoding, PowerNetwork
 

@@ -9,7 +9,7 @@ Encoders are those of recipe `weaver` and stay as they are; their codes are whit
 what differs between rooms and poses reaches the hypernetwork at unit spread.
 
 Fields give the radar cross section of cells (`power_cells`); each cell that matters becomes one scatterer of unknown
-phase, and the radar's own response makes the signal of them (`paths.random_phases`). Coordinates are those of the
+phase, and the radar's own response makes the signal of them (`paths.speckle`). Coordinates are those of the
 radar and, next to them, counted from what photo and joints show: from the photographed surface in that direction, and
 from the pelvis. Reference: paper, section "Generalization via Hypernetworks".
 """
@@ -25,8 +25,7 @@ from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.cell_echoes import CellEchoes
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
 from studies.paper.pca_whitening import PcaWhitening
 from studies.paper.power_anchors import (
     BODY_VALUES,

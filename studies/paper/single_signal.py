@@ -13,9 +13,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
-from mmweaver.fields.field import SignalField
-from mmweaver.fields.phase_centring import centred
 from mmweaver.metrics.cells import Cells, cells_of
+from studies.fields.phase_centring import centred
+from studies.fields.signal_field import SignalField
 from studies.paper.paper_inr import (
     ACTIVATIONS,
     BaseInrField,

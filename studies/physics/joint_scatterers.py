@@ -9,9 +9,9 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import ApparentPoint, Paths, ScenePaths
-from mmweaver.paths.ray_traced import Simulator, with_micro_motion
+from mmweaver.paths.ray_traced import Simulator, add_micro_motion
 from mmweaver.paths.receiver import Receiver
-from mmweaver.paths.seen_body import motion_through
+from mmweaver.paths.visible_body import motion_through
 
 TOTAL_M2 = 10**-0.5  # cross section of all joints together: -5 dBsm, as the skin has over all aspects
 
@@ -32,7 +32,7 @@ def run_joints(
     frames = np.arange(num_frames)
     nodes_m, _ = simulator.trace(pose, num_frames=num_frames, seed=seed)
     unrest = MicroMotion(pose.subject, seed, motions)
-    joints_m, _ = with_micro_motion(unrest, nodes_m.astype(float), frames, simulator.clock, pose.height_m)
+    joints_m, _ = add_micro_motion(unrest, nodes_m.astype(float), frames, simulator.clock, pose.height_m)
     phase = np.exp(2j * np.pi * stream(pose.subject, "joint scatterers").random(NUM_JOINTS))
     receiver = Receiver(simulator.config, simulator.impairments, seed)
     middle = joints_m[:, joints_m.shape[1] // 2]  # (frame, joint, 3)

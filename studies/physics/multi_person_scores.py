@@ -79,16 +79,15 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
     people = compose_people(plans, sample_scene(), seed=seed, range_window_m=window_m, starts_m=places)
     one, two = people[0].pose, people[1].pose
 
-    def cube(*people: PoseSequence, noise: int = seed, mutual: bool = True) -> RadarCube:
-        return radar_cube(
-            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_occlusion=mutual).adc
-        )
+    def cube(*people: PoseSequence, noise: int = seed) -> RadarCube:
+        return radar_cube(simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL).adc)
 
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]
+    first, second, empty = cube(one), cube(two), cube()
     return Pair(
-        poses=(one, two), mutual=cube(one, two), plain=cube(one, two, mutual=False), without_second=cube(one),
+        poses=(one, two), mutual=cube(one, two), without_second=first, second_alone=second, empty=empty,
+        plain=replace(first, values=first.values + second.values - empty.values),  # with the receiver noise of one
         other_noise=cube(one, two, noise=seed + OTHER_SKIN), realization=cube(*skins),
-        second_alone=cube(two), empty=cube(),
     )  # fmt: skip
 
 

@@ -18,9 +18,9 @@ from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
 from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.paths.receiver import IDEAL, Receiver
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.activity_examples import compute_log_maps

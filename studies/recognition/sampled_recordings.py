@@ -25,14 +25,14 @@ from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.datasets.dataset_store import read_plan
 from mmweaver.datasets.room_sequences import LabelledData, read_labelled
 from mmweaver.dsp.cube import adc_from_cube
-from mmweaver.fields.sampling import finer_grid, sampled_grid
-from mmweaver.fields.scatterers.fitting import FitRecipe
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.training.activity_examples import augmented, compute_log_maps
 from mmweaver.training.activity_training import TRAIN_SPLITS
+from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.finer_radar import interpolated, spectrum_on
+from studies.fields.sampling import finer_grid, sampled_grid
+from studies.fields.scatterer_field import ScattererField
 from studies.manifest import StudyRun
 from studies.network.activity_gain import few_of
 from studies.network.learned_scores import interval
@@ -47,7 +47,7 @@ Sampler = Callable[[CubeGrid], np.ndarray]
 
 
 def _scatterers(cube: RadarCube) -> Sampler:
-    recipe = FitRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=False)
+    recipe = BudgetedRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=False)
     return ScattererField.fit(cube, recipe).on_grid
 
 

@@ -13,7 +13,7 @@ def test_the_command_line_starts_without_torch():
 
 
 def test_fields_have_an_interface_without_torch():
-    code = "import sys, mmweaver.fields.field, mmweaver.fields.phase_centring; assert 'torch' not in sys.modules"
+    code = "import sys, studies.fields.signal_field, studies.fields.phase_centring; assert 'torch' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -45,7 +45,7 @@ def cluttered_room(board: Board, config: RadarConfig = RADAR, frames: int = FRAM
     )
     distance = np.linspace(1.2, 9.0, 220)[:, None]
     amplitude = 2e-5 * (rng.normal(size=220) + 1j * rng.normal(size=220))
-    paths = effects.on_static(scattered_paths(towards * distance, amplitude, Interaction.DIFFUSE, effects.radar))
+    paths = effects.recorded_static(scattered_paths(towards * distance, amplitude, Interaction.DIFFUSE, effects.radar))
     synthesis = AdcSynthesis(effects.radar, board=effects)
     static = synthesis.static(paths) + synthesis.leakage(*effects.leakage)
     carrier_over_slope_s = config.centre_frequency_hz / config.chirp_slope_hz_per_s

@@ -31,7 +31,7 @@ def reflector(range_m: float, dbsm: float, board: Board, scale: float = 1.0) -> 
     size = scatterer_gain(RADAR) * np.sqrt(10 ** (dbsm / 10)) / range_m**2
     amplitude = np.concatenate([[size * np.exp(1j)], 0.003 * size * rng.normal(size=60)])
     synthesis = AdcSynthesis(effects.radar, board=effects)
-    paths = effects.on_static(scattered_paths(place, amplitude, Interaction.DIFFUSE, effects.radar))
+    paths = effects.recorded_static(scattered_paths(place, amplitude, Interaction.DIFFUSE, effects.radar))
     static = synthesis.static(paths).expand(2, -1, -1, -1)
     moving = torch.zeros((2, RADAR.num_loops, *static.shape[1:]), dtype=torch.complex64)
     receiver = Receiver(effects.radar, CLEAN, 0, effects)

@@ -7,8 +7,7 @@ import pytest
 
 from mmweaver.compression import optimiser
 from mmweaver.compression.active_mask import active_mask
-from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube
-from mmweaver.compression.mmw_field import open_mmw
+from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube, values_of_bytes
 from mmweaver.compression.optimiser import EXACT_DB
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
@@ -66,7 +65,7 @@ def test_noise_is_kept_on_request(tmp_path: Path):
     """Bytes go to the signal unless noise is requested too; both report their errors."""
     cube = crowd()
     files = [crowd_in(9000, keep_noise=keep) for keep in (False, True)]
-    plain, even = (errors_db(data, cube) for data in files)
+    plain, even = (errors_db(values_of_bytes(data), cube) for data in files)
     assert plain["signal_error_db"] < even["signal_error_db"] - 1
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     noise = power <= np.median(power) * 10**1.2
@@ -194,7 +193,7 @@ def test_nearly_empty_cubes_are_kept(name: str, kind: str, tmp_path: Path):
     data = compress_cube(cube, num_bytes=700)
     (tmp_path / "a.mmw").write_bytes(data)
     if kind == "zeros":
-        assert errors_db(data, cube) == {"signal_error_db": EXACT_DB, "all_error_db": EXACT_DB}
+        assert errors_db(values_of_bytes(data), cube) == {"signal_error_db": EXACT_DB, "all_error_db": EXACT_DB}
     assert np.abs(read_cube(tmp_path / "a.mmw").values - cube.values).max() < 1e-4
 
 
@@ -237,7 +236,7 @@ def test_few_numbers_have_no_less_than_the_quality_asked_for():
     sizes = []
     for quality_db in (5.0, 30.0):
         data = compress_cube(cube, quality_db=quality_db)
-        assert errors_db(data, cube)["signal_error_db"] <= -quality_db
+        assert errors_db(values_of_bytes(data), cube)["signal_error_db"] <= -quality_db
         sizes.append(len(data))
     assert sizes[0] == sizes[1] <= 120
 
@@ -247,7 +246,6 @@ def test_what_fits_is_stored_to_the_last_digit(tmp_path: Path):
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, num_bytes=cube.values.nbytes + 500))
     np.testing.assert_allclose(read_cube(tmp_path / "a.mmw").values, cube.values, rtol=1e-6)
     assert describe_mmw(tmp_path / "a.mmw")["chunks"][0]["mode"] == "exact"
-    np.testing.assert_allclose(open_mmw(tmp_path / "a.mmw").cube().values, cube.values, rtol=1e-6, atol=1e-6)
 
 
 def test_a_file_that_was_cut_short_holds_the_frames_before(long_file: bytes, tmp_path: Path):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.noise_layer import NoiseLayer, from_noise, to_noise, without_signal
+from mmweaver.compression.noise_layer import NoiseLayer, from_noise, signal_filled, to_noise
 from mmweaver.core.seeding import stream
 
 BEAMS = np.eye(2, dtype=complex)
@@ -41,7 +41,7 @@ def test_cells_with_signal_continue_the_noise_around_them():
     is_active = np.zeros(values.shape[:3], bool)
     is_active[:, 10:12, 5] = is_active[:, 20, 20] = True
     loud = np.where(is_active[..., None], 1000, values)
-    quiet = without_signal(loud, is_active)
+    quiet = signal_filled(loud, is_active)
     assert np.array_equal(quiet[~is_active], values[~is_active])
     missed = np.mean(np.abs(quiet - values)[is_active] ** 2)
     assert missed < 0.7 * np.mean(np.abs(values[is_active]) ** 2)  # zeros would miss all of it

@@ -18,9 +18,9 @@ def test_the_errors_are_those_of_all_cells():
     for step, coarser in ((0.5, 4), (3.0, 1), (0.5, 0)):
         cells = quantise(coefficients, step, coarser, is_active)
         lost = np.sum(np.abs(coefficients - cells.values(step, coarser or 1)) ** 2, axis=0)
-        found = sample.at(step, coarser)
+        found = sample.estimate(step, coarser)
         assert found.all_error == pytest.approx(lost.sum(), rel=0.1)
         assert found.active_error == pytest.approx(lost[is_active].sum(), rel=0.4)
-    sizes = [sample.at(step, 1).num_bytes for step in (0.1, 1.0, 10.0, 1e4)]
+    sizes = [sample.estimate(step, 1).num_bytes for step in (0.1, 1.0, 10.0, 1e4)]
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[-1] == 7

@@ -23,11 +23,10 @@ def noise_cube(config: RadarConfig, num_frames: int = 4) -> RadarCube:
     return radar_cube(AdcCube(samples=samples, config=config, scale=1.0))
 
 
-@pytest.mark.parametrize("method", ["ca", "os"])
-def test_a_frame_has_its_strongest_points_only(method: str):
+def test_a_frame_has_its_strongest_points_only():
     cube = noise_cube(AWR1843)
-    everything = point_cloud(cube, false_alarm_rate=0.2, method=method, max_points_per_frame=100_000)
-    few = point_cloud(cube, false_alarm_rate=0.2, method=method, max_points_per_frame=7)
+    everything = point_cloud(cube, false_alarm_rate=0.2, max_points_per_frame=100_000)
+    few = point_cloud(cube, false_alarm_rate=0.2, max_points_per_frame=7)
     assert few.frame.tolist() == [frame for frame in range(4) for _ in range(7)]
     for frame in range(4):
         strongest = np.sort(everything.snr_db[everything.frame == frame])[::-1][:7]
@@ -70,8 +69,7 @@ def test_quiet_noise_gives_few_points():
 def test_a_frame_without_energy_has_no_points():
     cube = noise_cube(AWR1843)
     silent = replace(cube, values=np.zeros_like(cube.values))
-    for method in ("ca", "os"):
-        assert not len(point_cloud(silent, method=method).frame)
+    assert not len(point_cloud(silent).frame)
 
 
 def test_arrays_without_elevation_or_azimuth():
@@ -92,7 +90,6 @@ def test_a_radar_with_few_loops_works():
 @pytest.mark.parametrize(
     ("change", "word"),
     [
-        ({"method": "go"}, "ca, os"),
         ({"max_points_per_frame": 0}, "at least 1, not 0"),
         ({"false_alarm_rate": 2.0}, "between"),
     ],

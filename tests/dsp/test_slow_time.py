@@ -13,7 +13,7 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.slow_time import circle_centre, moving_cells, slow_time_doppler
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.vital_signs import breathing_rate, heart_rate
-from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.reference_sum import exact_frame
 
 SLOW = replace(
     AWR1843, name="slow", num_loops=1, num_samples=64, sample_rate_hz=1.13e6, frame_period_s=0.05, first_range_bin=0,

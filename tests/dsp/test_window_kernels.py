@@ -41,7 +41,7 @@ def test_bins_one_apart_have_the_same_response(window: np.ndarray):
     place = np.array([[0.0, 3.3, -41.25], [77.77, 8.5, 1e-7]])
     bins = -5 + np.arange(40)
     expected = kernel(torch.from_numpy(bins - place[..., None]))
-    ours = kernel.on_bins(-5.0, 40, place)
+    ours = kernel.bin_values(-5.0, 40, place)
     for one, other in zip(ours, expected, strict=True):
         assert np.allclose(one, other.numpy(), atol=1e-4)
     assert np.allclose(ours[0], expected[0].numpy(), atol=5e-6)

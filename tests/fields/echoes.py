@@ -10,7 +10,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.reference_sum import exact_frame
 
 SMALL = replace(AWR1843, num_range_bins=24, num_loops=16, num_samples=128, first_range_bin=10)
 

@@ -9,7 +9,7 @@ from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr, read_mmmesh, read_rf_genesis
-from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.recordings.read_recording import read_recording
 from tests.fields.echoes import direction_of, middle_s
 

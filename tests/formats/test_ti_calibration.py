@@ -12,7 +12,7 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.dca1000 import bytes_of_frame, write_bin
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.ti_calibration import read_ti_calibration
-from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.recordings.read_recording import read_recording
 from tests.captures import CFG, radar_of_cfg
 

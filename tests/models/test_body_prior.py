@@ -32,7 +32,7 @@ def test_its_sum_is_that_of_a_simulated_person():
             body = ScatteringBody(subject, 1.75)
             skin = body.skin(joints[None])
             cos = -(skin.normal * skin.place_m).sum(-1) / np.linalg.norm(skin.place_m, axis=-1)
-            totals.append((body.echo.back(cos) * body.area_m2 * body.brightness).sum())
+            totals.append((body.echo.monostatic(cos) * body.area_m2 * body.brightness).sum())
         total = float(_prior(joints).cross_section_m2.sum())
         assert abs(10 * np.log10(total / np.mean(totals))) < 4
 

@@ -1,3 +1,3 @@
 """What is no test."""
 
-collect_ignore = ["sionna_halo.py"]  # a script of test_body_room_paths.py, which imports sionna
+collect_ignore = ["sionna_halo.py"]  # a script of test_second_order.py, which imports sionna

@@ -1,4 +1,4 @@
-"""Body and rough walls of a concrete box by Sionna RT, for test_body_room_paths: python sionna_halo.py body.npz."""
+"""Body and rough walls of a concrete box by Sionna RT, for test_second_order: python sionna_halo.py body.npz."""
 
 import sys
 from pathlib import Path

@@ -10,11 +10,11 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843, HUPR
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.exact import exact_frame
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import Impairments, Receiver
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.paths.static_paths import scattered_paths
-from tests.physics.test_synthesis_against_exact import direct_paths, moving_points
+from tests.physics.test_reference_sum import direct_paths, moving_points
 
 DEVICES = ["cpu", *(["cuda"] if torch.cuda.is_available() else [])]
 
@@ -44,7 +44,7 @@ def exact_samples(paths: Paths, config: RadarConfig) -> np.ndarray:
     for loop in range(config.num_loops):
         for m in range(config.num_tx):
             time = torch.from_numpy(clock.chirp_s[loop, m] - clock.middle_s[0] + ramp_s)
-            ends = [end.at(time).movedim(-1, 0) for end in (paths.departure, paths.arrival)]
+            ends = [end.positions_m(time).movedim(-1, 0) for end in (paths.departure, paths.arrival)]
             for k in range(config.num_rx):
                 for order, there in ((ends, torch.ones(len(paths))), (ends[::-1], paths.is_reciprocal)):
                     tau = ((order[0] - tx[m]).norm(dim=-1) + (order[1] - rx[k]).norm(dim=-1)) / SPEED_OF_LIGHT_MPS

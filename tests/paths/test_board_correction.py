@@ -30,12 +30,14 @@ def recorded(board: Board, config: RadarConfig) -> AdcCube:
     """Two frames of a room and somebody who walks, by a board, without noise."""
     effects = BoardEffects(board, config)
     synthesis = AdcSynthesis(effects.radar, board=effects)
-    moving = effects.on_moving(sampled(config, 0.7, 0.0), np.array([0, 40]), 1)
+    moving = effects.recorded_moving(sampled(config, 0.7, 0.0), np.array([0, 40]), 1)
     rng = np.random.default_rng(1)
     place = rng.uniform((-1.0, 0.8, -0.5), (1.0, 2.6, 0.5), (60, 3))
     if config.max_range_m < 1:  # within its range, and nobody walks there
         place, moving = 0.22 * place, moving[:, :0]
-    static = effects.on_static(scattered_paths(place, rng.normal(size=60) + 0j, Interaction.DIFFUSE, effects.radar))
+    static = effects.recorded_static(
+        scattered_paths(place, rng.normal(size=60) + 0j, Interaction.DIFFUSE, effects.radar)
+    )
     samples = synthesis.moving(moving) + synthesis.static(static)
     if len(board.leakage_range_m):
         samples = samples + synthesis.leakage(*effects.leakage)

@@ -51,10 +51,10 @@ def test_both_renderers_have_the_same_board(config: RadarConfig):
     renderer = CubeRenderer(board.radar, board)
     synthesis = AdcSynthesis(board.radar, board=board, is_faded=True)
     frames = np.array([0, 40])
-    moving = board.on_moving(sampled(config, 0.7, 0.0), frames, 1)
+    moving = board.recorded_moving(sampled(config, 0.7, 0.0), frames, 1)
     rng = np.random.default_rng(1)
     place = rng.uniform((-1.0, 1.2, -0.5), (1.0, 2.6, 0.5), (60, 3))
-    static = board.on_static(scattered_paths(place, rng.normal(size=60) + 0j, Interaction.DIFFUSE, board.radar))
+    static = board.recorded_static(scattered_paths(place, rng.normal(size=60) + 0j, Interaction.DIFFUSE, board.radar))
     still = synthesis.static(static)
     adc = synthesis.moving(moving) + still + synthesis.leakage(*board.leakage)
     adc[:, 0, board.first_slot] *= board.first_chirp
@@ -79,7 +79,7 @@ def test_a_gain_is_of_what_is_resolved_and_of_people_not_of_clutter():
     effects = BoardEffects(Board(gain_db=-8.0), AWR1843)
     place_m, one = np.array([[0.0, 2.0, 0.0], [1.0, 3.0, 0.5]]), np.ones(2, complex)
     for kind, wanted_db in ((Interaction.DIFFUSE, -8.0), (Interaction.SPECULAR, -8.0), (Interaction.CLUTTER, 0.0)):
-        amplitude = effects.on_static(scattered_paths(place_m, one, kind, AWR1843)).amplitude
+        amplitude = effects.recorded_static(scattered_paths(place_m, one, kind, AWR1843)).amplitude
         np.testing.assert_allclose(20 * np.log10(np.abs(amplitude.numpy())), wanted_db, atol=1e-4)
 
 
@@ -90,7 +90,7 @@ def cube_of_target(board: Board | None, config: RadarConfig, frames: int) -> np.
     motion[..., 0, :] = 2.0 * np.array([0.3, np.sqrt(1 - 0.09 - 0.01), 0.1])
     paths = Paths.direct(torch.ones(frames, 1, dtype=torch.complex64), ApparentPoint.of(motion))
     if effects is not None:
-        paths = effects.on_moving(paths, np.arange(frames), 0)
+        paths = effects.recorded_moving(paths, np.arange(frames), 0)
     return CubeRenderer(radar, effects).moving(paths).numpy()
 
 

@@ -39,7 +39,7 @@ def over_both(found: PeoplePaths, frame: int = 0) -> Paths:
 
 def test_lengths_and_rates_are_those_over_both():
     found = people()
-    between = found.between[0, 1]
+    between = found.between[0]
     for frame in range(2):
         paths, pairs = over_both(found, frame), between.pairs[frame]
         a = between.first.middles_m(frame)[pairs.first]
@@ -90,7 +90,7 @@ def skin_towards(person: BodyPaths, out: np.ndarray) -> np.ndarray:
     half = np.sqrt(np.maximum(2 + 2 * np.einsum("poi,pi->po", out, towards), 1e-9))
     cos_half = np.clip((cos_in[:, None] + cos_out) / half, -1, 1)
     brightness = person.body.brightness[seen]
-    return person.body.echo.over(cos_in[:, None], cos_out, cos_half) * (person.body.area_m2 * brightness)[:, None]
+    return person.body.echo.bistatic(cos_in[:, None], cos_out, cos_half) * (person.body.area_m2 * brightness)[:, None]
 
 
 def test_who_is_named_first_does_not_matter():

@@ -12,7 +12,7 @@ from mmweaver.paths.body_model import body_of
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from mmweaver.paths.seen_body import occluded_by
+from mmweaver.paths.visible_body import occluded_by
 from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person
 
 
@@ -34,7 +34,7 @@ def test_whatever_is_occluded_is_near_the_body(place_m: tuple[float, float, floa
     every = np.arange(len(room.room.paths))
     occluded = occluded_by(paths.posed.hulls[0], room.room.paths, every)
     assert len(occluded) > 10
-    assert np.isin(occluded, paths.near_body(0)).all()
+    assert np.isin(occluded, paths.occludable(0)).all()
 
 
 def test_furniture_hides_a_body_behind_it_and_none_in_front_of_it():

@@ -12,11 +12,11 @@ from mmweaver.core.transmit_code import tx_code_of
 from mmweaver.dsp.cube import cube_values
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.exact import exact_frame
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.paths.static_paths import scattered_paths
-from tests.physics.test_synthesis_against_exact import direct_paths, moving_points
+from tests.physics.test_reference_sum import direct_paths, moving_points
 
 BPM = replace(
     AWR1843, name="bpm", num_loops=16, tx_order=(0, 1, 2),

@@ -72,7 +72,7 @@ def test_both_orders_of_two_walls_are_as_long_as_the_shortest_way(walls: tuple[P
 
 def test_the_paths_of_the_room_have_these_lengths():
     found = RayTracedRoom(scene_of((LEFT, RIGHT)), APART, 0, Propagation(bounces=1, fine_roughness=False)).paths
-    mirrored: StaticPaths = found.of_kind(Interaction.SPECULAR)
+    mirrored: StaticPaths = found.select(Interaction.SPECULAR)
     for walls in ((LEFT, RIGHT), (RIGHT, LEFT)):
         wanted = [
             [_shortest(np.array(sender), *walls, np.array(receiver))[0] for receiver in APART.rx_position_m]

@@ -56,9 +56,9 @@ def test_the_echoes_of_a_slab_are_its_reflection_over_the_band(name: str, polari
     echoes = slab_echoes(material, cos, centre_hz, polarisation=polarisation, most=3)
     for frequency_hz, bound in ((centre_hz, 1e-9), *((one, 0.02) for one in np.linspace(77e9, 80.4e9, 9))):
         exact = reflection(material, cos, frequency_hz, polarisation=polarisation)
-        assert np.abs(echoes.at(frequency_hz) - exact.conj()).max() < bound
-    twice = echoes.twice.at(79e9)
-    assert np.allclose(twice, echoes.at(79e9) ** 2)
+        assert np.abs(echoes.value(frequency_hz) - exact.conj()).max() < bound
+    twice = echoes.doubled.value(79e9)
+    assert np.allclose(twice, echoes.value(79e9) ** 2)
 
 
 def test_what_a_lossless_slab_does_not_reflect_goes_through():

@@ -32,9 +32,9 @@ def person(x_m: float, y_m: float, subject: int = 0) -> PoseSequence:
     return replace(standing_person((x_m, y_m, -1.2)), subject=subject)
 
 
-def echo(simulator: Simulator, *people: PoseSequence, mutual: bool = True) -> np.ndarray:
+def echo(simulator: Simulator, *people: PoseSequence) -> np.ndarray:
     """What the people change in the samples of one frame, (loop, tx, rx, sample)."""
-    adc = simulator.run(people, num_frames=1, seed=0, mutual_occlusion=mutual).adc.samples[0]
+    adc = simulator.run(people, num_frames=1, seed=0).adc.samples[0]
     return adc - simulator.room_adc
 
 
@@ -59,13 +59,6 @@ def test_two_far_apart_are_the_sum_of_both(nowhere: Simulator, room: Simulator):
     # in a room the shadows on it overlap in places, and each stands in the way of some of the other's ghosts
     both, each = echo(room, left, right), echo(room, left) + echo(room, right)
     assert 0 < energy(both - each) < 0.1 * energy(each)
-
-
-def test_without_mutual_occlusion_it_is_the_plain_sum(room: Simulator):
-    front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
-    total = echo(room, front, behind, mutual=False)
-    each = echo(room, front) + echo(room, behind)
-    assert energy(total - each) < 1e-6 * energy(each)
 
 
 def test_who_stands_behind_another_is_dimmed(nowhere: Simulator):
@@ -98,12 +91,12 @@ def test_what_two_hide_of_the_room_is_hidden_once(room: Simulator):
     joints = [room._joints_at_nodes(pose, np.arange(1)) for pose in (front, behind)]
     bodies = [body_of(front), body_of(behind)]
     together = PeoplePaths(room.room, bodies, room.clock, joints)
-    apart = PeoplePaths(room.room, bodies, room.clock, joints, mutual=False)
-    count, each = together.occlusions(0), [set(one.occluded(0)) for one in apart.each]
-    assert set(np.flatnonzero(count)) == each[0] | each[1]
-    assert count.max() == 1
-    assert set(np.flatnonzero(apart.occlusions(0) == 2)) == each[0] & each[1]
+    each = [
+        set(np.flatnonzero(PeoplePaths(room.room, [body], room.clock, [own]).occluded(0)))
+        for body, own in zip(bodies, joints, strict=True)
+    ]
     assert each[0] & each[1]
+    assert set(np.flatnonzero(together.occluded(0))) == each[0] | each[1]
 
 
 def test_the_order_of_the_people_does_not_matter(room: Simulator):

@@ -12,7 +12,7 @@ from mmweaver.paths import occlusion
 from mmweaver.paths.body_model import average_body
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.seen_body import occluded_by
+from mmweaver.paths.visible_body import occluded_by
 from tests.rooms import STANDING_M
 
 

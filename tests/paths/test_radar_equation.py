@@ -7,8 +7,8 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.point_response import PointResponse
 from mmweaver.paths.antenna import pattern
-from mmweaver.paths.mean_echoes import MeanEchoes
-from mmweaver.paths.radar_equation import carrier, pattern_towards_db, points_of
+from mmweaver.paths.mean_scatterers import MeanEchoes
+from mmweaver.paths.radar_equation import carrier, direction_loss_db, points_of
 
 
 def test_the_pattern_is_the_simulators():
@@ -16,7 +16,7 @@ def test_the_pattern_is_the_simulators():
     direction = rng.standard_normal((200, 3)) + np.array([0, 2.5, 0])
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     direction = direction[direction[:, 1] > 0.1]
-    loss = pattern_towards_db(torch.tensor(direction[:, [0, 2]]), AWR1843).numpy()
+    loss = direction_loss_db(torch.tensor(direction[:, [0, 2]]), AWR1843).numpy()
     assert np.allclose(10 ** (-loss / 20), pattern(direction, AWR1843), rtol=1e-4)
 
 

@@ -15,7 +15,7 @@ ONCE = Propagation(bounces=1, fine_roughness=False)
 
 
 def diffuse(planes: tuple, propagation: Propagation = ONCE) -> StaticPaths:
-    return RayTracedRoom(scene_of(planes), AWR1843, 0, propagation).paths.of_kind(Interaction.DIFFUSE)
+    return RayTracedRoom(scene_of(planes), AWR1843, 0, propagation).paths.select(Interaction.DIFFUSE)
 
 
 def power_beyond(paths: StaticPaths, range_m: float) -> float:
@@ -68,7 +68,7 @@ def test_fine_roughness_takes_from_the_mirror_what_it_scatters(material: str, lo
         RayTracedRoom(scene_of((back_wall(2.0, material),)), AWR1843, 0, replace(ONCE, fine_roughness=fine))
         for fine in (False, True)
     ]
-    flat, rough = (np.abs(room.paths.of_kind(Interaction.SPECULAR).amplitude.numpy()) ** 2 for room in rooms)
+    flat, rough = (np.abs(room.paths.select(Interaction.SPECULAR).amplitude.numpy()) ** 2 for room in rooms)
     assert 10 * np.log10(flat[0] / rough[0]) == pytest.approx(loss_db, abs=0.03)
     flat_m2, rough_m2 = (room.patches.cross_section_m2.sum() for room in rooms)
     share = MATERIALS[material].scattering ** 2
@@ -84,7 +84,7 @@ def test_a_window_and_a_door_take_the_place_of_what_is_right_behind_them():
 
     def mirrored(planes: tuple, hidden: bool = True) -> float:
         faces = RayTracedRoom(scene_of(planes), AWR1843, 0, replace(ONCE, slab_echoes=1, hidden_faces=hidden))
-        return float((np.abs(faces.paths.of_kind(Interaction.SPECULAR).amplitude.numpy()) ** 2).sum())
+        return float((np.abs(faces.paths.select(Interaction.SPECULAR).amplitude.numpy()) ** 2).sum())
 
     for front in (pane, door):
         assert mirrored((wall, front)) == pytest.approx(mirrored((front,)), rel=0.01)

@@ -81,7 +81,7 @@ def test_a_point_comes_back(range_m: float, velocity_mps: float, azimuth_deg: fl
 def test_other_radars_see_it_too(config: RadarConfig):
     towards = direction(21.0, -9.0)
     adc = exact_adc(config, 2.0 * towards, -0.7 * towards, noise=0.05)
-    got = seen(point_cloud(radar_cube(adc), method="os"))
+    got = seen(point_cloud(radar_cube(adc)))
     assert got == pytest.approx((2.0, -0.7, 21.0, -9.0), abs=0.3)
     assert got[0] == pytest.approx(2.0, abs=config.range_resolution_m / 2)
     assert got[1] == pytest.approx(-0.7, abs=config.velocity_resolution_mps / 2)
@@ -174,9 +174,8 @@ def test_a_body_gives_tens_of_points_that_lie_on_it():
         samples += phase * exact_adc(AWR1843, middle + part * half, speed).samples
     samples += 10 * (draw.standard_normal(samples.shape) + 1j * draw.standard_normal(samples.shape))
     cube = radar_cube(AdcCube(samples=samples, config=AWR1843, scale=1.0))
-    for method in ("ca", "os"):
-        points = point_cloud(cube, method=method)
-        assert 15 <= len(points.frame) <= 128
-        place_m = np.stack([points.x_m, points.y_m, points.z_m], axis=1)
-        near = np.abs(place_m - middle) < half + np.array([0.35, 0.15, 0.6])  # plus the beam's width
-        assert near.all(axis=1).mean() > 0.8
+    points = point_cloud(cube)
+    assert 15 <= len(points.frame) <= 128
+    place_m = np.stack([points.x_m, points.y_m, points.z_m], axis=1)
+    near = np.abs(place_m - middle) < half + np.array([0.35, 0.15, 0.6])  # plus the beam's width
+    assert near.all(axis=1).mean() > 0.8

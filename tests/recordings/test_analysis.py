@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 
 RADAR = replace(

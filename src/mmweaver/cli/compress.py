@@ -146,7 +146,7 @@ def _said(errors: dict[str, float], quality_db: float | None) -> str:
 
 def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dict[str, float]:
     """Writes the file of a recording that fits into one piece; returns its errors."""
-    from mmweaver.compression.mmw_codec import compress_cube, decoded_errors_db, read_cube
+    from mmweaver.compression.mmw_codec import compress_cube, errors_db, read_cube
     from mmweaver.core.atomic_files import atomic_file
 
     data = compress_cube(
@@ -156,7 +156,7 @@ def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dic
     bar("check")
     with atomic_file(arguments.out) as temporary:
         temporary.write_bytes(data)
-        return decoded_errors_db(read_cube(temporary).values, cube)
+        return errors_db(read_cube(temporary).values, cube)
 
 
 def _compress_samples(arguments: argparse.Namespace) -> int:

@@ -211,7 +211,7 @@ class LevelCoder:
         single = [num == 1 and not has_all for num in self.shape[1:]]
         for stride in lattices:
             for phase in PHASES if stride == lattices[0] else PHASES[1:]:
-                cells = places.of_phase(phase, stride)
+                cells = places.phase_cells(phase, stride)
                 if not len(cells):
                     continue
                 at = places.at[cells]
@@ -313,7 +313,7 @@ class CellPlaces:
         """Indices of the cells that are `offset` away; the number of cells where there is none."""
         return self._index[at + self._flat(offset)]
 
-    def of_phase(self, phase: Phase, stride: int) -> Integers:
+    def phase_cells(self, phase: Phase, stride: int) -> Integers:
         """Indices of the cells of a phase of a lattice."""
         own = [index % (2 * stride) == stride * odd for index, odd in zip(self.cell, phase, strict=True)]
         return np.flatnonzero(own[0] & own[1] & own[2])

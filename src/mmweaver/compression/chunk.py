@@ -75,7 +75,7 @@ class ChunkFrames:
         return frames
 
     @classmethod
-    def of_cube(cls, cube: RadarCube) -> "ChunkFrames":
+    def from_cube(cls, cube: RadarCube) -> "ChunkFrames":
         """The frames of a cube."""
         frames = cls(config=cube.config, num_frames=len(cube.values), hop=0)
         hop = overlap_hop(cube) if frames.can_have_points else 0

@@ -27,7 +27,7 @@ from mmweaver.compression.chunk import (
     point_coder_of,
 )
 from mmweaver.compression.entropy import Encoder
-from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
+from mmweaver.compression.noise_layer import NoiseLayer, signal_filled, to_noise
 from mmweaver.compression.quantised_cells import code_cells, quantise
 from mmweaver.compression.rate_model import CellSample, Estimate
 from mmweaver.compression.scatterer_coder import (
@@ -113,7 +113,7 @@ class ChunkEncoder:
     def __init__(self, cube: RadarCube, scale: Scale):
         """`cube`: the frames of the chunk alone."""
         peak = np.float32(scale.peak)
-        self.values, self.frames, self.peak = cube.values, ChunkFrames.of_cube(cube), float(peak)
+        self.values, self.frames, self.peak = cube.values, ChunkFrames.from_cube(cube), float(peak)
         self.target = self.frames.working(cube.values / peak)  # working frames (frame, range, doppler, antenna)
         self.noise_power = noise_power(cube) / self.peak**2
         self.is_active = active_mask(self.target, None if self.frames.hop else scale.active_power / self.peak**2)
@@ -177,11 +177,11 @@ class ChunkEncoder:
     def estimate(self, sample: CellSample, mode: ChunkMode, step: float, coarser: int) -> Estimate:
         """What the chunk in a mode would cost at a step, by a sample of its cells (`sample`)."""
         if not mode.with_noise:
-            return sample.at(step, coarser)
+            return sample.estimate(step, coarser)
         noise = self._noise_sample(with_points=mode.with_points)
         if self.is_active.all():
-            return noise.at(step, 1)
-        cells, noise = sample.at(step, 0), noise.at(step * coarser, 1)
+            return noise.estimate(step, 1)
+        cells, noise = sample.estimate(step, 0), noise.estimate(step * coarser, 1)
         return Estimate(
             num_bytes=cells.num_bytes + noise.num_bytes, active_error=cells.active_error,
             all_error=cells.active_error + noise.all_error,
@@ -230,7 +230,7 @@ class ChunkEncoder:
         """Coefficients of the noise layer, those of a step nearby where scatterers change with the step."""
         before = self._noise.get(with_points)
         if before is None or (with_points and abs(math.log(step / before[0])) > SAME_NOISE):
-            quiet = target if self.is_active.all() else without_signal(target, self.is_active)
+            quiet = target if self.is_active.all() else signal_filled(target, self.is_active)
             self._noise[with_points] = step, to_noise(quiet, self.beams)
         return self._noise[with_points][1]
 

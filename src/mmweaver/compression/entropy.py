@@ -22,80 +22,68 @@ LARGEST_UNIFORM = 2**23
 class BitStream(ABC):
     """Common interface of encoder and decoder: codes given values, or returns decoded ones.
 
-    `version`: of the .mmw format whose models of levels and classes are used (`level_coder`, `class_map`).
+    A decoder uses only the length of the values. `version`: of the .mmw format whose models of levels and classes are
+    used (`cell_coder`, `symbol_model`).
     """
 
-    version = VERSION
+    def __init__(self, version: int = VERSION) -> None:
+        import constriction  # its submodules cannot be imported by name
+
+        self.version = version
+        stream: Any = constriction.stream  # type: ignore
+        self._queue, self._one = stream.queue, stream.model.Categorical
+        self._bernoulli, self._uniform = stream.model.Bernoulli(perfect=False), stream.model.Uniform()
+        self._categorical = stream.model.Categorical(perfect=False)
 
     @abstractmethod
+    def _code(self, values: Integers, model: Any, *parameters: np.ndarray) -> Integers:
+        """Codes values by one model, or by a family of models with parameters for each value."""
+
     def bits(self, probability: Probability, values: Integers) -> Integers:
-        """Codes bits, each 1 with its probability. A decoder uses only the length of `values`."""
+        """Codes bits, each 1 with its probability."""
+        return self._code(values, self._bernoulli, probability)
 
-    @abstractmethod
     def symbols(self, probability: Probability, values: Integers) -> Integers:
-        """Codes symbols of one distribution (symbol,). A decoder uses only the length of `values`."""
+        """Codes symbols of one distribution (symbol,)."""
+        return self._code(values, self._one(probability, perfect=False))
 
-    @abstractmethod
     def rows(self, probability: Probability, values: Integers) -> Integers:
-        """Codes symbols, each of its own distribution (n, symbol). A decoder uses only the length of `values`."""
+        """Codes symbols, each of its own distribution (n, symbol)."""
+        return self._code(values, self._categorical, probability)
 
     def uniform(self, sizes: Integers, values: Integers) -> Integers:
         """Codes integers uniform on 0 ... size - 1.
 
-        Beyond 2^23, sizes count as multiples of 2^16: the values of what is left over cannot be coded.
+        Beyond 2^23, the limit of the coder's precision, sizes count as multiples of 2^16: the values of what is left
+        over cannot be coded.
         """
         huge = sizes > LARGEST_UNIFORM
         if not huge.any():
-            return self._uniform_small(sizes, values)
-        out = self._uniform_small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))
-        low = self._uniform_small(np.where(huge, 1 << 16, 1), values & 0xFFFF)
+            return self._small(sizes, values)
+        out = self._small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))
+        low = self._small(np.where(huge, 1 << 16, 1), values & 0xFFFF)
         return np.where(huge, (out << 16) + low, out)
 
-    @abstractmethod
-    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
-        """As `uniform`, for sizes of at most 2^23, the limit of the coder's precision."""
-
-
-def _constriction() -> tuple[Any, Any]:
-    """Models and range coders of the package, whose submodules cannot be imported by name."""
-    import constriction
-
-    stream: Any = constriction.stream  # type: ignore
-    return stream.model, stream.queue
+    def _small(self, sizes: Integers, values: Integers) -> Integers:
+        wide, out = sizes > 1, np.zeros(len(sizes), np.int64)
+        out[wide] = self._code(values[wide], self._uniform, sizes[wide].astype(np.int32))
+        return out
 
 
 class Encoder(BitStream):
     """A BitStream that encodes; `to_bytes` returns the stream."""
 
     def __init__(self) -> None:
-        model, queue = _constriction()
+        super().__init__()
+        self._coder = self._queue.RangeEncoder()
 
-        self._coder = queue.RangeEncoder()
-        self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
-        self._one_model, self._categorical = model.Categorical, model.Categorical(perfect=False)
-
-    def symbols(self, probability: Probability, values: Integers) -> Integers:
+    def _code(self, values: Integers, model: Any, *parameters: np.ndarray) -> Integers:
         if len(values):
-            self._coder.encode(values.astype(np.int32), self._one_model(probability, perfect=False))
-        return values
-
-    def rows(self, probability: Probability, values: Integers) -> Integers:
-        if len(values):
-            self._coder.encode(values.astype(np.int32), self._categorical, probability)
-        return values
-
-    def bits(self, probability: Probability, values: Integers) -> Integers:
-        if len(values):
-            self._coder.encode(values.astype(np.int32), self._bit, probability)
-        return values
-
-    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
-        wide = sizes > 1
-        if wide.any():
-            self._coder.encode(values[wide].astype(np.int32), self._uniform_model, sizes[wide].astype(np.int32))
+            self._coder.encode(values.astype(np.int32), model, *parameters)
         return values
 
     def to_bytes(self) -> bytes:
+        """All that was encoded."""
         return self._coder.get_compressed().astype("<u4").tobytes()
 
 
@@ -103,36 +91,14 @@ class Decoder(BitStream):
     """A BitStream that decodes the bytes of an Encoder."""
 
     def __init__(self, data: bytes, *, version: int = VERSION) -> None:
-        model, queue = _constriction()
-        self.version = version
-
+        super().__init__(version)
         # streams are whole words; some files had other bytes after the last one
-        self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4", len(data) // 4).astype(np.uint32))
-        self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
-        self._one_model, self._categorical = model.Categorical, model.Categorical(perfect=False)
+        self._coder = self._queue.RangeDecoder(np.frombuffer(data, "<u4", len(data) // 4).astype(np.uint32))
 
-    def symbols(self, probability: Probability, values: Integers) -> Integers:
+    def _code(self, values: Integers, model: Any, *parameters: np.ndarray) -> Integers:
         if not len(values):
             return values
-        found = self._coder.decode(self._one_model(probability, perfect=False), len(values))
-        return np.asarray(found).astype(np.int64)
-
-    def rows(self, probability: Probability, values: Integers) -> Integers:
-        if not len(values):
-            return values
-        return np.asarray(self._coder.decode(self._categorical, probability)).astype(np.int64)
-
-    def bits(self, probability: Probability, values: Integers) -> Integers:
-        if not len(values):
-            return values
-        return np.asarray(self._coder.decode(self._bit, probability)).astype(np.int64)
-
-    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
-        out = np.zeros(len(sizes), np.int64)
-        wide = sizes > 1
-        if wide.any():
-            out[wide] = self._coder.decode(self._uniform_model, sizes[wide].astype(np.int32))
-        return out
+        return np.asarray(self._coder.decode(model, *(parameters or (len(values),)))).astype(np.int64)
 
 
 class BitModel:

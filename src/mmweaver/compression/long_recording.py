@@ -141,6 +141,6 @@ def _size_curve(cube: RadarCube) -> Callable[[float], float]:
     for part in split(len(cube.values), SHORT_CHUNK):
         encoder = ChunkEncoder(some_frames(cube, part), scale)
         samples.append(encoder.sample(ChunkMode(transform=transform_choices(encoder.target.shape)[0]), 1.0))
-    sizes = [sum(sample.at(step, COARSER).num_bytes for sample in samples) for step in CURVE_STEPS]
+    sizes = [sum(sample.estimate(step, COARSER).num_bytes for sample in samples) for step in CURVE_STEPS]
     steps = np.log(CURVE_STEPS) + np.log(scale.peak)
     return lambda log_step: float(np.interp(log_step, steps, sizes))

@@ -2,6 +2,7 @@
 
 import math
 import tempfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -53,21 +54,20 @@ def compress_cube(
         InputError: where the cube cannot be stored (values that are not finite, other axes than its radar's) or the
             request cannot be met.
     """
-    check_request(num_bytes, quality_db)
-    check_writable(cube)
-    optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=has_points(effort))
+    check_encodable(cube, num_bytes, quality_db)
     header, time_s = header_for(cube.config, cube.scale, cube.grid.frame_time_s), cube.grid.frame_time_s
-    parts = optimiser.divide(num_bytes=num_bytes, quality_db=quality_db)
-    times = [time_s[part.start : part.stop] for part in parts]
-    if num_bytes is not None:
-        check_ratio(cube, num_bytes)
-        chunks = optimiser.within_bytes(num_bytes - len(pack_mmw(header, [b""] * len(parts), times)), progress)
-    else:
-        chunks = optimiser.within_error(float(quality_db or 0), progress)
+
+    def packed(parts: list[range], chunks: list[bytes]) -> bytes:
+        return pack_mmw(header, chunks, [time_s[part.start : part.stop] for part in parts])
+
+    parts, chunks = encoded(
+        cube, lambda parts: len(packed(parts, [b""] * len(parts))), num_bytes=num_bytes, quality_db=quality_db,
+        keep_noise=keep_noise, effort=effort, progress=progress,
+    )  # fmt: skip
     missing = cube.values.nbytes // MAX_RATIO + 1 - sum(map(len, chunks))
     # readers distrust files that promise more; decoders ignore words of four bytes that follow
     chunks[-1] += bytes(4 * max(0, -(-missing // 4)))
-    return pack_mmw(header, chunks, times)
+    return packed(parts, chunks)
 
 
 def check_request(num_bytes: int | None, quality_db: float | None) -> None:
@@ -80,18 +80,24 @@ def check_request(num_bytes: int | None, quality_db: float | None) -> None:
         raise InputError(f"a quality of {quality_db:g} dB is not possible; choose 1 to 90")
 
 
-def has_points(effort: str) -> bool:
-    """Whether an effort fits scatterers. Raises InputError for an unknown effort."""
+def encoded(
+    cube: RadarCube,
+    framing: Callable[[list[range]], int],
+    *,
+    num_bytes: int | None,
+    quality_db: float | None,
+    keep_noise: bool = False,
+    effort: str = "full",
+    progress: Progress = lambda _: None,
+) -> tuple[list[range], list[bytes]]:
+    """Frames and bytes of the chunks of a cube; see `compress_cube`. `framing`: bytes of a file besides its chunks."""
     if effort not in EFFORTS:
         raise InputError(f"unknown effort {effort!r}; choose {' or '.join(EFFORTS)}")
-    return effort == "full"
-
-
-def check_ratio(cube: RadarCube, num_bytes: int) -> None:
-    """Raises InputError where readers would distrust so few bytes for a cube."""
-    if num_bytes * MAX_RATIO < cube.values.nbytes:
-        least = -(-cube.values.nbytes // MAX_RATIO)
-        raise InputError(f"{num_bytes} bytes are too few; {len(cube.values)} frames need at least {least}")
+    optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=effort == "full")
+    parts = optimiser.divide(num_bytes=num_bytes, quality_db=quality_db)
+    if num_bytes is None:
+        return parts, optimiser.within_error(float(quality_db or 0), progress)
+    return parts, optimiser.within_bytes(num_bytes - framing(parts), progress)
 
 
 @single_precision()
@@ -120,13 +126,8 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
     return RadarCube(values=joined, grid=grid, config=header.config, scale=header.scale)
 
 
-def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
-    """Error-to-signal ratio in dB of a compressed cube against the original: in active cells, and in all cells."""
-    return decoded_errors_db(values_of_bytes(data), cube)
-
-
-def decoded_errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
-    """As `errors_db`, of values that were read again."""
+def errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
+    """Error-to-signal ratio in dB of values that were read again: in active cells, and in all cells."""
     is_active = active_mask(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
@@ -201,6 +202,15 @@ def grid_of_file(file: MmwFile) -> CubeGrid:
     """The grid of all frames of a file."""
     grid = CubeGrid.of(file.header.config, file.num_frames)
     return replace(grid, frame_time_s=file.frame_time_s)
+
+
+def check_encodable(cube: RadarCube, num_bytes: int | None, quality_db: float | None) -> None:
+    """Raises InputError for a request that no file meets or readers would distrust, and for an unsuitable cube."""
+    check_request(num_bytes, quality_db)
+    check_writable(cube)
+    if num_bytes is not None and num_bytes * MAX_RATIO < cube.values.nbytes:
+        least = -(-cube.values.nbytes // MAX_RATIO)
+        raise InputError(f"{num_bytes} bytes are too few; {len(cube.values)} frames need at least {least}")
 
 
 def check_writable(cube: RadarCube) -> None:

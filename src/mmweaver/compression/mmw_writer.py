@@ -1,20 +1,15 @@
 """Writes a long recording as a .mmw file piece by piece, at constant memory, and appends to one."""
 
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
-from mmweaver.compression.mmw_codec import (
-    check_ratio,
-    check_request,
-    check_writable,
-    has_points,
-)
+from mmweaver.compression.mmw_codec import check_encodable, encoded
 from mmweaver.compression.mmw_container import LISTED, MmwFile, MmwHeader, header_for, pack_header, pack_record
-from mmweaver.compression.optimiser import Optimiser
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
@@ -70,10 +65,7 @@ class MmwWriter:
         A new file's header is not counted. Frame times continue the recording's. Raises InputError where the piece has
         another radar or scale, or cannot be stored.
         """
-        check_request(num_bytes, quality_db)
-        check_writable(cube)
-        if num_bytes is not None:
-            check_ratio(cube, num_bytes)
+        check_encodable(cube, num_bytes, quality_db)
         if self._header is None:
             self._header = header_for(cube.config, cube.scale, cube.grid.frame_time_s)
             self._write(pack_header(self._header))
@@ -82,18 +74,15 @@ class MmwWriter:
             raise InputError(
                 f"{self.path} holds frames of another radar or scale; write these into a file of their own"
             )
-        optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=has_points(effort))
-        parts = optimiser.divide(num_bytes=num_bytes, quality_db=quality_db)
-        if num_bytes is not None:
-            chunks = optimiser.within_bytes(num_bytes - self._framing(cube.grid.frame_time_s, parts), lambda _: None)
-        else:
-            chunks = optimiser.within_error(float(quality_db or 0), lambda _: None)
-        self.last_chunks = chunks
+        time_s = cube.grid.frame_time_s
+        parts, self.last_chunks = encoded(
+            cube, lambda parts: sum(len(one) for one in self._records([b""] * len(parts), parts, time_s)),
+            num_bytes=num_bytes, quality_db=quality_db, keep_noise=keep_noise, effort=effort,
+        )  # fmt: skip
         before = self._end
-        for chunk, part in zip(chunks, parts, strict=True):
-            time_s = cube.grid.frame_time_s[part.start : part.stop]
-            self._write(pack_record(chunk, time_s, self._header, self._last_s))
-            self._last_s = float(time_s[-1])
+        for record in self._records(self.last_chunks, parts, time_s):
+            self._write(record)
+        self._last_s = float(time_s[-1])
         return self._end - before
 
     def following(self, cube: RadarCube, frames_before: int) -> RadarCube:
@@ -114,15 +103,13 @@ class MmwWriter:
         """Takes back all that was written; a new file is empty then."""
         self._stream.truncate(self._first_end)
 
-    def _framing(self, time_s: np.ndarray, parts: list[range]) -> int:
-        """Bytes of the records besides their chunks."""
+    def _records(self, chunks: list[bytes], parts: list[range], time_s: np.ndarray) -> Iterator[bytes]:
+        """The records of chunks of a piece with these frame times."""
         assert self._header is not None
-        total, last_s = 0, self._last_s
-        for part in parts:
-            own = time_s[part.start : part.stop]
-            total += len(pack_record(b"", own, self._header, last_s))
-            last_s = float(own[-1])
-        return total
+        last_s = self._last_s
+        for chunk, part in zip(chunks, parts, strict=True):
+            yield pack_record(chunk, time_s[part.start : part.stop], self._header, last_s)
+            last_s = float(time_s[part.stop - 1])
 
     def close(self) -> None:
         """Closes the file."""

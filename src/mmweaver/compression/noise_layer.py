@@ -60,7 +60,7 @@ class NoiseLayer:
         return cls(packed=data[:last], values=from_noise(cells.values(step, 1), beams))
 
 
-def without_signal(
+def signal_filled(
     values: Complex[Array, "frame range doppler antenna"], is_active: Bool[Array, "frame range doppler"]
 ) -> Complex[Array, "frame range doppler antenna"]:
     """Replaces active cells by a continuation of the noise around them, by alternate smoothing and restoring."""

@@ -73,33 +73,33 @@ class CellSample:
         some = matrix.astype(self.coefficients.dtype) @ self.coefficients
         return replace(self, coefficients=some, front_bytes=front_bytes, _known={})
 
-    def at(self, step: float, coarser: int) -> Estimate:
+    def estimate(self, step: float, coarser: int) -> Estimate:
         """The estimate for a step, in the units of the coefficients.
 
         Args:
             step: of active cells.
             coarser: the step of the other cells over that; 0 leaves them uncoded.
         """
-        active_bytes, active_error = self._part_at(step, is_active=True)
-        other_bytes, other_error = self._part_at(step * coarser or math.inf, is_active=False)
+        active_bytes, active_error = self._part(step, is_active=True)
+        other_bytes, other_error = self._part(step * coarser or math.inf, is_active=False)
         front = self.front_bytes + self.front_values / 8 * math.log2(self.front_step / step)
         return Estimate(
             num_bytes=max(front + active_bytes + other_bytes, 1.0), active_error=active_error,
             all_error=active_error + other_error,
         )  # fmt: skip
 
-    def _part_at(self, step: float, *, is_active: bool) -> tuple[float, float]:
+    def _part(self, step: float, *, is_active: bool) -> tuple[float, float]:
         """Bytes and error of the active cells, or of the others, interpolated between steps of a grid."""
         place = math.log2(min(step, COARSEST)) * NODES_PER_OCTAVE
         below = math.floor(place)
         share = place - below
-        logs = self._at_node(below, is_active) * (1 - share)
+        logs = self._node(below, is_active) * (1 - share)
         if share:
-            logs = logs + self._at_node(below + 1, is_active) * share
+            logs = logs + self._node(below + 1, is_active) * share
         num_bytes, error = np.exp(logs).tolist()
         return num_bytes, error
 
-    def _at_node(self, node: int, is_active: bool) -> Array:
+    def _node(self, node: int, is_active: bool) -> Array:
         if (node, is_active) not in self._known:
             chosen = self.is_active == is_active
             found = _estimated(self.magnitude[chosen], self.weight[chosen], 2.0 ** (node / NODES_PER_OCTAVE))

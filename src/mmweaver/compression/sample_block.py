@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Int
 
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
-from mmweaver.compression.symbol_model import MAX_BITS, MixedModel
+from mmweaver.compression.symbol_model import MAX_BITS, MixedModel, code_far
 
 Array = np.ndarray
 Samples = Int[np.ndarray, "loop antenna sample part"]
@@ -241,17 +241,7 @@ def _code_numbers(stream: BitStream, counts: Array, escapes: MixedModel, by_clas
         out += stream.uniform(np.where(is_near, 1 << shift, 1), np.where(is_near, low, 0))
     far = np.flatnonzero(~is_near)
     if len(far):
-        out[far] = _code_far(stream, escapes, wanted[far])
+        out[far] = code_far(stream, escapes, wanted[far])
     found = np.empty_like(out)
     found[order] = out
     return found
-
-
-def _code_far(stream: BitStream, escapes: MixedModel, values: Array) -> Array:
-    size = np.abs(values) + 1
-    bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
-    bits = escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
-    top = np.int64(1) << bits
-    size = top + stream.uniform(top, size - top)
-    negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))
-    return (size - 1) * (1 - 2 * negative)

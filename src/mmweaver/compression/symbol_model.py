@@ -131,7 +131,7 @@ class SignedModel:
             symbol = self.symbols.code(stream, contexts, symbol, mirrored)
             out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
             if len(far):
-                out[far] = self._far(stream, values[far])
+                out[far] = code_far(stream, self.escapes, values[far])
             return out
         if shift.max(initial=0) > MAX_BITS:
             raise ValueError("a number too large: the stream is damaged")
@@ -142,22 +142,24 @@ class SignedModel:
         symbol = self.symbols.code(stream, contexts, symbol, mirrored)
         out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
         if len(far) and stream.version > 3:
-            out[far] = self._far(stream, high[far])
+            out[far] = code_far(stream, self.escapes, high[far])
         has_low = (symbol < ESCAPE) | (stream.version > 3)
         low = stream.uniform(np.where(has_low, 1 << shift, 1), np.where(has_low, low, 0))
         out = (out << shift) - half + low
         if len(far) and stream.version == 3:
-            out[far] = self._far(stream, values[far])
+            out[far] = code_far(stream, self.escapes, values[far])
         return out
 
-    def _far(self, stream: BitStream, values: Integers) -> Integers:
-        size = np.abs(values) + 1
-        bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
-        bits = self.escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
-        top = 1 << bits
-        size = top + stream.uniform(top, size - top)
-        negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))
-        return (size - 1) * (1 - 2 * negative)
+
+def code_far(stream: BitStream, escapes: MixedModel, values: Integers) -> Integers:
+    """Codes integers (n,) of any size: the octave by a model, the place within it and the sign as uniform."""
+    size = np.abs(values) + 1
+    bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
+    bits = escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MAX_BITS - 1))
+    top = np.int64(1) << bits
+    size = top + stream.uniform(top, size - top)
+    negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))
+    return (size - 1) * (1 - 2 * negative)
 
 
 def prior_of(scale: np.ndarray) -> np.ndarray:

@@ -109,18 +109,18 @@ class ChunkTransform:
         out = np.tensordot(self.antennas.astype(values.dtype), values, axes=(1, 3))
         if self.doppler is not None:
             out = out @ self.doppler.T.astype(values.dtype)
-        out = self._over_time(out, inverse=False)
+        out = self._time_transform(out, inverse=False)
         return _dct(out, 2, inverse=False) if self.choice.range_dct else out
 
     def inverse(self, values: Complex[Array, "beam time range index"]) -> Complex[Array, "frame range doppler antenna"]:
         """Values of coefficients."""
         out = _dct(values, 2, inverse=True) if self.choice.range_dct else values
-        out = self._over_time(out, inverse=True)
+        out = self._time_transform(out, inverse=True)
         if self.doppler is not None:
             out = out @ self.doppler.conj().astype(values.dtype)
         return np.moveaxis(np.tensordot(self.antennas.conj().astype(values.dtype), out, axes=(0, 0)), 0, 3)
 
-    def _over_time(self, values: Array, *, inverse: bool) -> Array:
+    def _time_transform(self, values: Array, *, inverse: bool) -> Array:
         if self.choice.time == NO_DCT or values.shape[1] == 1:
             return values
         chosen = slice(None) if self._is_full else static_bins(values.shape[3])

@@ -15,9 +15,9 @@ from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.people import Person
+from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import seed_of_room
 from mmweaver.paths.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct

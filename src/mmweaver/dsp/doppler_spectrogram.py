@@ -5,6 +5,7 @@ over frames has neither. Where chirps follow each other from frame to frame with
 Reference: Chen, "The Micro-Doppler Effect in Radar", 2nd ed., ch. 2.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from jaxtyping import Float
 from scipy import fft
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.dsp.cube import remove_static_adc
 from mmweaver.dsp.spectra import range_doppler_power
@@ -35,12 +37,16 @@ class MicroDoppler:
 
 
 def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDoppler:
-    """The spectrogram of a recording less its static clutter, over the radar's range window.
+    """The spectrogram of a recording minus its static clutter, over the radar's range window.
 
     Clutter is the mean chirp of each frame, or of the recording where windows run on over frames.
 
-    `window_loops`: length of a window (default: the loops of a frame, at most 64). Raises InputError for radars of
-    fewer than four loops a frame that pause between frames (see `dsp.slow_time` for these).
+    Args:
+        adc: the samples.
+        window_loops: length of a window; by default the loops of a frame, at most 64.
+
+    Raises:
+        InputError: for radars of fewer than four loops per frame that pause between frames (see `dsp.slow_time`).
     """
     config = adc.config
     pause_s = config.frame_period_s - config.active_time_s
@@ -56,24 +62,12 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
     frames, loops = chirps.shape[:2]
     if runs_on:
         chirps = chirps.reshape(1, frames * loops, *chirps.shape[2:])
-    hop = max(1, width // OVERLAP)
-    starts = np.arange(0, chirps.shape[1] - width + 1, hop)
-    window = (hann(width) / hann(width).sum()).astype(np.float32)
-    power = np.empty((len(chirps), len(starts), width))
-    for index, start in enumerate(starts):
-        run = chirps[:, start : start + width] * window[:, None, None]
-        spectrum = np.fft.fftshift(np.asarray(fft.fft(run, axis=1)), axes=1)
-        power[:, index] = (np.abs(spectrum) ** 2).mean(axis=2).sum(axis=2)
-    middle_s = (starts + width / 2) * config.loop_period_s
+    power = np.stack(
+        [one.sum(axis=2) for one in _window_powers(chirps, width, max(1, width // OVERLAP))], 1, dtype=np.float64
+    )
+    bins = np.array([first_bin, first_bin + chirps.shape[-1] - 1])
     frame_s = np.arange(len(chirps)) * config.frame_period_s
-    step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
-    bins = np.arange(power.shape[0] * power.shape[1])
-    last_bin = first_bin + chirps.shape[-1] - 1
-    return MicroDoppler(
-        power=power.reshape(len(bins), width), time_s=(frame_s[:, None] + middle_s).ravel(),
-        radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
-        range_m=(first_bin * config.range_resolution_m, last_bin * config.range_resolution_m),
-    )  # fmt: skip
+    return _spectrogram(power, frame_s, config, bins * config.range_resolution_m)
 
 
 def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
@@ -84,17 +78,10 @@ def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray,
     loops = cube.values.shape[2]
     if width == loops:
         return range_doppler_power(cube)[:, None]
-    own, window = (doppler_window(count) / doppler_window(count).sum() for count in (loops, width))
+    own = doppler_window(loops) / doppler_window(loops).sum()
     own = np.maximum(own, SMALLEST_WEIGHT * own.max()).astype(np.float32)[:, None]
-    starts = np.arange(0, loops - width + 1, hop)
-    power = np.empty((len(cube.values), len(starts), cube.values.shape[1], width))
-    for frame, values in enumerate(cube.values):
-        chirps = np.asarray(fft.ifft(np.fft.ifftshift(values, axes=1), axis=1)) / own  # (range, loop, antenna)
-        for index, start in enumerate(starts):
-            run = chirps[:, start : start + width] * window.astype(np.float32)[:, None]
-            spectrum = np.fft.fftshift(np.asarray(fft.fft(run, axis=1)), axes=1)
-            power[frame, index] = (np.abs(spectrum) ** 2).mean(axis=2)
-    return power
+    chirps = (np.asarray(fft.ifft(np.fft.ifftshift(one, axes=1), axis=1)) / own for one in cube.values)
+    return np.array([list(_window_powers(one, width, hop)) for one in chirps], np.float64)
 
 
 def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
@@ -102,17 +89,31 @@ def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
 
     Clutter is taken away beforehand (`dsp.cube.remove_static`).
     """
-    config = cube.config
-    width = min(config.num_loops, LONGEST_WINDOW)
-    hop = max(1, width // OVERLAP)
-    power = cube_spectrogram(cube, width, hop).max(axis=2)
-    middle_s = (np.arange(power.shape[1]) * hop + width / 2) * config.loop_period_s
+    width = min(cube.config.num_loops, LONGEST_WINDOW)
+    power = cube_spectrogram(cube, width, max(1, width // OVERLAP)).max(axis=2)
+    return _spectrogram(power, cube.grid.frame_time_s, cube.config, cube.grid.range_m)
+
+
+def _window_powers(chirps: np.ndarray, width: int, hop: int) -> Iterator[np.ndarray]:
+    """Power (first, doppler, ...) of each window over chirps (first, loop, antenna, ...), mean of the antennas."""
+    window = (doppler_window(width) / doppler_window(width).sum()).astype(np.float32)
+    window = window.reshape(-1, *[1] * (chirps.ndim - 2))
+    for start in range(0, chirps.shape[1] - width + 1, hop):
+        spectrum = np.asarray(fft.fft(chirps[:, start : start + width] * window, axis=1))
+        yield (np.abs(np.fft.fftshift(spectrum, axes=1)) ** 2).mean(axis=2)
+
+
+def _spectrogram(power: np.ndarray, frame_s: np.ndarray, config: RadarConfig, range_m: np.ndarray) -> MicroDoppler:
+    """Of power (frame, window, doppler) of frames that begin at these times, over ranges from first to last."""
+    _, windows, width = power.shape
+    middle_s = (np.arange(windows) * max(1, width // OVERLAP) + width / 2) * config.loop_period_s
     step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
     return MicroDoppler(
-        power=power.reshape(-1, width), time_s=(cube.grid.frame_time_s[:, None] + middle_s).ravel(),
+        power=power.reshape(-1, width),
+        time_s=(frame_s[:, None] + middle_s).ravel(),
         radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
-        range_m=(float(cube.grid.range_m[0]), float(cube.grid.range_m[-1])),
-    )  # fmt: skip
+        range_m=(float(range_m[0]), float(range_m[-1])),
+    )
 
 
 def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, int]:

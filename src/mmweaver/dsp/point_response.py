@@ -129,21 +129,6 @@ class PointResponse:
             flat = _add_product(flat, left.transpose(-1, -2), right.flatten(-2))
         return torch.view_as_complex(flat.reshape(shape))
 
-    def at_cells(self, points: Points, axes: Axes) -> Tensor:
-        """Sum of the points at cells (frame, cell), where the axes give one range, Doppler and antenna a cell."""
-        at_range, range_slope, at_doppler, doppler_slope, steer = self.factors(points, axes)
-        along = self.num_loops / (2 * math.pi) * self.migration * points.doppler_bin[..., None]
-        nearer = points.direction @ axes.place.T * (self.config.wavelength_m / (2 * self.range_a_bin_m))
-        real = at_range * at_doppler + nearer * range_slope * at_doppler
-        echo = points.amplitude[..., None] * steer * torch.complex(real, -along * range_slope * doppler_slope)
-        return echo.sum(dim=-2)
-
-    def phasor_at_cells(self, axes: Axes) -> Tensor:
-        """`phasor`, where the axes give one range, Doppler and antenna a cell."""
-        turns = -0.5 * axes.range_bin.double() - axes.doppler_bin * (self._doppler_middle + axes.delay.double())
-        angle = 2 * math.pi * (turns - turns.round())
-        return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
-
     def _curvature(self, points: Points, axes: Axes) -> Tensor:
         """Turns (..., point, antenna) by which a spherical wavefront lags a flat one: (|x|^2 - (u.x)^2) / (2 R)."""
         range_wavelengths = points.range_bin.clamp(min=1.0) * (self.range_a_bin_m / self.config.wavelength_m)

@@ -10,11 +10,12 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
-from mmweaver.dsp.cfar import CFAR_METHODS, CfarCells, CfarResult
+from mmweaver.dsp.cfar import CfarCells, CfarResult, ca_cfar
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
 from mmweaver.dsp.windows import SHORTEST_HANN
 
 LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
+AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; in a cell
 NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
 
 
@@ -33,35 +34,28 @@ def point_cloud(
     cube: RadarCube,
     *,
     false_alarm_rate: float = 1e-4,
-    method: str = "ca",
     max_points_per_frame: int = 128,
     moving_only: bool = False,
-    cells: CfarCells = CfarCells(),  # noqa: B008 (frozen)
-    azimuth_peak_db: float = 6.0,
-    max_azimuth_peaks: int = 3,
 ) -> PointCloud:
     """Detections of each frame in the radar's frame of reference, the strongest (by SNR) up to a limit.
 
-    1. CFAR ("ca" or "os") on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
+    1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
        `moving_only` first removes the Doppler bins of static clutter.
-    2. Azimuth by beamforming on the horizontal row: every peak within `azimuth_peak_db` of the cell's highest is a
-       point of its own (at most `max_azimuth_peaks`).
+    2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the cell's highest is a point of its own,
+       three at most.
     3. Elevation from the phase between two rows, 0 where the array has none.
-    Range, velocity and azimuth are interpolated between bins. Raises InputError for an unknown method or a limit
-    below 1.
+    Range, velocity and azimuth are interpolated between bins. Raises InputError for a limit below 1.
     """
-    if method not in CFAR_METHODS:
-        raise InputError(f"unknown CFAR method {method!r}; known: {', '.join(CFAR_METHODS)}")
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
     power = range_doppler_power(cube)
     used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
-    found = CFAR_METHODS[method](
+    found = ca_cfar(
         power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1],
-        cells=cells.within(power.shape[2]),
+        cells=CfarCells().within(power.shape[2]),
     )  # fmt: skip
     detections = _detected_cells(cube, power, found, used_bins)
-    which, direction, gain_db = _azimuth_peaks(cube, detections.signal, azimuth_peak_db, max_azimuth_peaks)
+    which, direction, gain_db = _azimuth_peaks(cube, detections.signal)
     up = _elevation(cube, detections.signal[which], direction)
     ahead_squared = 1 - direction**2 - up**2
     snr_db = detections.snr_db[which] + gain_db
@@ -137,7 +131,7 @@ def _parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarr
 
 
 def _azimuth_peaks(
-    cube: RadarCube, signal: Complex[np.ndarray, "cell antenna"], within_db: float, most: int
+    cube: RadarCube, signal: Complex[np.ndarray, "cell antenna"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(index of the cell, direction cosine to the right, dB relative to the cell's highest peak), each (peak,)."""
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
@@ -151,9 +145,9 @@ def _azimuth_peaks(
     is_peak = (inner >= spectrum[:, :-2]) & (inner > spectrum[:, 2:])
     level = np.where(is_peak, inner, 0)
     highest = level.max(axis=1, keepdims=True)
-    order = np.argsort(-level, axis=1)[:, :most]
+    order = np.argsort(-level, axis=1)[:, :MAX_AZIMUTH_PEAKS]
     ordered = np.take_along_axis(level, order, axis=1)
-    which, rank = np.nonzero((ordered > 0) & (ordered >= highest * 10 ** (-within_db / 10)))
+    which, rank = np.nonzero((ordered > 0) & (ordered >= highest * 10 ** (-AZIMUTH_PEAK_DB / 10)))
     at = order[which, rank] + 1
     offset = _parabola(spectrum[which, at - 1], spectrum[which, at], spectrum[which, at + 1])
     gain_db = 10 * np.log10(spectrum[which, at] / highest[which, 0])

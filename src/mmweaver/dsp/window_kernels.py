@@ -49,7 +49,7 @@ class WindowKernel:
         slope = torch.addcmul(c1, t, torch.addcmul(2 * c2, t, c3, value=3)) * STEPS_A_BIN
         return value * even, slope * sign
 
-    def on_bins(self, first: float, num: int, place: Float[np.ndarray, "*tone"]) -> Float[np.ndarray, "2 *tone bin"]:
+    def bin_values(self, first: float, num: int, place: Float[np.ndarray, "*tone"]) -> Float[np.ndarray, "2 *tone bin"]:
         """Values and slopes (a bin) at the bins first, first + 1, ... of tones at `place` in bins, float32.
 
         All bins of a tone have the same place within their pieces, and these follow each other in the table.

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.skeleton import joint
+from mmweaver.geometry.rotations import unit
 
 Array = np.ndarray
 REFERENCE_HEIGHT_M = 1.75
@@ -150,11 +151,11 @@ def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> Posed
     start, end = joints_m[:, _START], joints_m[:, _END]
     bone = joints_m[:, _TO] - joints_m[:, _FROM]
     bone[:, _LUMPS] = -trunk[:, None, :, 2]
-    unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+    along = unit(bone)
     own = np.linalg.norm(end - start, axis=-1, keepdims=True)
     return PosedCapsules(
-        start_m=start, axis_m=unit * (own + _EXTEND_M[:, None] * scale_of(height_m)),
-        rotation=_shortest_rotations(trunk, unit),
+        start_m=start, axis_m=along * (own + _EXTEND_M[:, None] * scale_of(height_m)),
+        rotation=_shortest_rotations(trunk, along),
     )  # fmt: skip
 
 
@@ -196,10 +197,8 @@ def _trunk_rotation(joints_m: Float[Array, "time 22 3"]) -> Float[Array, "time 3
     """Rotations whose columns are right, front and up of the trunk."""
     right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
     right = right + joints_m[:, joint("right_shoulder")] - joints_m[:, joint("left_shoulder")]
-    up = joints_m[:, joint("neck")] - joints_m[:, joint("pelvis")]
-    up = up / np.linalg.norm(up, axis=-1, keepdims=True)
-    right = right - (right * up).sum(-1, keepdims=True) * up
-    right = right / np.linalg.norm(right, axis=-1, keepdims=True)
+    up = unit(joints_m[:, joint("neck")] - joints_m[:, joint("pelvis")])
+    right = unit(right - (right * up).sum(-1, keepdims=True) * up)
     return np.stack([right, _cross(up, right), up], axis=-1)
 
 
@@ -213,29 +212,28 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _rest_frame(rest: Float[Array, "3"]) -> Float[Array, "3 3"]:
     """A frame in the trunk whose third column is the direction of a capsule at rest."""
-    rest = rest / np.linalg.norm(rest)
+    rest = unit(rest)
     not_along = np.array([0.0, 1.0, 0.0]) if abs(rest[1]) < 0.9 else np.array([0.0, 0.0, 1.0])
-    across = _cross(not_along, rest)
-    across /= np.linalg.norm(across)
+    across = unit(_cross(not_along, rest))
     return np.stack([across, _cross(rest, across), rest], axis=-1)
 
 
 def _shortest_rotations(
-    trunk: Float[Array, "time 3 3"], unit: Float[Array, "time capsule 3"]
+    trunk: Float[Array, "time 3 3"], along: Float[Array, "time capsule 3"]
 ) -> Float[Array, "time capsule 3 3"]:
-    """Rotations whose third column is `unit`, reached by the shortest rotation from the rest direction in the trunk.
+    """Rotations whose third column is `along`, reached by the shortest rotation from the rest direction in the trunk.
 
     The shortest rotation keeps skin from spinning about its bone, which a radar would see as velocity.
     """
     start = trunk[:, None] @ _REST_FRAMES
     old = start[..., 2]
-    axis = _cross(old, unit)
-    cos = (old * unit).sum(-1, keepdims=True)
+    axis = _cross(old, along)
+    cos = (old * along).sum(-1, keepdims=True)
     less = axis / np.maximum(1 + cos, 1e-3)
     rotated = [
         v * cos + _cross(axis, v) + less * (axis * v).sum(-1, keepdims=True) for v in (start[..., 0], start[..., 1])
     ]
-    return np.stack([*rotated, unit], axis=-1)
+    return np.stack([*rotated, along], axis=-1)
 
 
 _REST_FRAMES = np.stack([_rest_frame(np.asarray(one.rest)) for one in CAPSULES])

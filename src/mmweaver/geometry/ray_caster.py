@@ -52,7 +52,7 @@ class RayCaster:
             return np.full(len(origins), np.inf), np.full(len(origins), -1)
         hits = self._scene.run(_packed(origins), _packed(directions), output=True)
         face = hits["primID"].astype(np.int64)
-        distance = _with_inf(hits["tfar"])
+        distance = _finite_or_inf(hits["tfar"])
         hit = np.flatnonzero(np.isfinite(distance))
         normal = self._normal[face[hit]]
         towards = np.einsum("ij,ij->i", normal, self._corner_m[face[hit]] - origins[hit])
@@ -73,7 +73,7 @@ class RayCaster:
         segment = end - start
         length = np.linalg.norm(segment, axis=1)
         unit = segment / np.maximum(length, 1e-12)[:, None]
-        reach = _with_inf(self._scene.run(_packed(start + margin_m * unit), _packed(unit), query="DISTANCE"))
+        reach = _finite_or_inf(self._scene.run(_packed(start + margin_m * unit), _packed(unit), query="DISTANCE"))
         return (reach >= length - 2 * margin_m) | (length <= 2 * margin_m)
 
     def _is_empty(self, origins: Points) -> bool:
@@ -92,7 +92,7 @@ def _packed(vectors: Points) -> Points:
     return np.ascontiguousarray(vectors, np.float32)
 
 
-def _with_inf(tfar: PerPoint) -> PerPoint:
+def _finite_or_inf(tfar: PerPoint) -> PerPoint:
     distance = np.asarray(tfar, np.float64)
     distance[distance > _MAX_DISTANCE_M] = np.inf
     return distance

@@ -1,8 +1,13 @@
-"""Rotations between the camera frame and a level frame."""
+"""Rotations between the camera frame and a level frame, and unit vectors."""
 
 import numpy as np
 
 from mmweaver.core.shapes import Rotation, Vec3
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of length 1; those of length 0 stay."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
 def level_from_camera(up_camera: Vec3) -> Rotation:

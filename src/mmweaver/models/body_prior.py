@@ -57,7 +57,7 @@ def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.nd
     skin = body.skin(joints_m.astype(float))
     distance = np.linalg.norm(skin.place_m, axis=-1)
     cos = -(skin.normal * skin.place_m).sum(-1) / np.maximum(distance, 1e-6)
-    section = body.echo.back(cos) * body.area_m2 * body.brightness  # (frame, point)
+    section = body.echo.monostatic(cos) * body.area_m2 * body.brightness  # (frame, point)
     gap = np.linalg.norm(skin.place_m[0][:, None] - anchors_m[0][None], axis=-1)
     of = np.zeros((len(body.part), NUM_ANCHORS))
     of[np.arange(len(of)), gap.argmin(axis=1)] = 1.0

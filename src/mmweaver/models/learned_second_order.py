@@ -14,14 +14,13 @@ import torch
 from torch import Tensor
 
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.paths.body_body_paths import BodyBodyPaths
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_room_paths import ROOM_MARGIN_M, BodyRoomPaths, PairSampling
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths
-from mmweaver.paths.seen_body import BodyAtFrames, SeenBody
+from mmweaver.paths.second_order import ROOM_MARGIN_M, BodyBodyPaths, BodyRoomPaths, PairSampling
 from mmweaver.paths.static_paths import RayTracedRoom
+from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody
 
 SKIN_POINTS = 200
 SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's parts begin at fifth frames
@@ -34,14 +33,16 @@ def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], cloc
     between = [BodyBodyPaths(*pair) for pair in combinations(people, 2)]
     count, every = seen[0].num_frames, SAMPLING.every
     blocks = [slice(first, min(first + every, count)) for first in range(0, count, every)]
-    sources = [one.over_room for one in people] + [pair.paths for pair in between] + [one.over_radar for one in people]
+    sources = (
+        [one.room_paths for one in people] + [pair.paths for pair in between] + [one.radar_paths for one in people]
+    )
     each = [Paths.padded([source(block) for block in blocks]) for source in sources]
     return Paths.cat(each, dim=1)
 
 
-def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> SeenBody:
+def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> VisibleBody:
     body = _body(motion.subject, motion.height_m, motion.girth)
-    one = SeenBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
+    one = VisibleBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
     clear = room.is_clear(np.zeros(3), one.posed.place_m[:: SAMPLING.every], ROOM_MARGIN_M)
     one.visible &= np.repeat(clear, SAMPLING.every, axis=0)[: one.num_frames]
     for other in others:

@@ -32,7 +32,7 @@ from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
 MAX_STEP = 12.0  # of a logarithm of power

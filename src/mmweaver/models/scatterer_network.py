@@ -5,7 +5,7 @@ from typing import Any
 from torch import Tensor, nn
 
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 
 
 class ScattererNetwork(nn.Module):

@@ -12,9 +12,9 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
-from mmweaver.paths.radar_equation import pattern_towards_db
+from mmweaver.paths.image_sources import apparent_direction
+from mmweaver.paths.radar_equation import direction_loss_db
 from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
@@ -91,13 +91,13 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
 
 def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
     """The strongest static paths of the photographed room, each as a scatterer where it appears."""
-    config, first = room.config, room.of_first_order
+    config, first = room.config, room.first_order
     level = first.amplitude.abs().numpy()
     order = np.argsort(-level)[:NUM_POINTS]
     paths = first[torch.from_numpy(order)]
     distance = np.maximum(paths.length_m.mean(dim=(1, 2)).numpy() / 2, 0.1)
     towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m).numpy()
-    loss_db = pattern_towards_db(_tensor(towards[:, [0, 2]]), config).numpy()
+    loss_db = direction_loss_db(_tensor(towards[:, [0, 2]]), config).numpy()
     gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
     cross_section = (level[order] * distance**2 / gain) ** 2
     place = towards * distance[:, None]

@@ -1,7 +1,7 @@
 """Paths -> noise-free ADC samples, exact in time: fast time x (slow time . antennas), one matrix product a block.
 
-Phases are counted in double precision, everything else in single, on the CPU or a GPU. `exact.py` is the sum that these
-factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
+Phases are counted in double precision, all else in single, on the CPU or a GPU. `reference_sum.py` is the sum that
+these factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
 import math
@@ -132,7 +132,7 @@ class AdcSynthesis:
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
         """Samples of leakage, complex64 (tx, rx, sample), the same in every loop; `BoardEffects.leakage` gives it."""
         fast = self._fast.factor(length_m / SPEED_OF_LIGHT_MPS, 0.0)  # (tap, sample)
-        adc = torch.tensordot(self._elements.of_pairs(amplitude), fast, dims=([0], [0]))
+        adc = torch.tensordot(self._elements.pair_values(amplitude), fast, dims=([0], [0]))
         return self._elements.slots(adc, 0)
 
     def static_rate(self, paths: StaticPaths) -> Tensor:
@@ -152,7 +152,7 @@ class AdcSynthesis:
             paths = paths[:, paths.length_m[0].argsort()]
             bands = self._fast.bands(paths.length_m[0] / SPEED_OF_LIGHT_MPS)
         # (frame, time, 3, path): paths come last, as loops over few antennas or chirps cost more than they compute
-        ends = paths.departure.at(segment.place_s), paths.arrival.at(segment.place_s)
+        ends = paths.departure.positions_m(segment.place_s), paths.arrival.positions_m(segment.place_s)
         out_m, back_m = (distance_m(end[:, :NUM_NODES]) for end in ends)
         length_m = out_m + back_m  # (frame, node, path)
         by_chirp_m = (segment.to_chirps @ length_m).unflatten(1, (-1, config.num_tx))  # (frame, loop, tx, path)
@@ -202,7 +202,7 @@ class _SegmentFactors:
         self.to_chirps = _double(segment.weights(segment.chirp_s.ravel()).T, device)  # (loop * tx, node)
         self.to_blocks = _double(segment.weights(segment.block_s).T, device)  # (block, node)
         self.slope_at_blocks = _double(segment.slopes(segment.block_s).T, device)
-        in_between = between(segment.block_s, segment.chirp_s.mean(axis=1)).T
+        in_between = interpolation(segment.block_s, segment.chirp_s.mean(axis=1)).T
         self.between_blocks = _double(in_between, device).float()  # (loop, block)
 
 
@@ -264,7 +264,7 @@ def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
     return excess / both_m.clamp(min=1e-12)  # 0 for the place of an antenna itself, as padding is
 
 
-def between(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
+def interpolation(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
     """(node, time): values at nodes times this are values in between, straight from node to node and beyond them."""
     if len(nodes) == 1:
         return np.ones((1, len(at)))

@@ -42,7 +42,7 @@ def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
         samples[:, 0, effects.first_slot] /= np.complex64(effects.first_chirp)
         done.append("first chirp")
     if len(board.leakage_range_m):
-        taken = _without_leakage(samples, adc, effects)
+        taken = _remove_leakage(samples, adc, effects)
         (done if taken else left).append("leakage" if taken else _WHY_LEAKAGE)
     mixing = effects.channels
     if mixing is not None and adc.config.is_coded:
@@ -68,7 +68,7 @@ def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
 _WHY_LEAKAGE = "leakage: the recording's static echoes are not like it, or its samples are real or coded"
 
 
-def _without_leakage(samples: np.ndarray, adc: AdcCube, effects: BoardEffects) -> bool:
+def _remove_leakage(samples: np.ndarray, adc: AdcCube, effects: BoardEffects) -> bool:
     """Takes the leakage away from samples, in place; whether that could be done."""
     config = adc.config
     if config.is_coded or not config.complex_samples:

@@ -27,7 +27,7 @@ class BoardEffects:
     def __init__(self, board: Board, config: RadarConfig):
         board.check_fits(config)
         self.board, self.nominal = board, config
-        self.radar = as_built(board, config)
+        self.radar = built_radar(board, config)
         self.extra_length_m = 2 * board.range_bias_m
         self.channels = _channels(board, config)  # complex64 (antenna, antenna), or None where nothing is mixed
         first = 1 + board.first_chirp_amplitude_percent / 100
@@ -35,7 +35,7 @@ class BoardEffects:
         self.first_slot = 0 if config.is_coded else config.tx_order[0]
 
     # paths ----------------------------------------------------------------------------------------------------------
-    def on_static(self, paths: StaticPaths) -> StaticPaths:
+    def recorded_static(self, paths: StaticPaths) -> StaticPaths:
         """Static paths (path,) as strong as the receiver's IF leaves them.
 
         Clutter is as strong as recorded over the noise of boards, whose gains are in it.
@@ -44,7 +44,7 @@ class BoardEffects:
         factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * gain
         return replace(paths, amplitude=paths.amplitude * factor)
 
-    def on_moving(self, paths: Paths, frames: np.ndarray, seed: int) -> Paths:
+    def recorded_moving(self, paths: Paths, frames: np.ndarray, seed: int) -> Paths:
         """Moving paths (frame * segment, path) of frames of these numbers, with the carrier's drift, too."""
         length_m = paths.length_m
         factor = self.if_response(length_m) * self.gain
@@ -108,7 +108,7 @@ class BoardEffects:
         return length_m, (amplitude * turn[:, None, None]).to(torch.complex64)
 
 
-def as_built(board: Board, config: RadarConfig) -> RadarConfig:
+def built_radar(board: Board, config: RadarConfig) -> RadarConfig:
     """The radar with the antenna places and the noise figure that its board has."""
     values: dict[str, object] = {}
     if board.noise_figure_db is not None:

@@ -8,13 +8,13 @@ import torch
 
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_room_paths import BodyRoomPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
-from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
-from mmweaver.paths.seen_body import BodyAtFrames, SeenBody, occluded_by
+from mmweaver.paths.paths import Interaction, Paths, StaticPaths
+from mmweaver.paths.second_order import BodyRoomPaths
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.visibility import Visibility
+from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody, occluded_by
 
 GHOST_POINTS = 200
 GHOST_SLAB_ECHOES = 2  # of a face in body-wall paths: front, and back with all that goes to and fro within
@@ -27,7 +27,7 @@ CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine from
 SIDE_MARGIN = 0.05  # and in the sine to its right and left
 
 
-class BodyPaths(SeenBody):
+class BodyPaths(VisibleBody):
     """Paths of one person in one room, frame by frame.
 
     With a `known` visibility no ray is cast, and the room needs no ray caster.
@@ -69,7 +69,7 @@ class BodyPaths(SeenBody):
         """Indices of the static paths that the person occludes in one frame."""
         if self.known is not None:
             return np.flatnonzero(self.known.occluded[frame])
-        return occluded_by(self.posed.hulls[frame], self.room.paths, self.near_body(frame))
+        return occluded_by(self.posed.hulls[frame], self.room.paths, self.occludable(frame))
 
     def visibility(self) -> Visibility:
         """What the rays decided, to be kept."""
@@ -83,7 +83,7 @@ class BodyPaths(SeenBody):
             occluded=occluded,
         )  # fmt: skip
 
-    def near_body(self, frame: int) -> np.ndarray:
+    def occludable(self, frame: int) -> np.ndarray:
         """Indices of the static paths that the body may occlude: a cone around it, between its right and its left."""
         away = -self.towards[frame]
         axis = self.posed.place_m[frame].mean(axis=0)
@@ -128,12 +128,12 @@ class BodyPaths(SeenBody):
         half = to_corner + self.towards[:, chosen]
         cos_half = (normal * half).sum(-1) / np.maximum(np.linalg.norm(half, axis=-1), 1e-6)
         skin = self.body.echo
-        mixed = over * direct * np.sqrt(skin.over(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
-        double = over**2 / self.gain * np.sqrt(skin.back(cos) * area_m2) * micro
+        mixed = over * direct * np.sqrt(skin.bistatic(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
+        double = over**2 / self.gain * np.sqrt(skin.monostatic(cos) * area_m2) * micro
         once = seen & self.visible[:, chosen]
         ghosts = [
             *(SkinPaths(None, face, chosen, mixed * echo, once, longer_m) for echo, longer_m in slab),
-            *(SkinPaths(face, face, chosen, double * echo, seen, longer_m) for echo, longer_m in slab.twice),
+            *(SkinPaths(face, face, chosen, double * echo, seen, longer_m) for echo, longer_m in slab.doubled),
         ]
         ghosts = [ghost for ghost in (ghost.strongest(direct_power) for ghost in ghosts) if ghost.present.any()]
         if not ghosts:
@@ -190,14 +190,9 @@ class SkinPaths:
         departure, arrival = (skin if face is None else face.image_of_motion(skin) for face in self.faces)
         if self.longer_m is not None:
             arrival[:, 0] *= 1 + (self.longer_m[frame, there] / np.linalg.norm(arrival[:, 0], axis=1))[:, None]
-        count = len(skin)
-        return Paths(
-            amplitude=torch.from_numpy(self.amplitude[frame, there].astype(np.complex64)),
-            departure=ApparentPoint.of(departure),
-            arrival=ApparentPoint.of(arrival),
-            is_reciprocal=torch.full((count,), self.departure is not self.arrival),
-            interaction=torch.full((count,), int(self.interaction), dtype=torch.uint8),
-        )
+        is_reciprocal = self.departure is not self.arrival
+        amplitude = self.amplitude[frame, there]
+        return Paths.of(amplitude, departure, arrival, self.interaction, is_reciprocal=is_reciprocal)
 
     @property
     def faces(self) -> tuple[SpecularReflector | None, SpecularReflector | None]:

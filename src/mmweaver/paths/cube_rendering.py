@@ -168,7 +168,7 @@ class CubeRenderer:
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
         """What leakage leaves at zero Doppler, complex64 (range, antenna); `BoardEffects.leakage` gives it."""
         at_range = self.leakage_response(length_m)
-        return at_range.T @ self._elements.decoded(self._elements.of_pairs(amplitude).flatten(1))
+        return at_range.T @ self._elements.decoded(self._elements.pair_values(amplitude).flatten(1))
 
     def leakage_response(self, length_m: Tensor) -> Tensor:
         """What leakage of amplitude 1 and path lengths (tap,) leaves in the range bins, complex64 (tap, range)."""

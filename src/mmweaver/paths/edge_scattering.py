@@ -7,6 +7,7 @@ from scipy.spatial import KDTree
 
 from mmweaver.core.records import Scene
 from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.geometry.rotations import unit
 
 SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): what of an edge adds up in phase
 NEIGHBOURHOOD_M = 0.15  # about a piece, whose edges say where it runs
@@ -33,16 +34,15 @@ def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edg
     ends, opposite, face = _free_edges(scene.faces)
     vertices = scene.vertices_m.astype(float)
     middle = vertices[ends].mean(axis=1)
-    outward = middle - vertices[opposite]
+    outward = unit(middle - vertices[opposite])
     along = vertices[ends[:, 1]] - vertices[ends[:, 0]]
     length = np.linalg.norm(along, axis=1)
-    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
     behind = _reach(caster, middle + 0.04 * outward)
     seen = _reach(caster, middle - 0.01 * outward)
     distance = np.linalg.norm(middle, axis=1)
     step = np.isfinite(behind) & (behind > distance + STEP_OVER_M) & (np.abs(seen - distance) < 0.05)
     step &= length < 0.3  # longer ones are rims of completed planes, not furniture
-    pieces = _in_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
+    pieces = _merged_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
     return _straightened(pieces, middle[step], length[step]) if straight and len(pieces.length_m) else pieces
 
 
@@ -77,11 +77,11 @@ def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
     """How far a ray from the radar towards each target goes."""
-    direction = target_m / np.maximum(np.linalg.norm(target_m, axis=1, keepdims=True), 1e-9)
+    direction = unit(target_m)
     return caster.distance_m(np.zeros_like(direction), direction)
 
 
-def _in_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
+def _merged_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
     """One piece for each small cube of space: its mean place and main direction, no longer than the cube."""
     if len(middle) == 0:
         return Edges(place_m=middle, direction=along, length_m=length, material=material)

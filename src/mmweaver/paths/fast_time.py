@@ -64,14 +64,14 @@ class FastTime:
         if not bands:
             return weights @ self.factor(delay_s, shift_hz)
         rows, cycles, square = weights[0], self._cycles(delay_s, shift_hz)[0], self._square(delay_s[0]).float()
-        factors = [self._of_band(rows[:, band], cycles[band], square[band]) for band in bands]
+        factors = [self._band_factor(rows[:, band], cycles[band], square[band]) for band in bands]
         ends = [0, *(end for band in bands for end in (band.start, band.stop)), len(cycles)]
         for alone in map(slice, ends[::2], ends[1::2]):
             factors.append((rows[:, alone], self.factor(delay_s[0, alone], shift_hz[0, alone])))
         left, right = zip(*factors, strict=True)
         return (torch.cat(left, dim=1) @ torch.cat(right))[None]
 
-    def _of_band(self, weights: Tensor, cycles: Tensor, square: Tensor) -> tuple[Tensor, Tensor]:
+    def _band_factor(self, weights: Tensor, cycles: Tensor, square: Tensor) -> tuple[Tensor, Tensor]:
         """Sums (row, node) with weights (row, path) of beats within a band, and what makes samples of them.
 
         `cycles` (path,) are those in the sampling.

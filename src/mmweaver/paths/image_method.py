@@ -13,6 +13,7 @@ from torch import Tensor
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Values
+from mmweaver.geometry.rotations import unit
 from mmweaver.paths.materials import MATERIALS, Material, SlabEchoes, reflection, slab_echoes
 
 MAX_REFLECTORS = 10  # the largest faces; smaller ones count as diffuse surface only
@@ -128,10 +129,10 @@ def specular_reflectors(
             facing.append(face)
     facing.sort(key=lambda face: -face.area_m2)
     faces = facing[:MAX_REFLECTORS]
-    return with_faces_before(faces) if hidden else faces
+    return layered_faces(faces) if hidden else faces
 
 
-def with_faces_before(faces: list[SpecularReflector]) -> list[SpecularReflector]:
+def layered_faces(faces: list[SpecularReflector]) -> list[SpecularReflector]:
     """Faces, each hidden where another one lies right before it."""
     return [replace(face, before=tuple(one for one in faces if one.is_before(face))) for face in faces]
 
@@ -193,8 +194,8 @@ def _path(
         gone += float(np.linalg.norm(corner - end))
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
         tapers.append(float(face.inside(corner, fresnel_m)))
-        direction = (image - end) / np.linalg.norm(image - end)
-        echoes = echoes.then(face.echoes(np.abs(direction @ face.plane.normal), frequency_hz, most), frequency_hz)
+        cos = np.abs(unit(image - end) @ face.plane.normal)
+        echoes = echoes.combined(face.echoes(cos, frequency_hz, most), frequency_hz)
         end = corner
     share = _share_of_wave(np.array(corners), min(tapers), length)
     echoes = SlabEchoes(share * echoes.coefficient, echoes.longer_m)

@@ -116,7 +116,7 @@ class SlabEchoes:
         return zip(self.coefficient, self.longer_m, strict=True)
 
     @property
-    def twice(self) -> "SlabEchoes":
+    def doubled(self) -> "SlabEchoes":
         """Of a wave that meets the slab twice under the same angles; all echoes are one or more steps longer."""
         count = len(self.coefficient)
         coefficients = [
@@ -130,11 +130,11 @@ class SlabEchoes:
         step_m = self.longer_m[-1] / max(count - 1, 1)
         return SlabEchoes(np.array(coefficients), np.multiply.outer(np.arange(2 * count - 1), step_m))
 
-    def at(self, frequency_hz: float) -> Values:
+    def value(self, frequency_hz: float) -> Values:
         """The sum (...) at a frequency."""
         return (self.coefficient * np.exp(2j * np.pi * frequency_hz * self.longer_m / SPEED_OF_LIGHT_MPS)).sum(axis=0)
 
-    def then(self, other: "SlabEchoes", frequency_hz: float) -> "SlabEchoes":
+    def combined(self, other: "SlabEchoes", frequency_hz: float) -> "SlabEchoes":
         """Of one wave at two slabs, (echo,) each; echoes too faint to matter are counted with the strongest."""
         coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
         longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()

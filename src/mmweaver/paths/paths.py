@@ -52,7 +52,7 @@ class ApparentPoint(TensorRecord):
         )
         return cls(position_m=position, velocity_mps=velocity, acceleration_mps2=acceleration)
 
-    def at(self, time_s: Tensor) -> Tensor:
+    def positions_m(self, time_s: Tensor) -> Tensor:
         """Positions (..., time, 3, path) in metres, float64, at times (time,) since the segment's middle."""
         position, velocity, acceleration = (
             part.mT.contiguous()[..., None, :, :]
@@ -99,6 +99,26 @@ class Paths(TensorRecord):
     interaction: Tensor  # (..., path) uint8, an `Interaction`
 
     @classmethod
+    def of(
+        cls,
+        amplitude: np.ndarray,
+        departure: np.ndarray,
+        arrival: np.ndarray,
+        interaction: Interaction,
+        *,
+        is_reciprocal: bool = False,
+    ) -> "Paths":
+        """Paths of one kind, of amplitudes (path,) and of the motion of their ends (..., path, 3, 3)."""
+        shape = departure.shape[:-2]
+        return cls(
+            amplitude=torch.from_numpy(amplitude.astype(np.complex64)).expand(shape),
+            departure=ApparentPoint.of(departure),
+            arrival=ApparentPoint.of(arrival),
+            is_reciprocal=torch.full(shape, is_reciprocal),
+            interaction=torch.full(shape, int(interaction), dtype=torch.uint8),
+        )
+
+    @classmethod
     def direct(cls, amplitude: Tensor, scatterer: ApparentPoint) -> "Paths":
         """Paths to moving scatterers and straight back."""
         return cls(
@@ -127,7 +147,8 @@ class Paths(TensorRecord):
     @classmethod
     def none(cls) -> "Paths":
         """No paths, (0,)."""
-        return cls.direct(torch.zeros(0, dtype=torch.complex64), ApparentPoint.of(np.zeros((0, 3, 3))))
+        nothing = np.zeros((0, 3, 3))
+        return cls.of(np.zeros(0), nothing, nothing, Interaction.BODY)
 
     def __len__(self) -> int:
         return len(self.amplitude)
@@ -179,7 +200,7 @@ class StaticPaths(TensorRecord):
     def __len__(self) -> int:
         return len(self.amplitude)
 
-    def of_kind(self, kind: Interaction) -> "StaticPaths":
+    def select(self, kind: Interaction) -> "StaticPaths":
         """Those of one kind."""
         return self[self.interaction == int(kind)]
 
@@ -190,4 +211,4 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    occluded: Tensor  # (frame, static path) uint8: how many bodies take the path away, 1 at most unless they are apart
+    occluded: Tensor  # (frame, static path) uint8: 1 where somebody occludes the path

@@ -8,13 +8,13 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.paths.antenna import pattern_db, scatterer_gain
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 
 
 def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
     """Scatterers in bins of the response, amplitudes real, in sqrt(mW). Reference: primer, equation 10."""
     config = response.config
-    loss = pattern_towards_db(echoes.direction, config)
+    loss = direction_loss_db(echoes.direction, config)
     gain = scatterer_gain(config) * 10 ** (-loss / 10)  # out and back
     amplitude = gain * echoes.cross_section_m2.clamp(min=1e-30).sqrt() / echoes.range_m.clamp(min=0.1) ** 2
     doppler_bin = echoes.velocity_mps / response.velocity_a_bin_mps
@@ -26,7 +26,7 @@ def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
     )
 
 
-def pattern_towards_db(direction: Tensor, config: RadarConfig) -> Tensor:
+def direction_loss_db(direction: Tensor, config: RadarConfig) -> Tensor:
     """Loss of one antenna in dB towards direction cosines (..., 2) along x and z, ahead of the radar."""
     x, z = direction.unbind(-1)
     ahead = (1 - x.square() - z.square()).clamp(min=1e-4).sqrt()

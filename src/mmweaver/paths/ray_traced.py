@@ -16,20 +16,20 @@ from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.dsp.cube import static_samples
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.apparent_paths import static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.cube_rendering import CubeRenderer
+from mmweaver.paths.diffuse_clutter import diffuse_clutter
 from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.image_sources import static_points
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
 from mmweaver.paths.skin_scattering import SkinEcho
 from mmweaver.paths.static_paths import Propagation, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import unresolved_clutter
 from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -82,9 +82,9 @@ class Simulator:
         self.clock = self.synthesis.clock
         self.room = (room or RayTracedRoom(scene, built, micro_seed, propagation)).for_radar(built)
         if self.room.propagation.clutter:
-            self.room.paths = StaticPaths.cat([self.room.paths, unresolved_clutter(built, micro_seed)])
+            self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed)])
         if self.board is not None:
-            self.room.paths = self.board.on_static(self.room.paths)
+            self.room.paths = self.board.recorded_static(self.room.paths)
         self.background: BackgroundRecording | None = None
         with one_thread():
             if background is not None:
@@ -105,7 +105,7 @@ class Simulator:
         receiver = Receiver(self.room.config, self.impairments, self.radar_pose.noise_seed(seed), self.board)
         if self.background is None:
             return receiver
-        return receiver.with_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
+        return receiver.adopt_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
 
     def _leakage(self) -> torch.Tensor:
         """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
@@ -144,15 +144,15 @@ class Simulator:
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
-        mutual_occlusion: bool = True,
     ) -> Iterator[AdcCube]:
         """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
 
         `first_frame`: the number of the first one, in the time of the poses, whose noise and micro-motion go on so.
         People sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
-        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_occlusion` the signal is
-        the plain sum of people who do not occlude each other. Raises InputError where a pose does not cover the frames
-        or holds values that are not finite.
+        `pose` is one person, several, or an empty tuple for the room alone.
+
+        Raises:
+            InputError: where a pose does not cover the frames or holds values that are not finite.
         """
         poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
         for one in poses:
@@ -163,7 +163,7 @@ class Simulator:
         micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
         for first in range(first_frame, first_frame + num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, first_frame + num_frames))
-            people = self._people(poses, bodies, micro_motions, frames, mutual_occlusion)
+            people = self._people(poses, bodies, micro_motions, frames)
             samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
             samples = samples if unit == 1.0 else samples / np.float32(unit)
             yield AdcCube(samples=samples, config=self.config, scale=unit)
@@ -174,7 +174,7 @@ class Simulator:
             static, moving = self._static - self.synthesis.occluded(paths), paths.moving
             if self.board is not None:
                 static = static + self._drifted(frames, receiver.seed)
-                moving = self.board.on_moving(moving, frames, receiver.seed)
+                moving = self.board.recorded_moving(moving, frames, receiver.seed)
             return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
 
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
@@ -188,15 +188,14 @@ class Simulator:
         bodies: list[ScatteringBody],
         micro_motions: list[MicroMotion],
         frames: np.ndarray,
-        mutual: bool,
     ) -> PeoplePaths:
         joints_m, chests_m = [], []
         for pose, own in zip(poses, micro_motions, strict=True):
             level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
-            joints, chest = with_micro_motion(own, level_m, frames, self.clock, pose.height_m)
+            joints, chest = add_micro_motion(own, level_m, frames, self.clock, pose.height_m)
             joints_m.append(self.radar_pose.seen(joints))
             chests_m.append(chest)
-        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m, mutual=mutual)
+        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
 
     def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
         """What `Resynthesis` needs of a motion: joints at the clock's nodes (frame, node, 22, 3), and visibility.
@@ -207,7 +206,7 @@ class Simulator:
         frames = np.arange(num_frames)
         joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
         own = MicroMotion(pose.subject, seed, MicroMotionSettings())
-        moved, chest = with_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
+        moved, chest = add_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
         return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
@@ -234,7 +233,7 @@ class Simulator:
             raise InputError("the motion has joints that are not numbers; mend the pose file")
 
 
-def with_micro_motion(
+def add_micro_motion(
     motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Joints at the nodes of frames (frame, node, 22, 3) with micro-motion, and how far the chest is raised, in m."""

@@ -1,4 +1,4 @@
-"""From the wave at the port to the converter's numbers: channel errors, thermal and phase noise, jitter, quantisation.
+"""From the wave at the port to the converter's numbers: thermal and phase noise, jitter, quantisation.
 
 Reference: docs/radar_primer.md, section 6.
 """
@@ -14,7 +14,6 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.paths.transmit_elements import TransmitElements
 
 if TYPE_CHECKING:
     from mmweaver.paths.board_effects import BoardEffects
@@ -34,9 +33,6 @@ class Impairments:
     phase_noise_dbc_per_hz: float | None = -93.0  # at 1 MHz; None = none
     chirp_jitter_s: float = 1.1e-9  # a chirp starts at one of two instants so far apart (TI SPRACV2: 0.4 deg at 1 MHz)
     quantise: bool = True
-    channel_gain_db: float = 0.0  # rms of each transmitter's and each receiver's gain error; a board keeps its own
-    channel_phase_rad: float = 0.0
-    board: int = 0  # which board: determines these errors, whatever the seed
 
 
 IDEAL = Impairments(
@@ -52,7 +48,6 @@ class Receiver:
         self, config: RadarConfig, impairments: Impairments, seed: int, board: "BoardEffects | None" = None
     ):  # fmt: skip
         self.config, self.impairments, self.seed, self.board = config, impairments, seed, board
-        self.channels = TransmitElements(config).with_weights(channel_errors(config, impairments))
         self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
         self.noise_sqrt_mw = float(np.sqrt(config.noise_power_mw / 2)) if impairments.thermal_noise else 0.0
@@ -63,7 +58,7 @@ class Receiver:
             deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
-    def with_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
+    def adopt_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
         """The same with thermal noise of this power a sample and a converter of this count."""
         other = copy(self)
         other.count_sqrt_mw = count_sqrt_mw
@@ -80,24 +75,23 @@ class Receiver:
         loop, `static_rate` (tx, rx, sample) how fast it changes within a chirp. Noise comes from the seed's streams, or
         with `on_device` from the tensors' device, which is quicker on a GPU and gives other noise of the same kind.
         """
-        if not on_device and moving.device.type == "cpu":  # frame by frame: the caches hold it
-            for index, frame in enumerate(frames):
-                one = slice(index, index + 1)
-                self._receive(moving[one], static[one], static_rate, *self._streamed([frame], moving))
+        if on_device:
+            self._add(moving, static, static_rate, *self._sampled(frames, moving))
             return moving
-        impairments = self._sampled(frames, moving) if on_device else self._streamed(frames, moving)
-        self._receive(moving, static, static_rate, *impairments)
+        for index, frame in enumerate(map(int, frames)):  # one at a time: the caches hold it
+            one, device = slice(index, index + 1), moving.device
+            noise = None
+            if self.impairments.thermal_noise:
+                noise = torch.from_numpy(self.noise(tuple(moving.shape[1:]), frame)).to(device)
+            delay_s = torch.from_numpy(self.shift(frame)).to(device)
+            self._add(moving[one], static[one], static_rate, delay_s, noise)
         return moving
 
-    def _receive(
-        self, samples: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None
-    ) -> None:
-        """Adds all of it to the samples of moving paths, in place."""
+    def _add(self, samples: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None) -> None:
+        """Makes recorded samples of those of moving paths, in place, with clock errors (loop, tx, sample) and noise."""
         samples += static[:, None]
-        if self._has_unstable_clock:
+        if self.impairments.chirp_jitter_s or self.phase_noise_s:
             samples += delay_s[..., None, :] * static_rate
-        if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
-            samples *= torch.from_numpy(self.channels).to(samples.device)[:, :, None]
         if self.board is not None:
             samples[:, 0, self.board.first_slot] *= self.board.first_chirp
         if noise is not None:
@@ -107,20 +101,8 @@ class Receiver:
         if self.impairments.quantise:
             quantise(samples, self.count_sqrt_mw)
 
-    @property
-    def _has_unstable_clock(self) -> bool:
-        return bool(self.impairments.chirp_jitter_s or self.phase_noise_s)
-
-    def _streamed(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor | None]:
-        """Clock errors (frame, loop, tx, sample), thermal noise (frame, loop, tx, rx, sample) of the seed's streams."""
-        delay_s = torch.from_numpy(_stacked([self.shift(int(frame)) for frame in frames])).to(samples.device)
-        if not self.impairments.thermal_noise:
-            return delay_s, None
-        noise = _stacked([self.noise(tuple(samples.shape[1:]), int(frame)) for frame in frames])
-        return delay_s, torch.from_numpy(noise).to(samples.device)
-
     def _sampled(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor]:
-        """The same from a generator of the samples' device."""
+        """Clock errors (frame, loop, tx, sample) and noise (frame, loop, tx, rx, sample) of the samples' device."""
         device = samples.device
         generator = torch.Generator(device)
         generator.manual_seed(int(stream(self.seed, "device noise", int(frames[0])).integers(2**62)))
@@ -153,15 +135,6 @@ class Receiver:
         return shift
 
 
-def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
-    """Factors (tx, rx), complex64, of an uncalibrated board: one of each transmitter times one of each receiver."""
-    rng = stream(impairments.board, "channel errors")
-    errors = rng.standard_normal((2, config.num_tx + config.num_rx))
-    gain_db, phase_rad = impairments.channel_gain_db * errors[0], impairments.channel_phase_rad * errors[1]
-    each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
-    return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
-
-
 def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "BoardEffects") -> np.ndarray:
     """Noise of power 2 before the IF filter, complex64 (..., sample): sampled in the spectrum, where the filter is."""
     generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
@@ -169,11 +142,6 @@ def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "Boa
     gain = board.noise_gain(np.fft.fftfreq(shape[-1]) % 1.0) * np.sqrt(shape[-1])
     spectrum *= torch.from_numpy(gain.astype(np.float32))
     return torch.fft.ifft(spectrum).numpy()
-
-
-def _stacked(frames: list[np.ndarray]) -> np.ndarray:
-    """Frames along a new axis; one alone is not copied."""
-    return frames[0][None] if len(frames) == 1 else np.stack(frames)
 
 
 def quantise(samples: Tensor, count: float) -> None:

@@ -19,10 +19,10 @@ from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.paths import Paths, ScenePaths
-from mmweaver.paths.ray_traced import leakage_path, with_micro_motion
+from mmweaver.paths.ray_traced import add_micro_motion, leakage_path
 from mmweaver.paths.receiver import Impairments, Receiver
 from mmweaver.paths.static_paths import PreparedRoom
-from mmweaver.paths.static_paths_store import with_new_phases
+from mmweaver.paths.static_paths_store import resampled_phases
 from mmweaver.paths.visibility import Visibility
 
 ROOM_REALIZATIONS = 4  # sets of phases of a room: each costs 30 ms and is kept
@@ -57,7 +57,7 @@ class Resynthesis:
         room, static, rate = self._room(realization)
         body = _body(motion.subject, motion.height_m)
         if realization:
-            body = _with_phases(body, stream(motion.subject, "body", "other phases", realization))
+            body = _rephased(body, stream(motion.subject, "body", "other phases", realization))
         person = self._person(room, body, motion, frames)
         moving = Paths.padded([paths for index in range(len(frames)) for paths in person.paths(index)])
         occluded = torch.from_numpy(motion.visibility.occluded[frames])
@@ -76,7 +76,7 @@ class Resynthesis:
 
     def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
         micro_motion = MicroMotion(motion.subject, motion.seed, MicroMotionSettings())
-        joints_m, chest_m = with_micro_motion(
+        joints_m, chest_m = add_micro_motion(
             micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
         )
         known = motion.visibility.frames(frames)
@@ -85,7 +85,7 @@ class Resynthesis:
     def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:
         key = 1 + realization % ROOM_REALIZATIONS if realization else 0
         if key not in self._realizations:
-            room = with_new_phases(self.room, key) if key else self.room
+            room = resampled_phases(self.room, key) if key else self.room
             static = self.synthesis.static(room.paths)
             static += self.synthesis.static(leakage_path(self.config, self.impairments))
             self._realizations[key] = room, static, self.synthesis.static_rate(room.paths)
@@ -102,7 +102,7 @@ def _body(subject: int, height_m: float) -> ScatteringBody:
     return ScatteringBody(subject, height_m)
 
 
-def _with_phases(body: ScatteringBody, rng: np.random.Generator) -> ScatteringBody:
+def _rephased(body: ScatteringBody, rng: np.random.Generator) -> ScatteringBody:
     other = copy(body)
     other.micro_phase = np.exp(2j * np.pi * rng.random(len(body.micro_phase)))
     return other

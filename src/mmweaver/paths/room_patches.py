@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.geometry.rotations import unit
+
 VOXEL_M = 0.25  # patches within a cube of this size are one
 GRAZING_COS = 0.02  # a face seen under less is taken as seen under so much
 
@@ -21,19 +23,18 @@ class RoomPatches:
     def __len__(self) -> int:
         return len(self.place_m)
 
-    def into(self, direction: np.ndarray) -> np.ndarray:
+    def cross_sections(self, direction: np.ndarray) -> np.ndarray:
         """Cross sections (..., patch) into unit directions (..., patch, 3), by Lambert's law."""
         cos = (direction * self.normal).sum(axis=-1)
         is_edge = ~self.normal.any(axis=-1)
         return self.cross_section_m2 * np.where(is_edge, 1.0, np.maximum(cos, 0.0))
 
     @classmethod
-    def of_surfaces(
+    def surfaces(
         cls, place_m: np.ndarray, normal: np.ndarray, monostatic_m2: np.ndarray, phase: np.ndarray, material: np.ndarray
     ) -> "RoomPatches":
         """Of patches (patch,) with their cross sections straight back; normals of either sign."""
-        towards = -place_m / np.maximum(np.linalg.norm(place_m, axis=1, keepdims=True), 1e-9)
-        cos = (normal * towards).sum(axis=1)
+        cos = -(normal * unit(place_m)).sum(axis=1)
         upright = normal * np.where(cos < 0, -1.0, 1.0)[:, None]
         return cls(
             place_m=place_m, normal=upright, cross_section_m2=monostatic_m2 / np.maximum(np.abs(cos), GRAZING_COS),
@@ -41,15 +42,15 @@ class RoomPatches:
         )  # fmt: skip
 
     @classmethod
-    def of_edges(
+    def edges(
         cls, place_m: np.ndarray, cross_section_m2: np.ndarray, phase: np.ndarray, material: np.ndarray
     ) -> "RoomPatches":
         """Of pieces of edge (patch,)."""
         normal = np.zeros_like(place_m)
         return cls(place_m=place_m, normal=normal, cross_section_m2=cross_section_m2, phase=phase, material=material)
 
-    def and_those(self, others: "RoomPatches") -> "RoomPatches":
-        """Both."""
+    def joined(self, others: "RoomPatches") -> "RoomPatches":
+        """These and others."""
         return RoomPatches(**{name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in FIELDS})
 
     def __getitem__(self, index: np.ndarray) -> "RoomPatches":
@@ -82,3 +83,14 @@ def roulette(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray
     least = power.sum() / most
     kept = np.flatnonzero(power > least * luck)
     return kept, np.maximum(1.0, least / power[kept])
+
+
+def sampled_pairs(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Fewer than `most` pairs of powers (first, second) by `roulette`.
+
+    Returns:
+        Indices of first and second (pair,), and the amplitude (pair,) of all that each stands for.
+    """
+    pair, standing_for = roulette(power.ravel(), luck.ravel(), most)
+    first, second = np.unravel_index(pair, power.shape)
+    return first, second, np.sqrt(power.ravel()[pair] * standing_for)

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mmweaver.core.seeding import stream
+from mmweaver.geometry.rotations import unit
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
 from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.room_patches import RoomPatches, roulette
+from mmweaver.paths.room_patches import RoomPatches, roulette, sampled_pairs
 
 if TYPE_CHECKING:
     from mmweaver.paths.static_paths import RayTracedRoom
 
-MOST_OVER_FACES = 600  # patch-face paths of each order
-MOST_PATCHES, MOST_PAIRS = 200, 300  # patches whose pairs are looked at, and pairs of each order
+MAX_FACE_PATHS = 600  # patch-face paths of each order
+MAX_PATCHES, MAX_PAIRS = 200, 300  # patches whose pairs are looked at, and pairs of each order
 CLEAR_MARGIN_M = 0.06
 FACE_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
 NEAREST_M = 0.2  # between two patches: nearer ones are one surface
@@ -28,17 +29,17 @@ def room_room_paths(room: "RayTracedRoom") -> StaticPaths:
     """Both kinds, in both orders."""
     patches = room.patches
     luck = stream(room.micro_seed, "room", "pairs of patches")
-    return StaticPaths.cat([_over_faces(room, patches, luck), _between_patches(room, patches, luck)])
+    return StaticPaths.cat([_face_paths(room, patches, luck), _patch_paths(room, patches, luck)])
 
 
-def _over_faces(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
+def _face_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
     """Radar, patch, flat face, radar."""
-    found = [_over_face(room, patches, face) for face in room.reflectors]
+    found = [_face_amplitudes(room, patches, face) for face in room.reflectors]
     if not found or not len(patches):
         return _paths(room, np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, complex), np.zeros(0))
     amplitude, image_m, corner_m = (np.concatenate(parts) for parts in zip(*found, strict=True))
     power = np.abs(amplitude) ** 2
-    kept, standing_for = roulette(power, luck.random(len(power)), MOST_OVER_FACES)
+    kept, standing_for = roulette(power, luck.random(len(power)), MAX_FACE_PATHS)
     place_m = np.tile(patches.place_m, (len(found), 1))[kept]
     clear = room.is_clear(np.zeros(3), corner_m[kept], FACE_MARGIN_M)
     clear &= room.is_clear(corner_m[kept], place_m, FACE_MARGIN_M)
@@ -47,7 +48,7 @@ def _over_faces(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Gen
     return _paths(room, place_m, image_m[kept], corner_m[kept], size, np.zeros(len(kept)))
 
 
-def _over_face(
+def _face_amplitudes(
     room: "RayTracedRoom", patches: RoomPatches, face: SpecularReflector
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Amplitudes (patch,), and the patches' images in a face and where their rays meet it (patch, 3)."""
@@ -60,30 +61,29 @@ def _over_face(
     share = face.inside(corner_m, fresnel_radius_m(corner_distance, behind_m, config.wavelength_m))
     share = share * (np.asarray(face.side(place_m)) > FACE_MARGIN_M)
     coefficient = np.conj(face.coefficient(np.abs(to_corner @ face.plane.normal), config.centre_frequency_hz))
-    gains = pattern(_unit(place_m), config) * pattern(_unit(corner_m), config)
-    size = scatterer_gain(config) * gains * np.sqrt(patches.into(to_corner))
+    gains = pattern(unit(place_m), config) * pattern(unit(corner_m), config)
+    size = scatterer_gain(config) * gains * np.sqrt(patches.cross_sections(to_corner))
     size /= np.linalg.norm(place_m, axis=1) * image_distance
     return size * share * coefficient * patches.phase, image_m, corner_m
 
 
-def _between_patches(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
+def _patch_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
     """Radar, patch, another patch, radar."""
     config, distance = room.config, np.linalg.norm(patches.place_m, axis=1)
-    gain = pattern(_unit(patches.place_m), config)
+    gain = pattern(unit(patches.place_m), config)
     level = patches.cross_section_m2 * (gain / np.maximum(distance, 1e-3) ** 2) ** 2
-    chosen, standing_for = roulette(level, luck.random(len(level)), MOST_PATCHES)
+    chosen, standing_for = roulette(level, luck.random(len(level)), MAX_PATCHES)
     some, gain, distance = patches[chosen], gain[chosen], distance[chosen]
     leg = some.place_m - some.place_m[:, None]  # (from, to, 3)
     leg_m = np.linalg.norm(leg, axis=2)
     towards = leg / np.maximum(leg_m, 1e-9)[..., None]
-    power = some.into(towards.swapaxes(0, 1)).T * some.into(-towards) / (4 * np.pi)
+    power = some.cross_sections(towards.swapaxes(0, 1)).T * some.cross_sections(-towards) / (4 * np.pi)
     power *= scatterer_gain(config) ** 2 * np.outer(gain * standing_for**0.5, gain * standing_for**0.5) ** 2
     power /= (np.outer(distance, distance) * np.maximum(leg_m, NEAREST_M)) ** 2
-    power = np.triu(np.where(leg_m > NEAREST_M, power, 0.0), 1).ravel()
-    kept, again = roulette(power, luck.random(len(power)), MOST_PAIRS)
-    first, last = np.unravel_index(kept, leg_m.shape)
+    power = np.triu(np.where(leg_m > NEAREST_M, power, 0.0), 1)
+    first, last, size = sampled_pairs(power, luck.random(power.size), MAX_PAIRS)
     clear = room.is_clear(some.place_m[first], some.place_m[last], CLEAR_MARGIN_M)
-    first, last, size = first[clear], last[clear], np.sqrt(power[kept] * again)[clear]
+    first, last, size = first[clear], last[clear], size[clear]
     phase = some.phase[first] * some.phase[last]
     ends_m = some.place_m[first], some.place_m[last]
     return _paths(room, *ends_m, ends_m[1], size * phase, leg_m[first, last])
@@ -109,7 +109,3 @@ def _paths(
             )
         )
     return StaticPaths.cat(orders)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

@@ -42,14 +42,14 @@ class SkinEcho:
             return NEVER_SEEN_COS
         return max(1 / math.sqrt(1 + 2 * self.slope**2 * math.log(1e6)), NEVER_SEEN_COS)
 
-    def back(self, cos: np.ndarray) -> np.ndarray:
+    def monostatic(self, cos: np.ndarray) -> np.ndarray:
         """Straight back where the wave comes in under an angle of this cosine."""
-        return self.over(cos, cos, cos)
+        return self.bistatic(cos, cos, cos)
 
-    def over(self, cos_in: np.ndarray, cos_out: np.ndarray, cos_half: np.ndarray) -> np.ndarray:
+    def bistatic(self, cos_in: np.ndarray, cos_out: np.ndarray, cos_half: np.ndarray) -> np.ndarray:
         """From one direction to another; `cos_half` is between the normal and the direction half way between both.
 
-        Where skin shines on nobody (a cosine of 0 or less) it is 0. In and out may change places.
+        0 where a cosine is 0 or less: no return. Reciprocal: the two directions are interchangeable.
         """
         secant2 = 1 / np.clip(cos_half, 1e-3, 1.0) ** 2
         narrow = 1 / (2 * self.slope**2)

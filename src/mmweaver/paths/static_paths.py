@@ -1,6 +1,6 @@
 """The static paths of a room: diffuse surfaces, specular reflections and edges."""
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,11 +10,13 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Values
 from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.geometry.rotations import unit
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
-from mmweaver.paths.materials import MATERIALS, mean_reflectivity, transmission
+from mmweaver.paths.materials import MATERIALS, Material, mean_reflectivity, transmission
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
 from mmweaver.paths.room_patches import RoomPatches
 from mmweaver.paths.room_room_paths import room_room_paths
@@ -66,12 +68,15 @@ class _Struck:
     ) -> "_Struck":
         """Rays that meet faces of these indices."""
         corners = scene.vertices_m[scene.faces[face]].astype(float)
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+        normal = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
         return cls(
-            direction=direction, distance_m=distance, normal=normal, cos=np.abs((normal * direction).sum(axis=1)),
-            material=scene.face_material[face], solid_angle=solid_angle,
-        )  # fmt: skip
+            direction=direction,
+            distance_m=distance,
+            normal=normal,
+            cos=np.abs((normal * direction).sum(axis=1)),
+            material=scene.face_material[face],
+            solid_angle=solid_angle,
+        )
 
     def __getitem__(self, which: np.ndarray) -> "_Struck":
         return _Struck(**{name: getattr(self, name)[which] for name in self.__dataclass_fields__})
@@ -86,12 +91,14 @@ class _Struck:
         """(ray,) of perfectly diffuse patches, by Lambert's law."""
         return 4 * self.cos * self.distance_m**2 * self.solid_angle
 
-    def kinds(self, num_materials: int) -> Iterator[tuple[int, np.ndarray, str]]:
-        """Each material with its rays as a mask (ray,) and their polarisation: walls and floors are met apart."""
-        is_flat = np.abs(self.normal[:, 2]) > 0.7
-        for index in range(num_materials):
+    def share(self, names: tuple[str, ...], of_material: Callable[[Material, np.ndarray, str], Values]) -> np.ndarray:
+        """Shares of power (ray,), a function of the material, the cosine of incidence and the polarisation."""
+        is_flat, share = np.abs(self.normal[:, 2]) > 0.7, np.zeros(len(self.cos))
+        for index, name in enumerate(names):
             for flat, polarisation in ((True, "tm"), (False, "te")):
-                yield index, (self.material == index) & (is_flat == flat), polarisation
+                some = (self.material == index) & (is_flat == flat)
+                share[some] = of_material(MATERIALS[name], self.cos[some], polarisation)
+        return share
 
 
 class PreparedRoom:
@@ -112,7 +119,7 @@ class PreparedRoom:
         return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
 
     @property
-    def of_first_order(self) -> StaticPaths:
+    def first_order(self) -> StaticPaths:
         """The static paths of STATIC_KINDS, in their order."""
         return self.paths[: sum(self.counts.values())]
 
@@ -127,9 +134,7 @@ class PreparedRoom:
     @cached_property
     def vertex_directions(self) -> tuple[np.ndarray, np.ndarray]:
         """Unit vectors (path, 3) from the radar to the first and the last vertex of each static path."""
-        ends = self.paths.departure_vertex_m.numpy(), self.paths.arrival_vertex_m.numpy()
-        first, last = (one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-9) for one in ends)
-        return first, last
+        return unit(self.paths.departure_vertex_m.numpy()), unit(self.paths.arrival_vertex_m.numpy())
 
 
 class RayTracedRoom(PreparedRoom):
@@ -147,7 +152,7 @@ class RayTracedRoom(PreparedRoom):
         self.reflectors = specular_reflectors(
             scene.planes, rough=self.propagation.fine_roughness, hidden=self.propagation.hidden_faces
         )
-        paths = StaticPaths.cat([*self._diffuse(scene), self._specular(), self._edges(scene)])
+        paths = StaticPaths.cat([*self._diffuse(), self._specular(), self._edges()])
         super().__init__(config, self.reflectors, paths, self.propagation)
         if self.propagation.bounces > 1:
             self.paths = StaticPaths.cat([paths, room_room_paths(self)])
@@ -173,16 +178,16 @@ class RayTracedRoom(PreparedRoom):
         azimuth, height = azimuth[is_new], height[is_new]
         level = np.sqrt(1 - height**2)
         direction = np.stack([np.sin(azimuth) * level, np.cos(azimuth) * level, height], axis=1)
-        struck, _ = self._struck(self._scene, direction, np.full(len(direction), 4 * np.pi / is_new.size))
-        cross_section = struck.cross_section_m2 * self._diffuse_share(self._scene, struck)
+        struck, _ = self._struck(direction, np.full(len(direction), 4 * np.pi / is_new.size))
+        cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
         phase = np.exp(2j * np.pi * rng.random(len(cross_section)))
-        found = RoomPatches.of_surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
-        return self.patches.and_those(found.merged(rng))
+        found = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        return self.patches.joined(found.merged(rng))
 
     @cached_property
     def patches(self) -> RoomPatches:
         """What second bounces of the static paths are computed over."""
-        all_of_them = self._patches.and_those(self._edge_patches)
+        all_of_them = self._patches.joined(self._edge_patches)
         return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
@@ -192,7 +197,7 @@ class RayTracedRoom(PreparedRoom):
         end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
         return self.caster.is_clear(start, end, margin_m).reshape(shape[:-1])
 
-    def _diffuse(self, scene: Scene) -> list[StaticPaths]:
+    def _diffuse(self) -> list[StaticPaths]:
         """One path for each cell of a grid of rays: a patch that scatters by Lambert's law; and those behind walls."""
         rng = stream(self.micro_seed, "room", "diffuse")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
@@ -204,99 +209,96 @@ class RayTracedRoom(PreparedRoom):
         direction = np.stack(
             [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
         ).reshape(-1, 3)  # fmt: skip
-        struck, hit = self._struck(scene, direction, solid_angle)
-        cross_section = struck.cross_section_m2 * self._diffuse_share(scene, struck)
+        struck, hit = self._struck(direction, solid_angle)
+        cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
         phase = np.exp(2j * np.pi * cycles[hit])
-        self._patches = RoomPatches.of_surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        self._patches = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
         paths = [self._scattered(struck.place_m, cross_section, cycles[hit], Interaction.DIFFUSE)]
-        return [*paths, self._behind_walls(scene, struck)] if self.propagation.through_walls else paths
+        return [*paths, self._behind_walls(struck)] if self.propagation.through_walls else paths
 
-    def _struck(self, scene: Scene, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
+    def _struck(self, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
         """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
         distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
         hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        return _Struck.of(scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
+        return _Struck.of(self._scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
 
-    def _behind_walls(self, scene: Scene, struck: "_Struck") -> StaticPaths:
+    def _behind_walls(self, struck: "_Struck") -> StaticPaths:
         """Patches that rays meet behind the first thin wall, fainter by the way through it and back."""
-        names = np.array(scene.material_names)
+        names = np.array(self._scene.material_names)
         wall = struck[np.isin(names[struck.material], THIN)]
         distance, face = self.caster.first_hit(wall.place_m + SAME_WALL_M * wall.direction, wall.direction)
         distance += wall.distance_m + SAME_WALL_M
         hit = (face >= 0) & (distance < self.config.max_range_m)
         wall = wall[hit]
-        behind = _Struck.of(scene, wall.direction, distance[hit], face[hit], wall.solid_angle)
-        cross_section = behind.cross_section_m2 * self._diffuse_share(scene, behind) * self._passed(scene, wall) ** 2
+        behind = _Struck.of(self._scene, wall.direction, distance[hit], face[hit], wall.solid_angle)
+        cross_section = behind.cross_section_m2 * self._diffuse_share(behind) * self._passed(wall) ** 2
         cycles = stream(self.micro_seed, "room", "behind walls").random(len(cross_section))
         return self._scattered(behind.place_m, cross_section, cycles, Interaction.DIFFUSE)
 
-    def _passed(self, scene: Scene, wall: "_Struck") -> np.ndarray:
+    def _passed(self, wall: "_Struck") -> np.ndarray:
         """Share of the power (ray,) that passes a wall once."""
-        share = np.zeros(len(wall.cos))
-        for index, of, polarisation in wall.kinds(len(scene.material_names)):
-            material = MATERIALS[scene.material_names[index]]
-            each = [transmission(material, wall.cos[of], one, polarisation=polarisation) for one in self.frequencies_hz]
-            share[of] = np.mean(np.abs(each) ** 2, axis=0)
-        return share
 
-    def _diffuse_share(self, scene: Scene, struck: "_Struck") -> np.ndarray:
+        def passed(material: Material, cos: np.ndarray, polarisation: str) -> Values:
+            each = [transmission(material, cos, one, polarisation=polarisation) for one in self.frequencies_hz]
+            return np.mean(np.abs(each) ** 2, axis=0)
+
+        return wall.share(self._scene.material_names, passed)
+
+    def _diffuse_share(self, struck: "_Struck") -> np.ndarray:
         """Power of each patch that is not reflected as by a mirror: |S Gamma|^2 (effective roughness), or more."""
-        share = np.zeros(len(struck.cos))
-        for index, of, polarisation in struck.kinds(len(scene.material_names)):
-            material = MATERIALS[scene.material_names[index]]
-            part = material.scattering**2
+
+        def scattered(material: Material, cos: np.ndarray, polarisation: str) -> Values:
+            part: Values = np.float64(material.scattering**2)
             if self.propagation.fine_roughness:
-                part = part + (1 - part) * material.fine_loss(struck.cos[of], self.config.centre_frequency_hz)
-            share[of] = part * mean_reflectivity(material, struck.cos[of], self.frequencies_hz, polarisation)
-        return share
+                part = part + (1 - part) * material.fine_loss(cos, self.config.centre_frequency_hz)
+            return part * mean_reflectivity(material, cos, self.frequencies_hz, polarisation)
+
+        return struck.share(self._scene.material_names, scattered)
 
     def _specular(self) -> StaticPaths:
         """One path for each echo of each specular reflection that nothing blocks."""
-        tx, rx = np.asarray(self.config.tx_position_m), np.asarray(self.config.rx_position_m)
-        lengths, amplitudes, first, last = [], [], [], []
-        found = specular_paths(
-            self.reflectors, self.config.wavelength_m, self.config.centre_frequency_hz, self.propagation.slab_echoes
-        )
-        for path in found:
+        config, found = self.config, []
+        tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+        for path in specular_paths(
+            self.reflectors, config.wavelength_m, config.centre_frequency_hz, self.propagation.slab_echoes
+        ):
             stops = np.concatenate([np.zeros((1, 3)), path.corners_m, np.zeros((1, 3))])
-            if path.length_m / 2 > self.config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
+            if path.length_m / 2 > config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
                 continue
             image = tx @ path.rotation.T + path.shift_m
             length_m = np.linalg.norm(image[:, None] - rx[None], axis=-1)
-            ends = np.stack([stops[1], stops[-2]])
-            gains = pattern(ends / np.linalg.norm(ends, axis=1, keepdims=True), self.config)
-            level = specular_gain(self.config) * gains.prod() / path.length_m
+            gains = pattern(unit(stops[[1, -2]]), config)
+            level = specular_gain(config) * gains.prod() / path.length_m
             for coefficient, longer_m in path.echoes:
-                amplitudes.append(level * coefficient)
-                lengths.append(length_m + longer_m)
-                first.append(stops[1])
-                last.append(stops[-2])
+                found.append((level * coefficient, length_m + longer_m, stops[1], stops[-2]))
+        amplitude, length, first, last = zip(*found, strict=True) if found else ((), (), (), ())
         return StaticPaths.of(
-            np.array(amplitudes, complex), np.array(lengths).reshape(-1, len(tx), len(rx)),
-            np.array(first).reshape(-1, 3), np.array(last).reshape(-1, 3), Interaction.SPECULAR,
-        )  # fmt: skip
+            np.array(amplitude, complex),
+            np.array(length).reshape(-1, len(tx), len(rx)),
+            np.array(first).reshape(-1, 3),
+            np.array(last).reshape(-1, 3),
+            Interaction.SPECULAR,
+        )
 
-    def _edges(self, scene: Scene) -> StaticPaths:
+    def _edges(self) -> StaticPaths:
         """One path for each piece of rim or leg; sigma = k a L^2 |Gamma|^2 where it lies across the line of sight."""
-        edges = find_edges(scene, self.caster, straight=self.propagation.straight_edges)
+        edges = find_edges(self._scene, self.caster, straight=self.propagation.straight_edges)
         rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
-        reflectivity = np.array(
-            [
-                mean_reflectivity(MATERIALS[name], np.float64(1.0), self.frequencies_hz, "te")
-                for name in scene.material_names
-            ]
-        )
+        lobe = np.exp(-2 * (cos / EDGE_LOBE) ** 2)
+        materials = [MATERIALS[name] for name in self._scene.material_names]
+        frontal = np.float64(1.0)
+        reflectivity = np.array([mean_reflectivity(one, frontal, self.frequencies_hz, "te") for one in materials])
         wave_number = 2 * np.pi / self.config.wavelength_m
         cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * reflectivity[edges.material]
-        cross_section *= np.exp(-2 * (cos / EDGE_LOBE) ** 2)
+        cross_section *= lobe
         cycles = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
         place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
         # into other directions than straight back an edge scatters as if it were seen from the side
-        level = cross_section / np.exp(-2 * (cos[keep] / EDGE_LOBE) ** 2) * EDGE_LOBE
-        self._edge_patches = RoomPatches.of_edges(place_m, level, np.exp(2j * np.pi * cycles), edges.material[keep])
+        level = cross_section / lobe[keep] * EDGE_LOBE
+        self._edge_patches = RoomPatches.edges(place_m, level, np.exp(2j * np.pi * cycles), edges.material[keep])
         return self._scattered(place_m, cross_section, cycles, Interaction.EDGE)
 
     def _scattered(
@@ -304,7 +306,7 @@ class RayTracedRoom(PreparedRoom):
     ) -> StaticPaths:
         """Paths to scatterers (path, 3) and back, of cross section and phase (path,)."""
         distance = np.linalg.norm(place_m, axis=1)
-        gain = pattern(place_m / np.maximum(distance, 1e-9)[:, None], self.config) ** 2
+        gain = pattern(unit(place_m), self.config) ** 2
         amplitude = scatterer_gain(self.config) * gain * np.sqrt(cross_section_m2) / np.maximum(distance, 1e-3) ** 2
         return scattered_paths(place_m, amplitude * np.exp(2j * np.pi * cycles), kind, self.config)
 

@@ -12,7 +12,7 @@ import torch
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Plane
 from mmweaver.core.seeding import stream
-from mmweaver.paths.image_method import SpecularReflector, with_faces_before
+from mmweaver.paths.image_method import SpecularReflector, layered_faces
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
 from mmweaver.paths.static_paths import PreparedRoom, Propagation, scattered_paths
 
@@ -21,7 +21,7 @@ VECTORS = ("centre_m", "normal", "axis_u", "axis_v")
 
 def room_arrays(room: PreparedRoom) -> dict[str, np.ndarray]:
     """A room as numbers, without its reflectors' kinds and materials (`room_words`)."""
-    paths, specular = room.paths, room.paths.of_kind(Interaction.SPECULAR)
+    paths, specular = room.paths, room.paths.select(Interaction.SPECULAR)
     planes = [reflector.plane for reflector in room.reflectors]
     return {
         "count": np.array([room.counts[kind] for kind in STATIC_KINDS]),
@@ -62,11 +62,11 @@ def room_of(
         offset_m = float(plane.normal @ plane.centre_m)
         reflectors.append(SpecularReflector(plane=plane, offset_m=offset_m, is_rough=propagation.fine_roughness))
     if propagation.hidden_faces:
-        reflectors = with_faces_before(reflectors)
+        reflectors = layered_faces(reflectors)
     return PreparedRoom(config, reflectors, StaticPaths.cat(parts), propagation)
 
 
-def with_new_phases(room: PreparedRoom, seed: int) -> PreparedRoom:
+def resampled_phases(room: PreparedRoom, seed: int) -> PreparedRoom:
     """Another realization of the room: other phases of rough surfaces and edges, which geometry does not determine."""
     cycles = stream(seed, "room", "other phases").random(len(room.paths))
     cycles[room.paths.interaction.numpy() == int(Interaction.SPECULAR)] = 0.0

@@ -69,7 +69,7 @@ class TransmitElements:
         apart = values.unflatten(-1, (len(self._tx), -1))
         return _summed(self._into_tx, apart, -2).flatten(-2)
 
-    def of_pairs(self, values: Tensor) -> Tensor:
+    def pair_values(self, values: Tensor) -> Tensor:
         """Values (..., tx, rx) of physical transmitters -> of elements (..., element, rx)."""
         return values[..., self._tx, :] if self.is_coded else values
 
@@ -87,13 +87,6 @@ class TransmitElements:
             first = int((self._tx == transmitter).nonzero()[0, 0])
             mixed[:, :, first] = apart[self._tx][:, :, transmitter]
         return mixed.flatten(2).flatten(0, 1)
-
-    def with_weights(self, channels: np.ndarray) -> np.ndarray:
-        """Channel factors (tx, rx) -> (slot, rx): of simultaneous transmitters their weighted mean."""
-        if not self.is_coded:
-            return channels
-        share = np.abs(self._into_slots.numpy())
-        return (share @ channels[self._tx.numpy()] / share.sum(axis=1, keepdims=True)).astype(channels.dtype)
 
 
 def _summed(matrix: Tensor, values: Tensor, axis: int) -> Tensor:

@@ -19,8 +19,8 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import sha256_of
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.paths.background import agreeing_gain
-from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
 from mmweaver.training.device import ComputeDevice

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of
 
 STEEPEST = 8.0

@@ -15,8 +15,8 @@ from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.model_card import WEAVER, Figures

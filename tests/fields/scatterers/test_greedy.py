@@ -42,4 +42,4 @@ def test_beams_in_a_few_cells_find_what_beams_in_all_cells_do():
 
 
 def test_an_array_without_aperture_has_one_beam():
-    assert len(Beams.over(PointResponse(SMALL).axes(), 0).direction) == 1
+    assert len(Beams.covering(PointResponse(SMALL).axes(), 0).direction) == 1

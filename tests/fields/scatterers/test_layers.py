@@ -3,12 +3,10 @@ import torch
 
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.fields.scatterers.layers import (
-    Layers,
     compact,
     fit_static,
     static_cells,
     static_response,
-    static_values,
     strongest,
     subtract_static,
 )
@@ -42,21 +40,3 @@ def test_a_static_layer_is_recovered():
     assert np.allclose(found, static.numpy(), atol=1e-5)
     subtract_static(cells, found, at_rest)
     assert np.abs(cells).max() < 1e-4
-
-
-def test_parameters_are_counted():
-    response = PointResponse(SMALL)
-    gains = torch.ones(12, dtype=torch.complex64)
-    layers = Layers(points=some([[0.5, 0.0]]), static=torch.zeros(24, 12) + 0j, calibration=gains, noise_power=1.0)
-    assert layers.num_values(response) == 6 + 1
-    with_all = Layers(points=some([[0.5, 0.2]]), static=torch.ones(24, 12) + 0j, calibration=2 * gains, noise_power=1.0)
-    assert with_all.num_values(response) == 12 + 2 * 24 * 12 + 24 + 1
-
-
-def test_a_sparse_static_layer_costs_its_beams_and_their_mask():
-    mask = torch.zeros(64, 12, dtype=torch.bool)
-    mask[3, :5] = True
-    assert static_values(None, mask.numel()) == 2 * 64 * 12
-    assert static_values(mask, mask.numel()) == 2 * 5 + 64 * 12 / 32
-    assert static_values(~mask, mask.numel()) == 2 * 64 * 12  # cheaper without the marks
-    assert static_values(torch.ones_like(mask), mask.numel()) == 2 * 64 * 12

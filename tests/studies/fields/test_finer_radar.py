@@ -7,8 +7,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.fields.phase_centring import centred
-from mmweaver.fields.sampling import coordinates_on, finer_grid
 from mmweaver.metrics.cube_errors import nmse_db
 from studies.fields.finer_radar import (
     interpolated,
@@ -19,6 +17,8 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
+from studies.fields.phase_centring import centred
+from studies.fields.sampling import coordinates_on, finer_grid
 from tests.cubes import SMALL, point_adc
 
 

@@ -5,11 +5,11 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.dsp.points import point_cloud
-from mmweaver.fields.sampling import finer_grid
-from mmweaver.fields.scatterers.fitting import FitRecipe
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.field_signals import StudySignal
 from studies.fields.rendered_noise import DEFINITIONS, far_points, noise_row, noise_scores
+from studies.fields.sampling import finer_grid
+from studies.fields.scatterer_field import ScattererField
 from tests.fields.echoes import crowd
 
 
@@ -37,7 +37,7 @@ def test_points_of_another_frame_are_far():
 
 def test_noise_between_the_cells_is_refused():
     cube = crowd()
-    field = ScattererField.fit(cube, FitRecipe(num_points=5, stages=2))
+    field = ScattererField.fit(cube, BudgetedRecipe(num_points=5, stages=2))
     finer = field.cube(finer_grid(cube.grid, n_r=2.0))
     with pytest.raises(InputError, match="native cells"):
         field.with_noise(finer, seed=0)

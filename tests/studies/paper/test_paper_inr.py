@@ -5,7 +5,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.fields.sampling import finer_grid
+from studies.fields.sampling import finer_grid
 from studies.paper.paper_inr import (
     MODULATIONS_PER_FRAME,
     BaseInrField,

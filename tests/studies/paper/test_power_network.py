@@ -57,8 +57,8 @@ def test_the_signal_is_where_its_cells_are(scene: Scene):
 
 def test_a_cell_turns_from_frame_to_frame_as_from_chirp_to_chirp():
     """One scatterer that moves with its velocity: the phase advances by 4 pi v T / wavelength."""
-    from mmweaver.paths.cell_echoes import CellEchoes
-    from mmweaver.paths.random_phases import sample_cells
+    from mmweaver.paths.mean_scatterers import CellEchoes
+    from mmweaver.paths.speckle import sample_cells
 
     cell = torch.tensor([[[7, 8]]]).expand(3, 1, 2)
     speed = torch.tensor([0.0, 0.5]).expand(3, 1, 2)

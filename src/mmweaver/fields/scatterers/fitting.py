@@ -6,7 +6,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.fields.beams import beams_of
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.greedy import Greedy
 from mmweaver.fields.scatterers.layers import (
@@ -15,24 +14,19 @@ from mmweaver.fields.scatterers.layers import (
     fit_static,
     no_points,
     static_response,
-    static_values,
     strongest,
     subtract_static,
-    values_of_point,
 )
 from mmweaver.fields.scatterers.point_factors import PointFactors
 from mmweaver.fields.scatterers.refinement import Damping, refined_factors
 
 Array = np.ndarray
 
-DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
-LEAST_SHARE = (
-    0.05  # power of an antenna's echoes over that of the strongest, and of what was received in phase with them
-)
+# power of an antenna's echoes over that of the strongest, and of what was received in phase with them
+MIN_SHARE = 0.05
 CALIBRATED_EVERY = 4  # stages: gains change slowly
 NOISE_CELLS = 10_000  # of which the median tells the power of the noise
 LARGEST_GROUP = 160  # scatterers that are solved for together
-WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,13 +34,10 @@ class FitRecipe:
     """Budget and effort of a fit.
 
     `num_points` is shared by all frames, wherever points explain most energy. A new scatterer must explain at least
-    `least_gain` times the noise power of a cell, so frames of pure noise get none. `num_values` limits the parameters
-    of points, static layer and gains together; the static layer then keeps only the beams worth their parameters, and
-    points get the rest.
+    `least_gain` times the noise power of a cell, so frames of pure noise get none.
     """
 
     num_points: int
-    num_values: int | None = None
     with_static: bool = True
     with_calibration: bool = False
     stages: int = 30
@@ -59,41 +50,42 @@ class FitRecipe:
 def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
     """Layers that approximate the working frames `target` (frame, range, doppler, antenna) in least squares."""
     with torch.no_grad():
-        return _Fit(target, fit_window, recipe).run()
+        return Fit(target, fit_window, recipe).run()
 
 
-class _Fit:
+class Fit:
     """State of one fit; invariants: `received` = target / calibration - static, `residual` = received - points."""
 
     def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
         self.target, self.recipe = target.contiguous().numpy(), recipe
         self.response, self.axes = fit_window.response, fit_window.axes
-        self.to_beams = beams_of(fit_window.config).astype(np.complex64)
         self.greedy = Greedy.of(self.response, self.axes)
         self.calibration = np.ones(target.shape[-1], np.complex64)
         self.points = PointFactors.of(no_points(len(target)), self.response, self.axes)
         self.damping = Damping.fresh(len(target))
         self.static = np.zeros(self.target.shape[1::2], np.complex64)
         self.static_response = static_response(self.response, self.axes)
-        self.active_beams: Array | None = None  # (range, beam) of the static layer; None = all
         self.received, self.residual = self.target.copy(), self.target.copy()
         self.refinements = 0
-        self._update_static()
+        self.update_static()
 
     def run(self) -> Layers:
+        """The layers after all stages."""
         recipe = self.recipe
-        for stage in range(recipe.stages):
-            if recipe.num_values is not None and stage >= DENSE_SHARE * recipe.stages:
-                self.active_beams = self._worthwhile_beams()
-                self._update_static()
-            self._fill(round(self._most_points() * ((stage + 1) / recipe.stages) ** recipe.growth))
+        for stage in range(1, recipe.stages + 1):
+            self._fill(round(self.most_points(stage) * (stage / recipe.stages) ** recipe.growth))
             self._refine(1)
         self._refine(recipe.last_steps)
         return Layers(
-            points=compact(self.points.points()), static=torch.from_numpy(self.static),
-            calibration=torch.from_numpy(self.calibration), noise_power=self._noise_power(),
-            active_beams=None if self.active_beams is None else torch.from_numpy(self.active_beams),
-        )  # fmt: skip
+            points=compact(self.points.points()),
+            static=torch.from_numpy(self.static),
+            calibration=torch.from_numpy(self.calibration),
+            noise_power=self.noise_power(),
+        )
+
+    def most_points(self, stage: int) -> int:
+        """How many scatterers the fit may have after its last stage, as a stage knows it."""
+        return self.recipe.num_points
 
     @property
     def _num_points(self) -> int:
@@ -115,11 +107,11 @@ class _Fit:
         have = self._num_points
         if wanted <= have:
             return
-        least = self.recipe.least_gain * self._noise_power()
+        least = self.recipe.least_gain * self.noise_power()
         new = self.greedy.next_points(self.residual, count=wanted - have, least=least)
         before = self.points.counts().tolist()
         self.points = self.points.joined(new.frame, new.bins, new.direction, new.amplitude)
-        rest = _as_matrices(self.residual)
+        rest = _matrices(self.residual)
         for frame, (first, count) in enumerate(zip(before, self.points.counts().tolist(), strict=True)):
             if count > first:
                 rest[frame] -= self.points.rendered(frame, count, first)
@@ -128,44 +120,26 @@ class _Fit:
         if not self._num_points:
             return
         self.points = refined_factors(
-            self.points, _as_matrices(self.received), _as_matrices(self.residual), self.damping,
+            self.points, _matrices(self.received), _matrices(self.residual), self.damping,
             steps=steps, largest=LARGEST_GROUP,
         )  # fmt: skip
         self.refinements += 1
         if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
             self._calibrate()
-        self._update_static()
+        self.update_static()
 
-    def _update_static(self) -> None:
+    def update_static(self) -> None:
         """Moves the static part of the residual into the static layer."""
         if not self.recipe.with_static:
             return
         before = self.static
-        self.static = before + fit_static(self.residual, self.static_response)
-        if self.active_beams is not None:
-            self.static = (self.static @ self.to_beams.T * self.active_beams) @ self.to_beams.conj()
+        self.static = self.whole_static()
         for values in (self.received, self.residual):
             subtract_static(values, self.static - before, self.static_response)
 
-    def _worthwhile_beams(self) -> Array:
-        """Beams (range, beam) that explain more energy per parameter than a weak scatterer does."""
-        slow = float(self.response.doppler_kernel(self.axes.doppler_bin)[0].square().sum())
-        fast = float(self.response.range_kernel(torch.arange(-2.0, 3.0))[0].square().sum())
-        echo = np.abs(self.points.amplitude[self.points.amplitude != 0])
-        weak = float(np.quantile(np.square(echo), WEAK_SHARE)) if len(echo) else 0.0
-        weak *= len(self.calibration) * fast * slow
-        least = max(weak, self.recipe.least_gain * self._noise_power()) * 2 / values_of_point(self.response)
-        beams = (self.static + fit_static(self.residual, self.static_response)) @ self.to_beams.T
-        return np.square(np.abs(beams)) * (len(self.target) * slow) > least
-
-    def _most_points(self) -> int:
-        recipe = self.recipe
-        if recipe.num_values is None:
-            return recipe.num_points
-        active = None if self.active_beams is None else torch.from_numpy(self.active_beams)
-        static = static_values(active, self.static.size) if recipe.with_static else 0
-        gains = 2 * len(self.calibration) if recipe.with_calibration else 0
-        return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
+    def whole_static(self) -> Array:
+        """The static layer with what the residual holds of it."""
+        return self.static + fit_static(self.residual, self.static_response)
 
     def _calibrate(self) -> None:
         """Least-squares gain of each antenna; the mean gain stays 1. Antennas without echoes keep theirs."""
@@ -173,7 +147,7 @@ class _Fit:
         flat, received = (values.reshape(-1, values.shape[-1]) for values in (model, self.received))
         power = np.einsum("caq,caq->a", *(2 * [flat.view(np.float32).reshape(*flat.shape, 2)]))
         product = np.einsum("ca,ca->a", flat.conj(), received)
-        has_echo = (power > LEAST_SHARE * power.max()) & (np.abs(product) > LEAST_SHARE * power)
+        has_echo = (power > MIN_SHARE * power.max()) & (np.abs(product) > MIN_SHARE * power)
         if not has_echo.any():
             return
         gain = np.ones(len(power), np.complex64)
@@ -185,7 +159,7 @@ class _Fit:
         subtract_static(self.received, self.static, self.static_response)
         self.residual = self.received - model
 
-    def _noise_power(self) -> float:
+    def noise_power(self) -> float:
         """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
         some = self.residual.reshape(-1)[:: max(1, self.residual.size // NOISE_CELLS)]
         found = float(np.median(np.square(some.real) + np.square(some.imag))) / 0.6931
@@ -193,6 +167,6 @@ class _Fit:
         return found if most is None else min(found, most)
 
 
-def _as_matrices(values: Array) -> Array:
+def _matrices(values: Array) -> Array:
     """Complex (frame, range, doppler, antenna) -> real (frame, range, (doppler, antenna, part)), the same memory."""
     return values.view(np.float32).reshape(*values.shape[:2], -1)

@@ -26,7 +26,7 @@ class Beams:
     steer: Tensor
 
     @classmethod
-    def over(cls, axes: Axes, num_directions: int) -> "Beams":
+    def covering(cls, axes: Axes, num_directions: int) -> "Beams":
         """As dense as the aperture requires; a single zero cosine along a side the array cannot resolve."""
         sides = []
         for side in range(2):
@@ -69,7 +69,7 @@ class Greedy:
     @classmethod
     def of(cls, response: PointResponse, axes: Axes) -> "Greedy":
         """With beams as dense as the array resolves."""
-        return cls(axes=FactorAxes.of(response, axes), beams=Beams.over(axes, response.num_directions))
+        return cls(axes=FactorAxes.of(response, axes), beams=Beams.covering(axes, response.num_directions))
 
     @property
     def _kernels(self):
@@ -102,7 +102,7 @@ class Greedy:
 
     def _beam(self, residual: Array, cells: Array, power: Array, beam: Array) -> None:
         """Fills in the strongest beams of some cells."""
-        found = _at_cells(residual, cells, self.taps) @ self.beams.steer.numpy()
+        found = _matched_filter(residual, cells, self.taps) @ self.beams.steer.numpy()
         each = np.square(found.real) + np.square(found.imag)
         best = each.argmax(axis=1)
         power.flat[cells], beam.flat[cells] = each[np.arange(len(best)), best], best
@@ -129,7 +129,7 @@ class Greedy:
         ):  # fmt: skip
             offset = _offset(values, cells, steer, peak, index, stride, size)
             offsets.append(offset)
-            amplitude /= kernel.on_bins(0.0, 1, offset)[0, :, 0]
+            amplitude /= kernel.bin_values(0.0, 1, offset)[0, :, 0]
         bins = np.stack([self.axes.first_range + row + offsets[0], self.axes.first_doppler + column + offsets[1]])
         return NewPoints(
             frame=frame, bins=bins.astype(np.float32), direction=self.beams.direction.numpy()[beam.flat[cells]],
@@ -154,7 +154,7 @@ def _part(axis: int, own: slice) -> tuple[slice, ...]:
 
 
 def _taps(kernel) -> Array:
-    side, middle = kernel.on_bins(1.0, 1, np.zeros(1))[0, 0, 0], kernel.on_bins(0.0, 1, np.zeros(1))[0, 0, 0]
+    side, middle = kernel.bin_values(1.0, 1, np.zeros(1))[0, 0, 0], kernel.bin_values(0.0, 1, np.zeros(1))[0, 0, 0]
     taps = np.array([side, middle, side])
     return taps / np.float32(np.linalg.norm(taps))
 
@@ -167,7 +167,7 @@ def _along(values: Array, taps: Array, axis: int) -> Array:
     return out
 
 
-def _at_cells(residual: Array, cells: Array, taps: tuple[Array, Array]) -> Array:
+def _matched_filter(residual: Array, cells: Array, taps: tuple[Array, Array]) -> Array:
     """The matched filter of a residual at some cells, complex (cell, antenna)."""
     num_range, num_doppler, antennas = residual.shape[1:]
     rest, column = np.divmod(cells, num_doppler)

@@ -50,13 +50,13 @@ class PointFactors:
     steer: Array  # (frame, point, antenna) complex64
 
     @classmethod
-    def at(cls, axes: FactorAxes, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
+    def evaluate(cls, axes: FactorAxes, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
         """Factors of scatterers with these parameters."""
         response = axes.response
         return cls(
             axes=axes, bins=bins, direction=direction, amplitude=amplitude,
-            at_range=response.range_kernel.on_bins(axes.first_range, axes.num_range, bins[0]),
-            at_doppler=response.doppler_kernel.on_bins(axes.first_doppler, axes.num_doppler, bins[1]),
+            at_range=response.range_kernel.bin_values(axes.first_range, axes.num_range, bins[0]),
+            at_doppler=response.doppler_kernel.bin_values(axes.first_doppler, axes.num_doppler, bins[1]),
             steer=_steering(axes, bins, direction),
         )  # fmt: skip
 
@@ -65,7 +65,7 @@ class PointFactors:
         """Factors of scatterers (frame, point)."""
         bins = np.stack([points.range_bin.numpy(), points.doppler_bin.numpy()])
         own = FactorAxes.of(response, axes)
-        return cls.at(own, bins, points.direction.numpy(), points.amplitude.numpy())
+        return cls.evaluate(own, bins, points.direction.numpy(), points.amplitude.numpy())
 
     def points(self) -> Points:
         """The scatterers."""
@@ -90,14 +90,14 @@ class PointFactors:
         direction = self.direction + step[..., 2:4].clip(-largest_direction, largest_direction)
         amplitude = self.amplitude + step[..., 4] + np.complex64(1j) * step[..., 5]
         amplitude[self.amplitude == 0] = 0
-        return self.at(self.axes, bins, direction.clip(-1, 1), amplitude)
+        return self.evaluate(self.axes, bins, direction.clip(-1, 1), amplitude)
 
     def joined(self, frame: Array, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
         """With more scatterers (point,), sorted by frame, after those of their frames."""
         have, more = self.counts(), np.bincount(frame, minlength=self.amplitude.shape[0])
         slot = have[frame] + np.arange(len(frame)) - (np.cumsum(more) - more)[frame]
         kept, num = int(have.max(initial=0)), int((have + more).max(initial=0))
-        new = self.at(self.axes, bins[:, None], direction[None], amplitude[None])
+        new = self.evaluate(self.axes, bins[:, None], direction[None], amplitude[None])
         axes = {"bins": 2, "direction": 1, "amplitude": 1, "at_range": 2, "at_doppler": 2, "steer": 1}
         out = {}
         for name, axis in axes.items():

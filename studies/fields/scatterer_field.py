@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 import torch
-from jaxtyping import Complex
 from torch import Tensor
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
@@ -21,28 +20,35 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.dsp.windows import doppler_window, doppler_window_middle
-from mmweaver.fields.field import SignalField
-from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
-from mmweaver.fields.scatterers.cell_noise import cell_noise
+from mmweaver.fields.scatterers.cell_noise import MIXED_POWER, cell_noise, num_sampled_bins, range_bins
 from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.interpolation import interpolate, interpolate_rows
 from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
+from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values
+from studies.fields.sampling import coordinates_on
+from studies.fields.signal_field import SignalField
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
 STATIC_POINTS = 200  # scatterers that replace the static layer for another radar
-SAMPLES_AT_ONCE = 1 << 14
 
 
 class ScattererField(SignalField):
     """Points and static layer (`layers`), their working frames (`fit_window`), and the amplitude of 1.0 (`peak`)."""
 
-    def __init__(self, layers: Layers, fit_window: FitWindow, grid: CubeGrid, scale: float, peak: float):
-        self.layers, self.fit_window = layers, fit_window
+    def __init__(
+        self,
+        layers: Layers,
+        fit_window: FitWindow,
+        grid: CubeGrid,
+        scale: float,
+        peak: float,
+        active_beams: np.ndarray | None = None,
+    ):
+        self.layers, self.fit_window, self.active_beams = layers, fit_window, active_beams
         self.config, self.grid, self.scale, self.peak = fit_window.config, grid, scale, peak
 
     @classmethod
-    def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
+    def fit(cls, cube: RadarCube, recipe: BudgetedRecipe | None = None) -> "ScattererField":
         """Fits scatterers to a cube. Raises InputError where the cube is all zeros or not finite.
 
         Without a recipe: 83 points per frame and a static layer.
@@ -55,12 +61,15 @@ class ScattererField(SignalField):
             raise InputError("the cube is all zeros: there is nothing to fit")
         fit_window = FitWindow.of(cube.config, len(values), overlap_hop(cube))
         working = fit_window.working(values / np.float32(peak))
-        recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
-        return cls(fitted(working, fit_window, recipe), fit_window, cube.grid, cube.scale, peak)
+        recipe = recipe or BudgetedRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
+        with torch.no_grad():
+            fit = BudgetedFit(working, fit_window, recipe)
+            layers = fit.run()
+        return cls(layers, fit_window, cube.grid, cube.scale, peak, fit.active_beams)
 
     @property
     def num_values(self) -> int:
-        return self.layers.num_values(self.fit_window.response)
+        return num_values(self.layers, self.active_beams, self.fit_window.response)
 
     def native(self, threads: int = 1) -> CubeValues:
         """Values on the native grid, complex64 (frame, range, doppler, antenna); frames are divided among `threads`."""
@@ -107,16 +116,6 @@ class ScattererField(SignalField):
             cells += static[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
             return (cells * gains * response.phasor(axes) * self.peak).numpy()
 
-    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
-        """Values at any coordinates (point, 4), complex64; see `SignalField`."""
-        out = np.empty(len(coordinates), np.complex64)
-        for frame in np.unique(coordinates[:, 0]):
-            at = np.flatnonzero(coordinates[:, 0] == frame)
-            for first in range(0, len(at), SAMPLES_AT_ONCE):
-                part = at[first : first + SAMPLES_AT_ONCE]
-                out[part] = self._scattered(coordinates[part], frame)
-        return out
-
     def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
         """A rendered cube plus receiver noise of the fitted power: white before windowing, so neighbours correlate.
 
@@ -128,7 +127,8 @@ class ScattererField(SignalField):
             raise InputError(
                 f"noise is known on the native cells, {self.grid.shape}, not on {shape}; render with cube()"
             )
-        noise = cell_noise(stream(seed, "scatterer field noise"), config, shape[0], self.fit_window.hop)
+        rng, hop = stream(seed, "scatterer field noise"), self.fit_window.hop
+        noise = noise_of_shared_loops(rng, config, shape[0], hop) if hop else cell_noise(rng, config, shape[0])
         noise *= np.float32(self.peak * math.sqrt(self._cell_noise()))
         noise += cube.values
         return replace(cube, values=noise)
@@ -168,27 +168,6 @@ class ScattererField(SignalField):
         return _propagated(
             self.layers.points[torch.from_numpy(index)], self.fit_window.response, response, torch.from_numpy(late_s)
         )
-
-    def _scattered(self, coordinates: np.ndarray, frame: float) -> np.ndarray:
-        """Values (point,) of one frame, cell by cell."""
-        response = PointResponse(self.config)
-        grid = self.grid
-        position_m = antenna_at(grid.antenna_position_m, coordinates[:, 3])
-        cells = replace(
-            grid,
-            range_m=_along(grid.range_m, coordinates[:, 1]),
-            radial_velocity_mps=_along(grid.radial_velocity_mps, coordinates[:, 2]),
-            antenna_position_m=position_m,
-        )
-        axes = response.axes(cells)
-        with torch.inference_mode():
-            points = self._at(np.array([frame]), response)
-            total = response.at_cells(points, axes)[0]
-            static = interpolate(self.layers.static, coordinates[:, 1], is_signal=True)
-            static = interpolate_rows(static, coordinates[:, 3])
-            total += static * response.doppler_kernel(axes.doppler_bin)[0]
-            total *= interpolate(self.layers.calibration, coordinates[:, 3])
-            return (total * response.phasor_at_cells(axes) * self.peak).numpy()
 
     def _static_points(self) -> Points:
         """The static layer as points (1, point)."""
@@ -257,6 +236,19 @@ def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
     return time_s / (own_s[1] - own_s[0]) if len(own_s) > 1 else np.zeros(len(time_s))
 
 
-def _along(axis: np.ndarray, cell: np.ndarray) -> np.ndarray:
-    step = axis[1] - axis[0] if len(axis) > 1 else 0.0
-    return axis[0] + cell * step
+def interpolate(values: Tensor, cell: np.ndarray, *, is_signal: bool = False) -> Tensor:
+    """Values (cell, ...) at fractional cells: linear, or band-limited (sinc) for a centred signal along range."""
+    distance = torch.from_numpy(np.asarray(cell, np.float64))[:, None] - torch.arange(len(values))
+    weight = torch.sinc(distance) if is_signal else (1 - distance.abs()).clamp(min=0)
+    return (weight.to(values.dtype) @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:])
+
+
+def noise_of_shared_loops(rng: np.random.Generator, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
+    """As `cell_noise`, of frames `hop` loops apart, which share the noise of their chirps."""
+    loops = config.num_loops
+    shape = (num_sampled_bins(config), loops + hop * (num_frames - 1), 2 * config.num_antennas)
+    lines = np.ascontiguousarray(range_bins(rng.standard_normal(shape, dtype=np.float32), config)).view(np.complex64)
+    window = doppler_window(loops)
+    window = (window / np.sqrt(2 * MIXED_POWER * np.sum(window**2))).astype(np.float32)
+    cut = np.stack([lines[:, hop * at :][:, :loops] for at in range(num_frames)])
+    return np.fft.fft(cut * window[:, None], axis=2).astype(np.complex64)

@@ -20,27 +20,27 @@ from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_second_order import second_order_paths
+from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.apparent_paths import static_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.image_sources import static_points
 from mmweaver.paths.mean_power import MeanPower
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
-from mmweaver.paths.random_phases import (
+from mmweaver.paths.receiver import quantise
+from mmweaver.paths.speckle import (
     place_of,
     sample_moving,
     sample_moving_segments,
     sample_static,
     strongest_first,
 )
-from mmweaver.paths.receiver import quantise
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20
@@ -87,7 +87,7 @@ class LearnedRoom:
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
             if self.board is not None:
-                self.static = self.board.on_static(self.static)
+                self.static = self.board.recorded_static(self.static)
             if background is not None:
                 check_recording(background, self.nominal)
                 expected = self.radar.maps(static_points(self.static, self.radar.response)).range_azimuth
@@ -219,11 +219,11 @@ class LearnedRoom:
             grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
             frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
             if self.board is not None:
-                paths = replace(paths, moving=self.board.on_moving(paths.moving, frames, seed))
+                paths = replace(paths, moving=self.board.recorded_moving(paths.moving, frames, seed))
                 drift = torch.from_numpy(self.board.drift(frames, seed)).to(torch.complex64)
                 layer = layer + drift[:, None, None] * self._layer_rate
             part = (first_frame,) if first_frame else ()
-            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded), 0)
+            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded))
             noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()

@@ -10,15 +10,16 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.geometry.rotations import unit
 from mmweaver.paths import antenna
 from mmweaver.paths.antenna import pattern
 from mmweaver.paths.body_model import body_of
 from mmweaver.paths.body_paths import BodyPaths
-from mmweaver.paths.body_room_paths import BOARD_AREA_M2, BOARD_REFLECTIVITY, unit
 from mmweaver.paths.paths import Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.room_patches import roulette
+from mmweaver.paths.second_order import BOARD_AREA_M2, BOARD_REFLECTIVITY
 from mmweaver.paths.skin_scattering import LAMBERT
 from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, plane, scene_of, standing_person
@@ -114,14 +115,14 @@ def test_lengths_follow_the_body_over_the_room():
     for frame in range(2):
         pairs, second = found.second.pairs[frame], found.second
         (paths,) = (of_kind(one, Interaction.BODY_ROOM) for one in found.paths(frame))
-        assert len(paths) == len(pairs.patch) > 10
+        assert len(paths) == len(pairs.second) > 10
         body = second._members[frame] @ found.posed.place_m[frame]
-        place = second.patches.place_m[pairs.patch]
-        legs = np.linalg.norm(body[pairs.part], axis=1), np.linalg.norm(body[pairs.part] - place, axis=1)
+        place = second.patches.place_m[pairs.second]
+        legs = np.linalg.norm(body[pairs.first], axis=1), np.linalg.norm(body[pairs.first] - place, axis=1)
         expected_m = legs[0] + legs[1] + np.linalg.norm(place, axis=1)
         assert np.allclose(paths.length_m.numpy(), expected_m, atol=1e-6)
         velocity = np.array([0.3, -1.0, 0.0])
-        rate = (body[pairs.part] / legs[0][:, None] + (body[pairs.part] - place) / legs[1][:, None]) @ velocity
+        rate = (body[pairs.first] / legs[0][:, None] + (body[pairs.first] - place) / legs[1][:, None]) @ velocity
         assert np.allclose(paths.rate_mps.numpy(), rate, atol=1e-3)
         assert paths.is_reciprocal.all()
         assert np.allclose(paths.arrival.direction.numpy(), place / np.linalg.norm(place, axis=1)[:, None], atol=1e-9)
@@ -156,11 +157,11 @@ def power_of_all_skin(of: BodyPaths) -> float:
         leg_m = np.maximum(np.linalg.norm(leg, axis=1), 0.15)
         out, back = leg / leg_m[:, None], -skin_m / np.linalg.norm(skin_m)
         half = (out + back) / np.linalg.norm(out + back, axis=1)[:, None]
-        sigma = body.echo.over(np.full(len(leg), back @ normal), out @ normal, half @ normal)
+        sigma = body.echo.bistatic(np.full(len(leg), back @ normal), out @ normal, half @ normal)
         sigma = sigma * body.area_m2 * body.brightness[point]
         gains = pattern(-back[None], of.config) * pattern(unit(patches.place_m), of.config)
         ways_m = np.linalg.norm(skin_m) * leg_m * np.linalg.norm(patches.place_m, axis=1)
-        total += ((of.gain * gains / ways_m) ** 2 * sigma * patches.into(-out)).sum() / (4 * np.pi)
+        total += ((of.gain * gains / ways_m) ** 2 * sigma * patches.cross_sections(-out)).sum() / (4 * np.pi)
     return float(total)
 
 
@@ -205,7 +206,7 @@ def test_a_roulette_keeps_the_mean_power_and_the_strong_ones():
 
 def test_room_room_paths_come_in_both_orders():
     room = Simulator(scene_of((floor(), back_wall())), AWR1843, IDEAL).room
-    paths = room.paths.of_kind(Interaction.ROOM_ROOM)
+    paths = room.paths.select(Interaction.ROOM_ROOM)
     count = len(paths)
     assert count > 20
     departures = {tuple(row) for row in np.round(paths.departure_vertex_m.numpy(), 5)}

@@ -90,7 +90,7 @@ def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.nd
     return asked[blocked]
 
 
-class SeenBody:
+class VisibleBody:
     """One person in one room. Without a ray, as here, all skin that faces the radar is visible."""
 
     def __init__(self, room: PreparedRoom, body: ScatteringBody, posed: BodyAtFrames):
@@ -111,7 +111,7 @@ class SeenBody:
     @cached_property
     def direct(self) -> np.ndarray:
         """Amplitudes (frame, point) of direct echoes, were all skin visible, complex, in sqrt(mW)."""
-        cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
+        cross_section = self.body.echo.monostatic(self.cos) * self.body.area_m2 * self.body.brightness
         level = self.gain * self.pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return level * self.body.micro_phase
 

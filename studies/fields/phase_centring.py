@@ -17,7 +17,7 @@ from jaxtyping import Complex
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
-from mmweaver.fields.sampling import Coordinates
+from studies.fields.sampling import Coordinates
 
 
 def centring_phasor(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:

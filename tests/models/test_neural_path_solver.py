@@ -11,17 +11,17 @@ from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.given_room import GivenRoom
-from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.paths.adc_synthesis import phasor
 from mmweaver.paths.body_model import body_of
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, Paths
-from mmweaver.paths.random_phases import sample_moving, sample_moving_segments
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.speckle import sample_moving, sample_moving_segments
 from mmweaver.paths.static_paths import FIRST_ORDER
 from mmweaver.scene.procedural.procedural_room import make_room
 from tests.rooms import back_wall, floor, scene_of, standing_person
@@ -118,7 +118,7 @@ def test_samples_give_the_cube_again_and_the_cube_does_not_depend_on_them(room: 
 
 
 def test_noise_of_samples_is_white_and_has_the_cells_that_were_asked_for(room: LearnedRoom):
-    cells = cell_noise(np.random.default_rng(0), AWR1843, 3, 0) * np.float32(np.sqrt(room.noise_power))
+    cells = cell_noise(np.random.default_rng(0), AWR1843, 3) * np.float32(np.sqrt(room.noise_power))
     cells *= tdm_compensation(AWR1843)
     samples = room._sample_noise(cells, 0, 1)
     assert _error_db(cube_values(samples, AWR1843), cells) < -90

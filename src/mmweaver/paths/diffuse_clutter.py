@@ -29,7 +29,7 @@ SHAPE = 0.5  # of the gamma distribution; smaller is spikier
 AZIMUTH_RAD, ASIDE_M, ELEVATION_RAD = np.radians(75.0), 5.0, np.radians(40.0)
 
 
-def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
+def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     """The patches of one room and radar, by the room's seed."""
     rng = stream(micro_seed, "room", "unresolved clutter")
     count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))

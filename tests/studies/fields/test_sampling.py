@@ -4,7 +4,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
-from mmweaver.fields.sampling import antenna_at, antenna_coordinate, coordinates_on, finer_grid, sampled_grid
+from studies.fields.sampling import antenna_at, antenna_coordinate, coordinates_on, finer_grid, sampled_grid
 
 NATIVE = CubeGrid.of(AWR1843, 3)
 

@@ -2,15 +2,10 @@
 
 from abc import ABC, abstractmethod
 
-import numpy as np
-from jaxtyping import Complex
-
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.fields.sampling import Coordinates, coordinates_on, finer_grid
-
-CHUNK_POINTS = 1 << 18
+from studies.fields.sampling import finer_grid
 
 
 class SignalField(ABC):
@@ -32,23 +27,11 @@ class SignalField(ABC):
         """Number of real parameters stored for this sequence (a complex number counts twice)."""
 
     @abstractmethod
-    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
-        """Values at any coordinates (point, 4), complex64."""
-
     def on_grid(self, grid: CubeGrid) -> CubeValues:
         """Values at the cells of any grid, complex64 (frame, range, doppler, antenna).
 
-        Raises InputError where an antenna of the grid lies off the line through the field's antennas. Fields with a
-        faster way than point by point override this.
+        Raises InputError where an antenna of the grid lies off the line through the field's antennas.
         """
-        axes = coordinates_on(self.grid, grid)
-        values = np.empty(grid.shape, np.complex64)
-        flat = values.reshape(-1)
-        for first in range(0, flat.size, CHUNK_POINTS):
-            index = np.unravel_index(np.arange(first, min(first + CHUNK_POINTS, flat.size)), grid.shape)
-            points = np.stack([axis[at] for axis, at in zip(axes, index, strict=True)], axis=1)
-            flat[first : first + CHUNK_POINTS] = self.sample(points)
-        return values
 
     def cube(self, grid: CubeGrid | None = None) -> RadarCube:
         """The field as a RadarCube, on its native grid or on another."""

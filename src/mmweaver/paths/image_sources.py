@@ -1,15 +1,10 @@
 """Paths as points in the cells of a radar: where each appears, and how strong it is."""
 
-from dataclasses import replace
-
 import numpy as np
 import torch
 from torch import Tensor
 
 from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.dsp.windows import doppler_window_middle
-from mmweaver.paths.fast_time import phasor
-from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, StaticPaths
 
 
@@ -39,15 +34,6 @@ def moving_points(paths: Paths, response: PointResponse) -> Points:
     both = 2 + 2 * _agreement(paths, response)
     power = paths.amplitude.abs().square() * torch.where(paths.is_reciprocal, both, torch.ones_like(both))
     return _points(paths.length_m / 2, paths.rate_mps / 2, towards, power.sqrt(), response)
-
-
-def signal_points(paths: Paths, clock: FrameClock, response: PointResponse) -> Points:
-    """Direct moving paths (frame, path) of frames of one segment as points of complex amplitude, in centred phase."""
-    config = response.config
-    middle_loop_s = clock.chirp_s.min() + doppler_window_middle(config.num_loops) * config.loop_period_s
-    length_m = paths.length_m + (middle_loop_s - clock.middle_s[0]) * paths.rate_mps
-    points = _points(length_m / 2, paths.rate_mps / 2, paths.departure.direction, paths.amplitude.abs(), response)
-    return replace(points, amplitude=paths.amplitude * phasor(length_m / config.wavelength_m))
 
 
 def _agreement(paths: Paths, response: PointResponse) -> Tensor:

@@ -8,10 +8,10 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.exact import exact_frame
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
-from mmweaver.paths.seen_body import motion_through
+from mmweaver.paths.reference_sum import exact_frame
 from mmweaver.paths.static_paths import scattered_paths
+from mmweaver.paths.visible_body import motion_through
 
 
 def moving_points(count: int, speed_mps: float, acceleration_mps2: float, seed: int = 0):

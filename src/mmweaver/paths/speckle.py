@@ -17,8 +17,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.point_response import PointResponse
-from mmweaver.paths.cell_echoes import CellEchoes
-from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.paths.radar_equation import carrier, points_of
 from mmweaver.paths.static_paths import scattered_paths

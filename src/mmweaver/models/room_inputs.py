@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.diffuse_clutter import diffuse_clutter, seed_of_room
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
-from mmweaver.paths.unresolved_clutter import seed_of_room, unresolved_clutter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ class GivenRoom:
     ) -> "GivenRoom":
         """Of a scene. `seed`: another one has other phases and other clutter."""
         traced = RayTracedRoom(scene, config, seed, propagation)
-        others = [traced.paths.of_kind(Interaction.ROOM_ROOM)]
+        others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:
-            others.append(unresolved_clutter(config, seed_of_room(scene) + seed))
+            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
         return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

@@ -9,21 +9,21 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.stages import Stages
 from mmweaver.methods import Learned, Physics, with_propagation
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.paths import Interaction
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import IDEAL
-from mmweaver.paths.static_paths import Propagation
-from mmweaver.paths.unresolved_clutter import (
+from mmweaver.paths.diffuse_clutter import (
     ASIDE_M,
     AT_M,
     AZIMUTH_RAD,
     LEVELS_DB,
     NEAREST_M,
     SQUARE_METRES_A_METRE,
+    diffuse_clutter,
     room_level,
     seed_of_room,
-    unresolved_clutter,
 )
+from mmweaver.paths.paths import Interaction
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import IDEAL
+from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, scene_of
 
 
@@ -32,7 +32,7 @@ def test_as_much_comes_back_from_every_metre_as_was_recorded():
     stated = SQUARE_METRES_A_METRE * (scatterer_gain(AWR1843) / AT_M**2) ** 2
     profiles = []
     for seed in range(20):
-        paths = unresolved_clutter(AWR1843, seed)
+        paths = diffuse_clutter(AWR1843, seed)
         range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
         profiles.append(np.histogram(range_m, np.arange(1.0, 7.1), weights=np.abs(paths.amplitude.numpy()) ** 2)[0])
         profiles[-1] = profiles[-1] / room_level(seed)
@@ -45,7 +45,7 @@ def test_as_much_comes_back_from_every_metre_as_was_recorded():
 def test_as_much_comes_back_from_the_sides_as_from_ahead_but_not_from_beyond_five_metres():
     power, across = np.zeros(4), np.linspace(0, np.sin(AZIMUTH_RAD), 5)
     for seed in range(8):
-        paths = unresolved_clutter(AWR1843, seed)
+        paths = diffuse_clutter(AWR1843, seed)
         place_m, each = paths.departure_vertex_m.numpy(), np.abs(paths.amplitude.numpy()) ** 2 / room_level(seed)
         assert np.abs(place_m[:, 0]).max() < ASIDE_M
         near = np.linalg.norm(place_m, axis=1) < ASIDE_M
@@ -56,7 +56,7 @@ def test_as_much_comes_back_from_the_sides_as_from_ahead_but_not_from_beyond_fiv
 
 def test_amplitudes_are_spikier_than_a_gaussian_sum():
     """A gamma distribution with shape 0.5 has a variance of two means squared."""
-    paths = unresolved_clutter(AWR1843, 0)
+    paths = diffuse_clutter(AWR1843, 0)
     range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
     near = (range_m > 1) & (range_m < 8)
     ahead = near & (np.abs(paths.departure_vertex_m.numpy()[:, 0]) < 0.2 * range_m)
