@@ -14,11 +14,11 @@ from mmweaver.core.records import RadarCube
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.metrics.scorecard import scorecard
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.scores.scorecard import scorecard
 from studies.study import Reads
 
 EXPERIMENT = "field_fidelity"

@@ -35,10 +35,6 @@ from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.metrics.baselines import BASELINES
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import nmse_db
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.paths.receiver import IDEAL
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room
@@ -54,6 +50,8 @@ from studies.fields.finer_radar import (
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows
+from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
+from studies.scores.scorecard import METRICS, scorecard
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
 RADII = (1, 2, 3, 4, 5, 6, 7)

@@ -27,7 +27,6 @@ from torch import nn
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.power_network import PowerNetwork
@@ -48,6 +47,7 @@ from studies.network.ablation_variants import HYPERNETWORK, VARIANTS, WHOLE, Abl
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, Representations
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db")

@@ -36,7 +36,6 @@ from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence, pose_of
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
@@ -52,6 +51,7 @@ from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 COLUMNS = (
@@ -250,7 +250,7 @@ def _columns(values: dict[str, float]) -> dict[str, float]:
 
 
 def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
-    from mmweaver.metrics.baselines import BASELINES
+    from studies.scores.cube_scores import BASELINES
 
     return BASELINES[name](truth)
 

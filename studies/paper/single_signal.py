@@ -15,7 +15,6 @@ from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.phase_centring import centred
-from mmweaver.metrics.cells import Cells, cells_of
 from studies.paper.paper_inr import (
     ACTIVATIONS,
     BaseInrField,
@@ -25,6 +24,7 @@ from studies.paper.paper_inr import (
     fresh_modulation,
 )
 from studies.paper.positional_encoding import OCTAVES, harmonics, normalised
+from studies.scores.cube_scores import Cells, cells_of
 
 
 @dataclass(frozen=True, kw_only=True)

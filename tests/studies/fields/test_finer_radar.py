@@ -9,7 +9,6 @@ from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
 from mmweaver.fields.phase_centring import centred
 from mmweaver.fields.sampling import coordinates_on, finer_grid
-from mmweaver.metrics.cube_errors import nmse_db
 from studies.fields.finer_radar import (
     interpolated,
     middle_delay_s,
@@ -19,6 +18,7 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
+from studies.scores.cube_scores import nmse_db
 from tests.cubes import SMALL, point_adc
 
 
