@@ -34,7 +34,7 @@ def test_the_files(comparison, tmp_path: Path):
     assert "<script" not in page
     assert "&lt;script&gt;" in page
     assert "http" not in page.replace("http-equiv", "")
-    assert "cannot be seen here: the range window is cut" in page
+    assert "cannot be seen, the range window is cut" in page
     with pytest.raises(InputError, match="--overwrite"):
         comparison.save(tmp_path / "out")
     comparison.save(tmp_path / "out", overwrite=True)

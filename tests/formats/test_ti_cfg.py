@@ -9,7 +9,7 @@ from mmweaver.core.antenna_tables import AOP, BOOST_1642, ISK, ODS, AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.core.virtual_array import azimuth_row, has_elevation
-from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order
+from mmweaver.formats.ti_cfg import read_ti_cfg
 
 # TI's best range resolution profile for three transmitters, the elevated one last.
 BEST_RANGE = """
@@ -49,7 +49,7 @@ def test_the_best_range_profile(tmp_path: Path):
     assert (config.first_range_bin, config.num_range_bins) == (0, 256)  # all of it
     assert config.range_m[-1] == pytest.approx(11.11, abs=0.01)
     assert has_elevation(config)
-    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "qi"
+    assert read_ti_cfg(tmp_path / "best_range.cfg").lvds_iq_order == "qi"
 
 
 def test_an_iwr1443_profile_with_two_transmitters(tmp_path: Path):
@@ -67,7 +67,7 @@ def test_an_iwr1443_profile_with_two_transmitters(tmp_path: Path):
     assert steps == pytest.approx(np.ones(7))
     assert not has_elevation(config)
     assert config.frame_period_s == pytest.approx(0.033333)
-    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "iq"
+    assert read_ti_cfg(tmp_path / "best_range.cfg").lvds_iq_order == "iq"
 
 
 def test_a_60_ghz_profile_real_samples_and_fewer_receivers(tmp_path: Path):

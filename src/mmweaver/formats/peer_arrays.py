@@ -8,6 +8,7 @@ mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of frames. RF-Gene
 (frame, tx, rx, loop, sample).
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +23,6 @@ from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.formats.dca1000 import by_transmitter
 from mmweaver.formats.raw_npy import MAX_SAMPLE, read_adc_npy
 
-LAYOUTS = ("hupr", "mmmesh", "rf_genesis", "cubelearn")
 HUPR_SHAPE = (16, 64, 64, 8)
 HUPR_ANTENNAS = (3, 4)
 ADC_SHAPE = (3, 4, 128, 256)
@@ -132,3 +132,12 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     if energy - np.sum(np.abs(out) ** 2) > MAX_RESIDUAL * energy:
         raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
+
+
+# project: reader of its arrays, (path, radar) -> samples or cube
+LAYOUTS: dict[str, Callable[[Path, RadarConfig], AdcCube | RadarCube]] = {
+    "hupr": read_hupr,
+    "mmmesh": read_mmmesh,
+    "rf_genesis": read_rf_genesis,
+    "cubelearn": read_cubelearn,
+}

@@ -67,11 +67,6 @@ def radar_of_lines(
         raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
 
 
-def read_ti_cfg_iq_order(path: Path | str) -> str:
-    """The I/Q order of a recording with this .cfg, "iq" or "qi", from adcbufCfg's SampleSwap ("iq" without it)."""
-    return _iq_order(ti_cfg_lines(Path(path)))
-
-
 def refuse_headers(name: str) -> None:
     """Raises InputError where a .cfg (options may follow its name) puts HSI headers between the recorded samples."""
     path = Path(split_radar(name)[0])
