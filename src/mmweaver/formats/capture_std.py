@@ -9,7 +9,7 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
-from mmweaver.formats.ti_cfg import read_ti_cfg, refuse_headers, ti_cfg_lines, whole
+from mmweaver.formats.ti_cfg import read_ti_cfg, refuse_headers, ti_cfg_lines
 
 PACKETS, RADAR = "dca.pcap", "radar.cfg"
 
@@ -54,7 +54,7 @@ def read_radar_capture(path: Path | str, frames: slice = slice(None)) -> RadarCa
         raise InputError(f"{folder} holds {PACKETS} but no {RADAR}; put the .cfg of the recording there")
     config = read_ti_cfg(cfg)
     refuse_headers(str(cfg))
-    num_frames = whole(ti_cfg_lines(cfg)["frameCfg"][-1], "frameCfg", 3)
+    num_frames = ti_cfg_lines(cfg)["frameCfg"][-1].whole(3)
     packets = read_pcap(folder / PACKETS, config, num_frames=num_frames or None, frames=frames)
     return RadarCapture(folder=folder, config=config, packets=packets)
 
