@@ -25,7 +25,7 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import PointCloud
-from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
+from mmweaver.formats.point_clouds.read_points import read_points, recognised_kind
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import RawReading
@@ -34,7 +34,7 @@ NEVER_SEEN = (
     Finding(title="coupling between antennas", text="it takes one target at many known directions"),
     Finding(title="element spacing", text="it takes a target at known directions"),
 )
-CLOUD_SUFFIXES = (".csv", ".dat")
+CLOUD_SUFFIXES = (".csv", ".dat", ".npz")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,16 +162,8 @@ def _cloud_of(source: Any) -> PointCloud | None:
     if not isinstance(source, str | Path):
         return None
     path = Path(source)
-    is_points = path.name == "points.npz" or path.suffix.lower() in CLOUD_SUFFIXES
-    if not is_points and path.suffix.lower() == ".npz" and path.is_file():
-        is_points = points_kind(path) in KINDS and _has_points(path)
-    return read_points(path) if is_points else None
-
-
-def _has_points(path: Path) -> bool:
-    from mmweaver.core.safe_files.safe_arrays import read_npz
-
-    return {"frame", "pts"} <= set(read_npz(path))
+    may_be = path.suffix.lower() in CLOUD_SUFFIXES and path.is_file()
+    return read_points(path) if may_be and recognised_kind(path) is not None else None
 
 
 def _one_radar(evidence: Sequence[SignalEvidence], radar: str | Path | RadarConfig | None) -> RadarConfig:
