@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mmweaver.metrics.scorecard import METRICS
+from studies.scores.scorecard import METRICS
 
 COST = "a cost, not a score: it is compared with nothing"
 NONE_MEASURED = "no baseline was measured for it"

@@ -18,7 +18,7 @@ from mmweaver.figures.animation import draw_animation
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_preview
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.npz_files import write_empty_pose_npz, write_points_npz, write_pose_npz, write_radar_npz
+from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
 
 META_VERSION = 1
 BOARD_FILE = "board.json"
@@ -70,7 +70,7 @@ def save_results(
             if view.poses:
                 write_pose_npz(stage / "pose.npz", *view.poses)
             elif view.aligned is not None:  # a generated room with nobody in it; of a recording nothing is known
-                write_empty_pose_npz(stage / "pose.npz", view.cube.grid.frame_time_s)
+                write_pose_npz(stage / "pose.npz", time_s=view.cube.grid.frame_time_s)
             if adc is not None:
                 # Simulated samples are whole counts of the radar's own converter: written so, nothing is lost.
                 own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw

@@ -1,6 +1,6 @@
 """A result folder of `mmweaver generate` or `mmweaver process`, read back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -44,10 +44,8 @@ class StoredResult:
             raise InputError(f"{self.folder} holds no {ADC_FILE}, which this format needs; generate it with --bin")
         written = self.meta.get("adc_data_bin") or {}
         order = written.get("tx_order") or None  # as `_check_meta` reads it
-        return read_bin(
-            file, self.cube.config, iq_order=written.get("iq_order") or "iq",
-            tx_order=None if order is None else tuple(order),
-        )  # fmt: skip
+        config = self.cube.config if order is None else replace(self.cube.config, tx_order=tuple(order))
+        return read_bin(file, config, iq_order=written.get("iq_order") or "iq")
 
 
 def read_result(folder: Path) -> StoredResult:

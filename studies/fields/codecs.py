@@ -16,10 +16,6 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
-from mmweaver.metrics.baselines import BASELINES
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import nmse_db
-from mmweaver.metrics.scorecard import METRICS
 from studies.baselines.codec_interface import Codec
 from studies.baselines.coefficient_codecs import KltContext, TopCells, TopCoefficients, Wavelets
 from studies.baselines.float_compressors import Blosc2, Sperr, Sz3, Zfp
@@ -30,6 +26,8 @@ from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucke
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
+from studies.scores.scorecard import METRICS
 from studies.study import Reads
 
 EXPERIMENT = "codecs"

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.records import RadarCube
-from mmweaver.metrics.scorecard import scorecard
 from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.fields.scatterer_field import ScattererField
@@ -19,6 +18,7 @@ from studies.fields.signal_field import SignalField
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows, in_order, kept_rows
+from studies.scores.scorecard import scorecard
 from studies.study import Reads
 
 EXPERIMENT = "field_fidelity"

@@ -16,8 +16,6 @@ from mmweaver.core.records import RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.figures.theme import POWER_MAP
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.map_scores import SHOWN_DB, shown_db
 from studies.fields.field_fidelity import fit_scatterers
 from studies.fields.field_signals import SIGNALS
@@ -26,6 +24,7 @@ from studies.fields.phase_centring import centring_phasor
 from studies.fields.super_resolution import finer_truths, methods
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
+from studies.scores.cube_scores import cells_of, nmse_db
 from studies.study import Reads
 
 ZOOM_MPS, ZOOM_M = 2.0, 0.7

@@ -15,10 +15,10 @@ import numpy as np
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.metrics.cells import cells_of, noise_floor
 from studies.fields.field_fidelity import fit_scatterers, scatterer_recipe
 from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
+from studies.scores.cube_scores import cells_of, noise_floor
 from studies.study import Reads
 
 EXPERIMENT = "rendered_noise"

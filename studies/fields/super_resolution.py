@@ -30,10 +30,6 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.metrics.baselines import BASELINES
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import nmse_db
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.paths.receiver import IDEAL
 from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
@@ -54,6 +50,8 @@ from studies.fields.signal_field import SignalField
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows
+from studies.scores.cube_scores import BASELINES, cells_of, nmse_db
+from studies.scores.scorecard import METRICS, scorecard
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
 RADII = (1, 2, 3, 4, 5, 6, 7)

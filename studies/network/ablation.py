@@ -27,7 +27,6 @@ from torch import nn
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
@@ -49,6 +48,7 @@ from studies.paper.power_method import load_power
 from studies.paper.power_network import PowerNetwork
 from studies.paper.power_training import PowerRecipe, initial_power_network, measure_codes
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, Representations
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db")

@@ -29,7 +29,6 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights, shipped_weights
@@ -39,6 +38,7 @@ from mmweaver.training.capture_training import recipe_for, tune
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, Case, simulated, true_cube
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "chamfer_m")

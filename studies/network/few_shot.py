@@ -16,7 +16,6 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.network_examples import RoomExamples
@@ -26,6 +25,7 @@ from studies.manifest import StudyRun
 from studies.network.ablation import COLUMNS
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, Representations
 from studies.study import Reads
 
 ACTIVITY, SPLIT = "jumping", "test_activity"

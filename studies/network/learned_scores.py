@@ -36,7 +36,6 @@ from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence, pose_of
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
@@ -54,6 +53,7 @@ from studies.paper.power_method import FieldRoom, load_power
 from studies.paper.power_network import PowerNetwork
 from studies.paper.power_training import PowerRecipe, initial_power_network
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 COLUMNS = (
@@ -253,7 +253,7 @@ def _columns(values: dict[str, float]) -> dict[str, float]:
 
 
 def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
-    from mmweaver.metrics.baselines import BASELINES
+    from studies.scores.cube_scores import BASELINES
 
     return BASELINES[name](truth)
 

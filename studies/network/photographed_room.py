@@ -25,7 +25,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import HeldOut
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
-from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
+from mmweaver.metrics.map_scores import log_map_difference_db
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.paths import STATIC_KINDS, Interaction
@@ -38,6 +38,7 @@ from studies.manifest import StudyRun
 from studies.network.learned_scores import interval
 from studies.network.whole_room import scanned
 from studies.result_rows import complete_rows
+from studies.scores.map_similarity import log_map_ssim
 
 REALIZATION = "realization"  # the true room with other micro-phases
 UNKNOWN = {

@@ -20,7 +20,6 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
@@ -34,6 +33,7 @@ from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, Case, cases_of, generic_scene_of, interval
 from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 POSES = {

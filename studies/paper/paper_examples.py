@@ -18,13 +18,12 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import span_of
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.device import Share
 from studies.paper.paper_method import motion_of, unit_sqrt_mw
 from studies.paper.positional_encoding import encode_axis, normalised
+from studies.scores.cube_scores import cells_of, span_of
 
 POINTS, FRAMES = 16_384, 2
 

@@ -7,8 +7,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.metrics.ssim import K1, K2, WINDOW_RADIUS, WINDOW_SIGMA
 from mmweaver.models.activity_network import ActivityNetwork
+from studies.scores.map_similarity import K1, K2, WINDOW_RADIUS, WINDOW_SIGMA
 
 SHARE_CSSIM, SHARE_MSE, SHARE_PERCEPTUAL = 0.5, 0.3, 0.2
 

@@ -18,13 +18,13 @@ import torch
 
 from mmweaver.core.records import RadarCube
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.weights import load_into
 from studies.manifest import StudyRun
 from studies.network.learned_scores import Case, cases_of, energy_db, interval
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import RECIPE, paper_method
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 COLUMNS = ("cssim", "psnr_db", "nmse_db", "nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim")

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import torch
-from mmweaver.paths.cell_echoes import CellEchoes
 from torch import Tensor
 
 from mmweaver.core.board import Board

@@ -13,7 +13,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.cells import Cells, cells_of
 from studies.fields.phase_centring import centred
 from studies.fields.signal_field import SignalField
 from studies.paper.paper_inr import (
@@ -25,6 +24,7 @@ from studies.paper.paper_inr import (
     fresh_modulation,
 )
 from studies.paper.positional_encoding import OCTAVES, harmonics, normalised
+from studies.scores.cube_scores import Cells, cells_of
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,6 @@ import torch
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, scorecard
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, nearest, simulated, training_mean
 from studies.network.room_cache import RoomCache, digest
@@ -37,6 +36,7 @@ from studies.peers.diffusion_training import (
 )
 from studies.peers.signal_diffusion import SignalDiffusion, mixed, sampled
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, scorecard
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim", "psnr_db")

@@ -29,7 +29,6 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
-from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -39,6 +38,7 @@ from studies.network.learned_scores import OTHER, Case, Method, cases_of, interv
 from studies.network.room_cache import RoomCache, digest
 from studies.peers.rf_genesis import RfGenesis, Triangles
 from studies.result_rows import complete_rows, dataset_of
+from studies.scores.scorecard import METRICS, Representations
 from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim", "psnr_db", "chamfer_m", "hausdorff_m")

@@ -35,8 +35,7 @@ import numpy as np
 from scipy.stats import betabinom
 
 from mmweaver.comparison.compare_signals import FEATURES
-from mmweaver.comparison.measured_feature import CannotSeeError
-from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
+from mmweaver.comparison.signal_evidence import CannotSeeError, ComparedSignal, SignalEvidence
 from mmweaver.core.boards import find_board
 from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig

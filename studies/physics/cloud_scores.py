@@ -8,7 +8,7 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.point_clouds import chamfer_m, hausdorff_m
+from studies.scores.cloud_distances import chamfer_m, hausdorff_m
 
 RESAMPLES = 100
 RANGE_EDGES_M = np.array([1.4, 1.7, 1.9, 2.1, 2.4])

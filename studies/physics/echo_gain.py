@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.comparison.measured_feature import decibels
-from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
+from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence, decibels
 from mmweaver.core.boards import find_board
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
@@ -40,7 +39,6 @@ PEOPLE = 24
 def moving_level_db(adc: AdcCube) -> float:
     """Moving energy within 0.4 m of the strongest moving range bin over the noise of a cell."""
     evidence = _evidence(adc)
-    assert evidence.moving_profile is not None
     assert evidence.noise is not None
     profile, _ = evidence.moving_profile
     body = int(evidence.body_bin[0])

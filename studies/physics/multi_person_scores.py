@@ -22,7 +22,6 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.points import point_cloud
-from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
@@ -31,6 +30,7 @@ from mmweaver.paths.static_paths import ALL_PATHS
 from studies.fields.field_signals import OTHER_SKIN, sample_scene
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
+from studies.scores.scorecard import METRICS, Representations
 
 SENTENCES = (
     "a person waves with the left hand", "someone does jumping jacks", "a man claps", "a woman squats",

@@ -16,7 +16,7 @@ from mmweaver.comparison.board_features import (
     noise_level,
     strongest_over_noise,
 )
-from mmweaver.comparison.measured_feature import CannotSeeError
+from mmweaver.comparison.signal_evidence import CannotSeeError
 from mmweaver.dsp.windows import hann
 from tests.comparison.made_signals import RADAR, evidence, samples, still
 

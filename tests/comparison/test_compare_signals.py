@@ -35,7 +35,6 @@ def test_signals_of_one_making_cannot_be_told_apart_and_a_change_is_named():
     assert {"behind_body_near", "leakage_level", "leakage_spread"} <= set(away)
     assert away["behind_body_near"].difference is not None
     assert away["behind_body_near"].difference.difference < -5
-    assert found.map_distance_db["static range profile"] > same.map_distance_db["static range profile"]
 
 
 def test_the_record_is_json_and_names_every_feature():

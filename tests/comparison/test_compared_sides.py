@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.comparison.compared_sides import MOST_RECORDINGS, RawReading, signals_of
+from mmweaver.comparison.compared_sides import MAX_RECORDINGS, signals_of
 from mmweaver.compression.mmw_codec import compress_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, PoseSequence
@@ -15,6 +15,7 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
+from mmweaver.recordings.read_recording import RawReading
 from mmweaver.stream_folder import StreamFolder
 from tests.comparison.made_signals import RADAR, samples, still
 
@@ -54,9 +55,9 @@ def test_files_and_folders_of_every_kind(tmp_path: Path):
 
 
 def test_a_folder_of_too_many_recordings_is_refused_before_one_is_read(tmp_path: Path):
-    for number in range(MOST_RECORDINGS + 1):
+    for number in range(MAX_RECORDINGS + 1):
         (tmp_path / f"{number}.mmw").write_bytes(b"not even a recording")
-    with pytest.raises(InputError, match=f"holds {MOST_RECORDINGS + 1} recordings; .* at most {MOST_RECORDINGS}"):
+    with pytest.raises(InputError, match=f"holds {MAX_RECORDINGS + 1} recordings; .* at most {MAX_RECORDINGS}"):
         signals_of(tmp_path, RawReading(), "A")
 
 

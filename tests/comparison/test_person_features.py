@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.comparison.measured_feature import CannotSeeError
 from mmweaver.comparison.person_features import behind_body, echo_at_twice_the_range, seated_slow_time
+from mmweaver.comparison.signal_evidence import CannotSeeError
 from tests.comparison.made_signals import RADAR, Point, evidence, samples, still
 
 BREATHS_HZ, SECONDS = 0.3, 10.0

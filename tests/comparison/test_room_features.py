@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.comparison.measured_feature import CannotSeeError
 from mmweaver.comparison.room_features import (
     antenna_spread,
     clutter_peak_over_median,
@@ -13,6 +12,7 @@ from mmweaver.comparison.room_features import (
     range_azimuth_sparsity,
     range_doppler_sparsity,
 )
+from mmweaver.comparison.signal_evidence import CannotSeeError
 from mmweaver.core.seeding import stream
 from tests.comparison.made_signals import RADAR, evidence, samples, still
 

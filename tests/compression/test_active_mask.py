@@ -5,7 +5,7 @@ from mmweaver.core.seeding import stream
 
 
 def test_active_mask_are_those_of_the_metrics():
-    from mmweaver.metrics.cells import cells_of
+    from studies.scores.cube_scores import cells_of
     from tests.fields.echoes import crowd
 
     cube = crowd()

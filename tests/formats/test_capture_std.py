@@ -17,7 +17,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_a_folder_read_back_bit_by_bit(folder: Path, tmp_path: Path):
     capture = read_radar_capture(folder)
-    assert capture.iq_order == "qi"
+    assert capture.config.lvds_iq_order == "qi"
     assert (capture.config.num_tx, capture.config.num_loops) == (2, 8)
     assert capture.packets.adc.samples.tobytes() == counts(capture.config).samples.tobytes()
     assert read_radar_capture(folder / "iwr1843").folder == folder / "iwr1843"

@@ -12,6 +12,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.formats.radar_options import RadarOptions
 
 
 def chirp(start: int, end: int, mask: str) -> dict:
@@ -79,7 +80,7 @@ def changed(change: Callable[[Any], Any]) -> Any:
         (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 10**9, "0x1")), "0 to 511"),
         (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(idleTimeVar_usec=1.0), "idleTimeVar"),
         (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(profileId=1), "profiles"),
-        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(profileId=1), "rlProfiles"),
+        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(profileId=1), "profile 0"),
         (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples="many"), "not an mmWave Studio"),
         (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples=128.5), "whole"),
         (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(rampEndTime_usec=20.0), r"57\.20.*20\.00"),
@@ -116,7 +117,7 @@ def test_sub_frames_and_lanes(tmp_path: Path):
     setup["waveformType"] = "advancedFrameChirp"
     setup["rlAdvFrameCfg_t"] = {"frameSeq": {"numOfSubFrames": 2, "subFrameCfg": frames}}
     path = written(tmp_path, setup)
-    config = read_mmwave_studio(path, sub_frame=1)
+    config = read_mmwave_studio(path, RadarOptions(sub_frame=1))
     assert (config.num_loops, config.num_slots, config.frame_period_s) == (32, 1, pytest.approx(0.05))
     assert config.frame_words_before == 3 * 8 * 4 * config.num_samples * 2
     with pytest.raises(InputError, match="--subframe"):
@@ -125,7 +126,7 @@ def test_sub_frames_and_lanes(tmp_path: Path):
     values["mmWaveDevices"][0]["rawDataCaptureConfig"]["rlDevLaneEnable_t"] = {"laneEn": "0xF"}
     path.write_text(json.dumps(values))
     assert read_mmwave_studio(path).lvds_lanes == 4
-    assert read_mmwave_studio(path, lanes=2).lvds_lanes == 2
+    assert read_mmwave_studio(path, RadarOptions(lanes=2)).lvds_lanes == 2
 
 
 def test_files_of_other_writers(tmp_path: Path):

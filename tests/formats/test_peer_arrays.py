@@ -147,7 +147,7 @@ def test_cubelearn(tmp_path: Path):
     adc = read_cubelearn(tmp_path / "sample.npy", MMMESH)
     assert np.array_equal(adc.samples[:, :, list(MMMESH.tx_order)], samples.astype(np.complex64))
     assert detect_layout(tmp_path / "sample.npy") == "cubelearn"
-    with pytest.raises(InputError, match="CubeLearn"):
+    with pytest.raises(InputError, match="loop 64"):
         read_cubelearn(tmp_path / "sample.npy", replace(MMMESH, num_loops=64))
     with pytest.raises(InputError, match="--radar"):
         read_recording(tmp_path / "sample.npy")

@@ -9,7 +9,8 @@ from mmweaver.core.antenna_tables import AOP, BOOST_1642, ISK, ODS, AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.core.virtual_array import azimuth_row, has_elevation
-from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order
+from mmweaver.formats.radar_options import RadarOptions
+from mmweaver.formats.ti_cfg import read_ti_cfg
 
 # TI's best range resolution profile for three transmitters, the elevated one last.
 BEST_RANGE = """
@@ -49,7 +50,7 @@ def test_the_best_range_profile(tmp_path: Path):
     assert (config.first_range_bin, config.num_range_bins) == (0, 256)  # all of it
     assert config.range_m[-1] == pytest.approx(11.11, abs=0.01)
     assert has_elevation(config)
-    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "qi"
+    assert read_ti_cfg(tmp_path / "best_range.cfg").lvds_iq_order == "qi"
 
 
 def test_an_iwr1443_profile_with_two_transmitters(tmp_path: Path):
@@ -67,7 +68,7 @@ def test_an_iwr1443_profile_with_two_transmitters(tmp_path: Path):
     assert steps == pytest.approx(np.ones(7))
     assert not has_elevation(config)
     assert config.frame_period_s == pytest.approx(0.033333)
-    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "iq"
+    assert read_ti_cfg(tmp_path / "best_range.cfg").lvds_iq_order == "iq"
 
 
 def test_a_60_ghz_profile_real_samples_and_fewer_receivers(tmp_path: Path):
@@ -189,7 +190,7 @@ subFrameCfg 1 0 2 1 64 30 0 1 1 30
 
 def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
     path = written(tmp_path, SUB_FRAMES)
-    first, second = (read_ti_cfg(path, sub_frame=index) for index in range(2))
+    first, second = (read_ti_cfg(path, RadarOptions(sub_frame=index)) for index in range(2))
     assert (first.num_tx, first.num_loops, first.num_samples) == (2, 32, 128)
     assert (second.num_tx, second.num_loops, second.num_samples) == (1, 64, 256)
     assert first.frame_period_s == second.frame_period_s == pytest.approx(0.08)
@@ -197,9 +198,9 @@ def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
     assert (second.frame_words_before, second.frame_words_after) == (2 * 32 * 4 * 128 * 2, 0)
     for sub_frame, words in ((None, "--subframe 0 to 1"), (2, "0 to 1, not 2")):
         with pytest.raises(InputError, match=words):
-            read_ti_cfg(path, sub_frame=sub_frame)
+            read_ti_cfg(path, RadarOptions(sub_frame=sub_frame))
     with pytest.raises(InputError, match="--subframe"):
-        read_ti_cfg(written(tmp_path, BEST_RANGE), sub_frame=0)
+        read_ti_cfg(written(tmp_path, BEST_RANGE), RadarOptions(sub_frame=0))
 
 
 @pytest.mark.parametrize(
@@ -256,8 +257,8 @@ def test_few_samples_keep_all_their_bins(tmp_path: Path):
         ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 5 0 0 4", ["line 12", "slope", "identical"]),
         ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 1 0 0 0 0 4", ["profiles [0, 1]"]),
         ("chirpCfg 1 1 0", "chirpCfg 1 99999999999 0", ["line 12", "0 to 511"]),
-        ("chirpCfg 1 1 0 0 0 0 0 4", "", ["chirp 1", "no chirpCfg"]),
-        ("profileCfg 0", "profileCfg 3", ["profile 0", "no profileCfg"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "", ["chirp 1", "not defined"]),
+        ("profileCfg 0", "profileCfg 3", ["profile 0", "not defined"]),
         ("channelCfg 15 7", "channelCfg 15 5", ["channel mask 5"]),
         ("channelCfg 15 7", "channelCfg 0 7", ["receiver mask"]),
         ("adcCfg 2 1", "adcCfg 2 7", ["line 8", "ADC format 7"]),

@@ -28,7 +28,7 @@ from mmweaver.formats.dca_packets import read_pcap
 from mmweaver.formats.pcap import udp_packets
 from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr
 from mmweaver.formats.point_clouds.read_points import read_points
-from mmweaver.formats.radar_options import RadarOptions, read_antennas, with_options
+from mmweaver.formats.radar_options import RadarOptions, read_antennas
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
 from mmweaver.playback.wire import pack, unpack
@@ -185,7 +185,7 @@ def _texts() -> list[Reader]:
         return parser.parse_args(with_config(["generate", "--config", str(path), "--out", "x"], commands))
 
     def antennas(path: Path) -> Any:
-        return with_options(tables, RadarOptions(antennas=read_antennas(str(path)))).antenna_position_m
+        return RadarOptions(antennas=read_antennas(str(path))).applied(tables).antenna_position_m
 
     def log(path: Path) -> Any:
         path.parent.joinpath("run").mkdir(exist_ok=True)

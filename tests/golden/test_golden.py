@@ -12,7 +12,7 @@ from mmweaver.compression.mmw_codec import describe_mmw, read_cube
 from mmweaver.core.checksums import SUMS_FILE
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.npz_files import read_points_npz, read_pose_npz, read_radar_npz
+from mmweaver.formats.npz_files import read_points_npz, read_poses_npz, read_radar_npz
 from mmweaver.models.weights import load_into
 from mmweaver.verification import verify
 from tests.fields.echoes import crowd, error_db
@@ -49,7 +49,7 @@ def test_every_format_of_a_version_is_read(golden: Path, version: str):
     assert room.text == ("a person raises the left hand",)
     cube = read_radar_npz(golden / "results" / "radar.npz")
     assert digest(cube.values) == results_cube
-    assert read_pose_npz(golden / "results" / "pose.npz").joints_m.shape == (2, 22, 3)
+    assert read_poses_npz(golden / "results" / "pose.npz")[0].joints_m.shape == (2, 22, 3)
     assert len(read_points_npz(golden / "results" / "points.npz").frame) > 0
     assert read_bin(golden / "results" / "adc_data.bin", cube.config).samples.shape == (2, 4, 1, 2, 64)
     power = float(np.sum(np.abs(read_cube(golden / "walk.mmw").values) ** 2))

@@ -3,7 +3,8 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim, shown_db
+from mmweaver.metrics.map_scores import log_map_difference_db, shown_db
+from studies.scores.map_similarity import log_map_ssim
 
 TRUTH = 10 ** (-8 * stream(0, "map").random((3, 20, 16)))
 

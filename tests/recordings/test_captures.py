@@ -10,7 +10,7 @@ from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.formats.npz_files import read_radar_npz, write_radar_npz
+from mmweaver.formats.npz_files import read_poses_npz, read_radar_npz, write_radar_npz
 from mmweaver.generate import Weaver
 from mmweaver.recordings.captures import read_capture, rooms_of
 from mmweaver.scene.sample_photo import sample_photo
@@ -89,9 +89,9 @@ def test_inconsistent_captures_are_refused(made: Path, tmp_path: Path):
     late.mkdir()
     for name in ("radar.npz", "radar.json", "meta.json", "pose.npz"):
         (late / name).write_bytes((made / name).read_bytes())
-    from mmweaver.formats.npz_files import read_pose_npz, write_pose_npz
+    from mmweaver.formats.npz_files import write_pose_npz
 
-    pose = read_pose_npz(late / "pose.npz")
+    pose = read_poses_npz(late / "pose.npz")[0]
     write_pose_npz(late / "pose.npz", replace(pose, time_s=pose.time_s + 5.0))
     with pytest.raises(InputError, match=r"5\.00 to 5\.70 s"):
         read_capture(late)
@@ -102,10 +102,10 @@ def test_a_capture_of_an_empty_room_has_no_pose(made: Path, tmp_path: Path):
     folder.mkdir()
     for name in ("radar.npz", "radar.json", "meta.json"):
         (folder / name).write_bytes((made / name).read_bytes())
-    from mmweaver.formats.npz_files import read_pose_npz, write_empty_pose_npz, write_pose_npz
+    from mmweaver.formats.npz_files import write_pose_npz
 
-    pose = read_pose_npz(made / "pose.npz")
-    write_empty_pose_npz(folder / "pose.npz", pose.time_s)
+    pose = read_poses_npz(made / "pose.npz")[0]
+    write_pose_npz(folder / "pose.npz", time_s=pose.time_s)
     assert read_capture(folder).pose is None
     write_pose_npz(folder / "pose.npz", pose, pose)
     with pytest.raises(InputError, match="2 people"):

@@ -16,7 +16,7 @@ from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.dca1000 import adc_of_words, upright, words_of, write_bin
 from mmweaver.formats.radar_file import load_radar
-from mmweaver.formats.radar_options import RadarOptions, with_options
+from mmweaver.formats.radar_options import RadarOptions
 from mmweaver.recordings.plausibility import BETTER_ORDER, implausible
 from mmweaver.recordings.processing import process_recording
 from mmweaver.recordings.transmitter_order import agreements
@@ -201,10 +201,10 @@ def test_fewer_transmitters_and_more_loops(recording: Path):
 
 
 def test_another_boards_antennas():
-    aop = with_options(RADAR, RadarOptions(antennas=ANTENNAS["aop"]))
+    aop = RadarOptions(antennas=ANTENNAS["aop"]).applied(RADAR)
     adc = room(aop)
     assert implausible(adc, radar_cube(adc)) == []
-    isk = with_options(aop, RadarOptions(antennas=ANTENNAS["isk"]))
+    isk = RadarOptions(antennas=ANTENNAS["isk"]).applied(aop)
     as_isk = replace(adc, samples=upright(adc.samples, aop), config=isk)
     assert "--antennas aop" in implausible(as_isk, radar_cube(as_isk))[0]
 

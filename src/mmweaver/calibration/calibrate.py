@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mmweaver.calibration.antenna_fits import fit_channels
+# imported for their fits, which register themselves
+from mmweaver.calibration import antenna_fits, receiver_fits, time_fits  # noqa: F401
 from mmweaver.calibration.cloud_fits import fit_elevation
 from mmweaver.calibration.cloud_levels import DOING, fit_levels
-from mmweaver.calibration.finding import Finding
-from mmweaver.calibration.receiver_fits import fit_filter, fit_leakage, fit_noise_figure
+from mmweaver.calibration.finding import SIGNAL_FITS, Finding
 from mmweaver.calibration.target_fits import KnownTarget, fit_target, unknown_targets
-from mmweaver.calibration.time_fits import fit_drift, fit_first_chirp
-from mmweaver.comparison.compared_sides import RawReading, signals_of
+from mmweaver.comparison.compared_sides import signals_of
 from mmweaver.comparison.signal_evidence import SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
@@ -26,16 +25,16 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import PointCloud
-from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
+from mmweaver.formats.point_clouds.read_points import read_points, recognised_kind
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.recordings.plausibility import implausible
+from mmweaver.recordings.read_recording import RawReading
 
-SIGNAL_FITS = (fit_filter, fit_noise_figure, fit_leakage, fit_channels, fit_first_chirp, fit_drift)
 NEVER_SEEN = (
     Finding(title="coupling between antennas", text="it takes one target at many known directions"),
     Finding(title="element spacing", text="it takes a target at known directions"),
 )
-CLOUD_SUFFIXES = (".csv", ".dat")
+CLOUD_SUFFIXES = (".csv", ".dat", ".npz")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,49 +47,60 @@ class Calibration:
 
     def text(self) -> str:
         """Warnings, what was found, then what could not be seen and why, a line each."""
-        seen = [f"  {one.title}: {one.text}" for one in self.findings if one.is_found]
-        missed = [f"  {one.title}: {one.text}" for one in self.findings if not one.is_found]
-        warned = [f"warning: {one}; what follows may be wrong" for one in self.warnings]
-        return "\n".join([*warned, "found", *(seen or ["  nothing"]), "not seen", *(missed or ["  nothing"])])
+        lines = [f"warning: {one}; what follows may be wrong" for one in self.warnings]
+        for title, found in (("found", True), ("not seen", False)):
+            lines += [title, *(f"  {one}: {text}" for one, text in self._texts(found).items())]
+        return "\n".join(lines)
 
     def to_values(self) -> dict[str, Any]:
         """The same for JSON; the tables are those of the board."""
         return {
             "board": self.board.to_values(),
             "errors": {name: round(error, 4) for one in self.findings for name, error in one.errors.items()},
-            "found": {one.title: one.text for one in self.findings if one.is_found},
-            "not_seen": {one.title: one.text for one in self.findings if not one.is_found},
+            "found": self._texts(True),
+            "not_seen": self._texts(False),
             "warnings": list(self.warnings),
         }
+
+    def _texts(self, found: bool) -> dict[str, str]:
+        return {one.title: one.text for one in self.findings if one.is_found == found}
 
 
 def calibrate(
     *recordings: Any,
     radar: str | Path | RadarConfig | None = None,
-    layout: str | None = None,
-    axes: str | None = None,
-    iq_order: str | None = None,
-    tx_order: tuple[int, ...] | None = None,
     range_m: tuple[float, float] | None = None,
     range_bins: tuple[int, int] | None = None,
     body_z_m: float | None = None,
     doing: str | None = None,
     target: KnownTarget | None = None,
     name: str | None = None,
+    **samples: Any,
 ) -> Calibration:
     """The board that made the recordings: of a room with or without people, unlabelled; point clouds of people.
 
-    Each is a path (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube, an
-    AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the same
-    settings. `range_m` (near, far) or `range_bins` (first, last): whose echoes show the antennas. `radar`: of raw
-    samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
-    height over the radar of the people in clouds; `doing`: a sentence that says what they did (default: they wave).
-    `target`: what stands at a known distance in the signals. Raises InputError for what is no recording, and for
-    several radars.
+    Args:
+        *recordings: Paths (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube,
+            an AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the
+            same settings.
+        radar: Of raw samples and of clouds: a preset's name, a file or a RadarConfig.
+        range_m: Ranges (near, far) in metres whose echoes show the antennas. Default: all.
+        range_bins: The same as range bins (first, last).
+        body_z_m: True mean height over the radar of the people in clouds, m.
+        doing: A sentence about what they did. Default: they wave.
+        target: What stands at a known distance in the signals.
+        name: Name of the board.
+        **samples: `layout`, `axes`, `iq_order` and `tx_order` of raw samples, see `read_recording`.
+
+    Returns:
+        The board, and what was found of it and what was not.
+
+    Raises:
+        InputError: for what is no recording, and for several radars.
     """
     if not recordings:
         raise InputError("which recordings? give one or more")
-    reading = RawReading(radar=radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order)
+    reading = RawReading(radar=radar, **samples)
     clouds: list[PointCloud] = []
     evidence: list[SignalEvidence] = []
     for source in recordings:
@@ -152,16 +162,8 @@ def _cloud_of(source: Any) -> PointCloud | None:
     if not isinstance(source, str | Path):
         return None
     path = Path(source)
-    is_points = path.name == "points.npz" or path.suffix.lower() in CLOUD_SUFFIXES
-    if not is_points and path.suffix.lower() == ".npz" and path.is_file():
-        is_points = points_kind(path) in KINDS and _has_points(path)
-    return read_points(path) if is_points else None
-
-
-def _has_points(path: Path) -> bool:
-    from mmweaver.core.safe_files.safe_arrays import read_npz
-
-    return {"frame", "pts"} <= set(read_npz(path))
+    may_be = path.suffix.lower() in CLOUD_SUFFIXES and path.is_file()
+    return read_points(path) if may_be and recognised_kind(path) is not None else None
 
 
 def _one_radar(evidence: Sequence[SignalEvidence], radar: str | Path | RadarConfig | None) -> RadarConfig:

@@ -10,9 +10,8 @@ from itertools import pairwise
 import numpy as np
 import torch
 
-from mmweaver.calibration.finding import Finding
-from mmweaver.comparison.measured_feature import CannotSeeError, decibels
-from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.calibration.finding import Finding, measured, signal_fit
+from mmweaver.comparison.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.core.constants import BOLTZMANN_J_PER_K, NOISE_TEMPERATURE_K
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.paths.cube_rendering import CubeRenderer
@@ -22,33 +21,22 @@ NEAREST_NOISE_BIN = 2  # nearer ones hold the leakage and the converter's offset
 NARROW_BINS, NUM_WIDE, NUM_END, LAST_SHARE = 12, 24, 25, 0.9  # knots: each near bin, wide ones, those of the last tenth
 SKIRT_LIMIT_M, LEAKAGE_M = 1.5, 0.15
 OVER_NOISE, OVER_LOWEST = 2.0, 10.0  # where a skirt ends; what is an echo of the room
-SMALLEST_SHARE = 1e-3  # of the largest singular value: less of a tap is noise
+MIN_SHARE = 1e-3  # of the largest singular value: weaker taps are noise
 
 
-def whole_noise(evidence: Sequence[SignalEvidence]) -> np.ndarray:
+def sample_noise(evidence: Sequence[SignalEvidence]) -> np.ndarray:
     """Noise power of an ADC sample as each range bin shows it, (range,). Raises CannotSeeError."""
-    found = []
-    for one in evidence:
-        config = one.cube.config
-        if one.noise_of_bin is None:
-            raise CannotSeeError(f"{config.num_loops} loops a frame show no noise")
-        if config.num_range_bins < config.num_unambiguous_range_bins:
-            raise CannotSeeError("the range window is cut; it takes raw samples or a cube of all range bins")
-        found.append(one.noise_of_bin[np.logical_not(one.is_lost)] / one.noise_share)
-    return np.median(np.concatenate(found), axis=0)
+    return np.median(np.concatenate([one.noise_of_band[~one.is_lost] / one.noise_share for one in evidence]), axis=0)
 
 
+@signal_fit("IF response")
 def fit_filter(evidence: Sequence[SignalEvidence]) -> Finding:
     """IF response in dB over its middle, from the noise."""
-    title = "IF response"
-    try:
-        noise = whole_noise(evidence)
-    except CannotSeeError as error:
-        return Finding(title=title, text=str(error))
+    noise = sample_noise(evidence)
     count, config = len(noise), evidence[0].cube.config
     level_db = decibels(noise / _middle(noise))
     if not np.isfinite(level_db).all():
-        return Finding(title=title, text="its noise is zero in some range bins: the samples were filtered or cut")
+        raise CannotSeeError("its noise is zero in some range bins: the samples were filtered or cut")
     edges = _knot_edges(count)
     centre = np.array([(low + high - 1) / 2 for low, high in edges])
     gain_db = np.array([np.median(level_db[low:high]) for low, high in edges])
@@ -59,7 +47,7 @@ def fit_filter(evidence: Sequence[SignalEvidence]) -> Finding:
     cells = sum(int(one.far_doppler.sum()) * one.still.shape[0] * one.still.shape[2] for one in evidence)
     error_db = 4.34 / np.sqrt(cells)
     return Finding(
-        title=title, fields=fields,
+        fields=fields,
         text=f"{last:+.1f} dB in the last 5 % of the band, {near:+.1f} dB in range bins 2 to 6 (+-{error_db:.2f} a"
         " bin); its phase is not in the noise",
     )  # fmt: skip
@@ -78,25 +66,22 @@ def _middle(noise: np.ndarray) -> float:
     return float(np.median(noise[low:high]))
 
 
+@signal_fit("noise figure")
 def fit_noise_figure(evidence: Sequence[SignalEvidence]) -> Finding:
     """Noise figure, where the recording's scale is known."""
-    title = "noise figure"
     scale = evidence[0].cube.scale
     if not np.isfinite(scale):
-        return Finding(title=title, text="the recording's amplitudes have no known scale")
-    try:
-        power = _middle(whole_noise(evidence))
-    except CannotSeeError as error:
-        return Finding(title=title, text=str(error))
+        raise CannotSeeError("the recording's amplitudes have no known scale")
+    power = _middle(sample_noise(evidence))
     config = evidence[0].cube.config
     power /= 1 - 1 / (3 * config.num_antennas)  # a median over cells of the mean of antennas, over its mean
     thermal_mw = BOLTZMANN_J_PER_K * NOISE_TEMPERATURE_K * config.sample_rate_hz * 1e3
     figure_db = float(decibels(power * scale**2 / thermal_mw))
     if not np.isfinite(figure_db):
-        return Finding(title=title, text="it holds no noise")
+        raise CannotSeeError("it holds no noise")
     return Finding(
-        title=title, fields={"noise_figure_db": round(figure_db, 3)},
-        text=f"{figure_db:.1f} dB, if the receiver's gain of {config.rx_gain_db:g} dB and its converter's range are so",
+        fields={"noise_figure_db": round(figure_db, 3)},
+        text=f"{figure_db:.1f} dB, given the receiver gain of {config.rx_gain_db:g} dB and the converter's range",
     )  # fmt: skip
 
 
@@ -105,53 +90,34 @@ def noise_unit(evidence: SignalEvidence) -> float:
     cube = evidence.cube
     if np.isfinite(cube.scale):
         return float(cube.scale)
-    if evidence.noise is None:
-        raise CannotSeeError(f"its scale is unknown, and {cube.config.num_loops} loops a frame show no noise")
     own = float(np.median(evidence.noise)) / evidence.noise_share
     if own <= 0:
         raise CannotSeeError("its scale is unknown, and it holds no noise")
     return float(np.sqrt(cube.config.noise_power_mw / own))
 
 
+@signal_fit("leakage")
 def fit_leakage(evidence: Sequence[SignalEvidence]) -> Finding:
     """The transmitters' leakage and its skirt, for each antenna pair, of the recording that shows most of it."""
-    title = "leakage"
-    found: Finding | None = None
-    why = ""
-    for one in evidence:
-        try:
-            fitted = _leakage_of(one)
-        except CannotSeeError as error:
-            why = str(error)
-            continue
-        if found is None or len(fitted.fields["leakage_range_m"]) > len(found.fields["leakage_range_m"]):
-            found = fitted
-    return found or Finding(title=title, text=why)
+    return max(measured(evidence, _leakage), key=lambda one: len(one.fields["leakage_range_m"]))
 
 
-def _leakage_of(evidence: SignalEvidence) -> Finding:
+def _leakage(evidence: SignalEvidence) -> Finding:
     config = evidence.cube.config
-    if config.first_range_bin:
-        raise CannotSeeError(f"the range window begins at {evidence.range_m[0]:.2f} m; it takes raw samples")
-    if not config.complex_samples:
-        raise CannotSeeError("of real samples the bins near range 0 hold the converter's offset")
+    noise = float(np.median(evidence.noise_at_range_0))
     if config.is_coded:
-        raise CannotSeeError("transmitters that send together do not show it apart")
-    if evidence.noise is None:
-        raise CannotSeeError(f"{config.num_loops} loops a frame show no noise")
+        raise CannotSeeError("simultaneous transmitters do not show it separately")
     unit = noise_unit(evidence)
-    still = evidence.still[np.logical_not(evidence.is_lost)].mean(axis=0)  # (range, antenna)
-    noise = float(np.median(evidence.noise))
+    still = evidence.mean_still
     end, how = skirt_end((np.abs(still) ** 2).mean(axis=1), noise, evidence.range_m)
     taps_m = np.arange(end) * config.range_resolution_m
     response = tap_response(config, taps_m)[: end + 1]
-    taps = np.linalg.pinv(response, rcond=SMALLEST_SHARE) @ still[: end + 1]  # (tap, antenna)
+    taps = np.linalg.pinv(response, rcond=MIN_SHARE) @ still[: end + 1]  # (tap, antenna)
     amplitude = np.maximum(np.abs(taps), 1e-3 * np.sqrt(noise)) * unit
     shape = (len(taps_m), config.num_tx, config.num_rx)
     peak = (np.abs(still[evidence.range_m <= LEAKAGE_M]) ** 2).max(axis=0)
     chirp_noise = noise * config.num_loops / 1.5
     return Finding(
-        title="leakage",
         fields={
             "leakage_range_m": taps_m,
             "leakage_level_db": (20 * np.log10(amplitude) - config.tx_power_dbm).reshape(shape),

@@ -9,17 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmweaver.calibration.finding import Finding
+from mmweaver.calibration.finding import Finding, measured
 from mmweaver.calibration.receiver_fits import noise_unit
-from mmweaver.comparison.measured_feature import CannotSeeError, decibels
-from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.comparison.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.core.errors import InputError
 from mmweaver.paths.antenna import scatterer_gain
 
 REACH_M = 0.4  # a bias is smaller
 NEAREST_M = 0.3  # nearer, the echo lies in the leakage
 OVER_OTHERS = 10.0  # power of the target over what lies beyond it on both sides
-BESIDE_BINS = 4  # as far from its peak as its own response is low
+SIDE_BINS = 4  # as far from its peak as its own response is low
 BIAS_TITLE, GAIN_TITLE = "range bias", "gain of echoes"
 
 
@@ -38,7 +37,7 @@ class KnownTarget:
 
 
 def unknown_targets() -> list[Finding]:
-    """What is said where no target is known."""
+    """The findings where no target is known."""
     return [
         Finding(title=BIAS_TITLE, text="it takes an echo at a known distance (--target)"),
         Finding(title=GAIN_TITLE, text="it takes an echo of known cross section at a known distance (--target)"),
@@ -47,13 +46,10 @@ def unknown_targets() -> list[Finding]:
 
 def fit_target(evidence: Sequence[SignalEvidence], target: KnownTarget) -> list[Finding]:
     """How much too far the target appears, and how much stronger it is than it should be."""
-    why = ""
-    for one in evidence:
-        try:
-            return _fit(one, target)
-        except CannotSeeError as error:
-            why = str(error)
-    return [Finding(title=title, text=why or "it takes a signal") for title in (BIAS_TITLE, GAIN_TITLE)]
+    try:
+        return measured(evidence, lambda one: _fit(one, target))[0]
+    except CannotSeeError as reason:
+        return [Finding(title=title, text=str(reason)) for title in (BIAS_TITLE, GAIN_TITLE)]
 
 
 def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
@@ -61,26 +57,25 @@ def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
     near = np.abs(range_m - target.range_m) <= REACH_M
     if not near.any():
         raise CannotSeeError(f"the range window does not hold {target.range_m:g} m")
-    power = (np.abs(evidence.still[np.logical_not(evidence.is_lost)]) ** 2).mean(axis=0)  # (range, antenna)
+    power = (np.abs(evidence.still[~evidence.is_lost]) ** 2).mean(axis=0)  # (range, antenna)
     mean = power.mean(axis=1)
     at = int(np.flatnonzero(near)[mean[near].argmax()])
-    outer = [mean[k] for k in (at - BESIDE_BINS, at + BESIDE_BINS) if 0 <= k < len(mean)]
+    outer = [mean[k] for k in (at - SIDE_BINS, at + SIDE_BINS) if 0 <= k < len(mean)]
     if not 0 < at < len(mean) - 1 or mean[at] < OVER_OTHERS * max(outer):
         raise CannotSeeError(f"no echo stands out within {REACH_M:g} m of {target.range_m:g} m")
     step_m = config.range_resolution_m
     offsets = _between_bins(power[at - 1 : at + 2])  # each antenna on its own, in bins
     found_m = range_m[at] + float(np.mean(offsets)) * step_m
     bias_m, error_m = found_m - target.range_m, float(np.std(offsets) / np.sqrt(len(offsets))) * step_m
-    said = f"{100 * bias_m:+.1f} cm (+-{100 * error_m:.1f}): an echo from {target.range_m:g} m is at {found_m:.3f} m"
-    bias = Finding(title=BIAS_TITLE, text=said, fields={"range_bias_m": round(bias_m, 4)})
+    text = f"{100 * bias_m:+.1f} cm (+-{100 * error_m:.1f}): an echo from {target.range_m:g} m is at {found_m:.3f} m"
+    bias = Finding(title=BIAS_TITLE, text=text, fields={"range_bias_m": round(bias_m, 4)})
     if target.cross_section_dbsm is None:
         return [bias, Finding(title=GAIN_TITLE, text="the target's cross section is not known (--target RANGE,DBSM)")]
     unit = noise_unit(evidence)
     peak = mean[at] / _hann_response(float(np.mean(offsets))) ** 2 * unit**2
     wanted = scatterer_gain(config) ** 2 * 10 ** (target.cross_section_dbsm / 10) / target.range_m**4
     gain_db = float(decibels(peak / wanted))
-    known = np.isfinite(evidence.cube.scale)
-    scale = "" if known else ", if its noise is that of the radar's noise figure"
+    scale = "" if np.isfinite(evidence.cube.scale) else ", if its noise is that of the radar's noise figure"
     gain = Finding(
         title=GAIN_TITLE, fields={"gain_db": round(gain_db, 2)},
         text=f"{gain_db:+.1f} dB over what {config.tx_power_dbm:g} dBm and antennas of {config.antenna_gain_dbi:g} dBi"

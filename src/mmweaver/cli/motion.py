@@ -82,7 +82,7 @@ def _show_nobody(arguments: argparse.Namespace) -> int:
     """An empty place has no steps, and joints of nobody at the times of a motion. Raises InputError for a body."""
     from mmweaver.core.atomic_files import atomic_file
     from mmweaver.core.errors import InputError
-    from mmweaver.formats.npz_files import write_empty_pose_npz
+    from mmweaver.formats.npz_files import write_pose_npz
     from mmweaver.motion.animation.assemble import dense_times
     from mmweaver.motion.language.timing import LONGEST_S
 
@@ -94,7 +94,7 @@ def _show_nobody(arguments: argparse.Namespace) -> int:
     files = [] if arguments.out is None else [arguments.out]
     for file in files:
         with atomic_file(file) as temporary:
-            write_empty_pose_npz(temporary, dense_times(seconds))
+            write_pose_npz(temporary, time_s=dense_times(seconds))
     if arguments.json:
         facts = {"text": arguments.text, "seconds": seconds, "people": [], "steps": [], "clauses": []}
         print(json.dumps({**facts, "assumptions": [], "files": list(map(str, files))}, indent=2))

@@ -78,7 +78,8 @@ def _view(arguments: argparse.Namespace) -> "FigureData":
         return FigureData(title=title, cube=stored.cube(number), points=stored.cloud(number))
     if arguments.sequence is not None:
         raise InputError("--sequence is of a labelled set; leave it out")
-    from mmweaver.comparison.compared_sides import RawReading, signals_of
+    from mmweaver.comparison.compared_sides import signals_of
+    from mmweaver.recordings.read_recording import RawReading
 
     reading = RawReading(
         radar=radar_of(arguments), layout=arguments.layout, axes=arguments.axes, iq_order=arguments.iq_order,

@@ -2,84 +2,86 @@
 
 import numpy as np
 
-from mmweaver.comparison.measured_feature import CannotSeeError, Feature, FrameValues, decibels
-from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.comparison.measured_feature import FrameValues, feature
+from mmweaver.comparison.signal_evidence import CannotSeeError, SignalEvidence, decibels
 from mmweaver.dsp.windows import hann, noise_share
 
 LAST_SHARE, NEAR_BINS, MIDDLE = 0.05, slice(2, 7), (0.3, 0.8)
 LEAKAGE_M = 0.15  # cables and radome put the leakage of a board up to here
 SKIRT_OVER_NOISE, COVERED_OVER_LOWEST = 2.0, 10.0
 CHIRPS_AFTER = slice(2, 6)  # the chirps that a frame's first one is compared with
-FEWEST_CHIRPS = 8
-UNITS, MOST_VARIATION = {"amplitude": "%", "phase": "mrad"}, {"amplitude": 0.3, "phase": 2.0}
+UNITS, MAX_VARIATION = {"amplitude": "%", "phase": "mrad"}, {"amplitude": 0.3, "phase": 2.0}
 STILL_SHARE = 1e-3  # moving energy of a static range bin, at most, of its static energy
-FEWEST_DRIFT_FRAMES = 8
-SHORTEST_DRIFT_M = 0.5  # spread of the static cells over range
+MIN_DRIFT_FRAMES = 8
+MIN_DRIFT_SPAN_M = 0.5  # spread of the static cells over range
 WRAPPED_BINS = 3  # at the end of the range axis, where the window's sidelobes of range 0 appear
 
 
+@feature("if_last_of_band", "noise in the last 5 % of the band", "dB", 1.0)
 def last_of_band(evidence: SignalEvidence) -> FrameValues:
-    """Noise in the last 5 % of the beat frequencies over that in their middle (30 to 80 %), in dB.
+    """Noise in the last 5 % of the beat frequencies over that from 30 to 80 % of them, in dB.
 
     The anti-aliasing filter of the receiver falls there. Raises CannotSeeError.
     """
-    noise = _whole_band(evidence)
+    noise = evidence.noise_of_band
     count = noise.shape[1]
     return FrameValues(decibels(np.median(noise[:, int((1 - LAST_SHARE) * count) :], axis=1) / _middle(noise)))
 
 
+@feature("if_near_band", "noise in range bins 2 to 6", "dB", 1.0)
 def near_band(evidence: SignalEvidence) -> FrameValues:
-    """Noise in range bins 2 to 6 over that in the middle of the band, in dB: the IF high-pass filter.
+    """Noise in range bins 2 to 6 over that from 30 to 80 % of the band, in dB: the IF high-pass filter.
 
     Raises CannotSeeError.
     """
-    noise = _whole_band(evidence)
+    noise = evidence.noise_of_band
     return FrameValues(decibels(np.median(noise[:, NEAR_BINS], axis=1) / _middle(noise)))
 
 
+@feature("noise_level", "noise of a sample", "dBm", 3.0)
 def noise_level(evidence: SignalEvidence) -> FrameValues:
     """Noise power of one ADC sample at the receiver's port in dBm. Raises CannotSeeError without a known scale."""
     scale = evidence.cube.scale
     if not np.isfinite(scale):
         raise CannotSeeError("the amplitude scale of the recording is unknown")
-    if evidence.noise is None:
-        raise CannotSeeError(f"{evidence.cube.config.num_loops} loops a frame show no noise")
     return FrameValues(decibels(evidence.noise / evidence.noise_share * scale**2))
 
 
+@feature("strongest_over_noise", "strongest static bin over noise", "dB", 6.0)
 def strongest_over_noise(evidence: SignalEvidence) -> FrameValues:
     """Strongest static range bin beyond 0.5 m over the noise of one ADC sample, in dB. Raises CannotSeeError."""
-    if evidence.noise is None:
-        raise CannotSeeError(f"{evidence.cube.config.num_loops} loops a frame show no noise")
     far = evidence.in_window & (evidence.range_m >= 0.5)
     if not far.any():
         raise CannotSeeError("no range bin beyond 0.5 m")
     return FrameValues(decibels(evidence.still_power[:, far].max(axis=1) / evidence.noise * evidence.noise_share))
 
 
+@feature("leakage_level", "leakage near range 0 over noise", "dB", 4.0)
 def leakage_level(evidence: SignalEvidence) -> FrameValues:
     """Strongest static power within 0.15 m over the noise of a chirp's range bin, in dB.
 
     Transmitters reach receivers over the board and the radome. Of one chirp, so that the number of loops does not
     matter: a cell of a frame of N loops has 10 log10(N / 1.5) dB less noise. Raises CannotSeeError.
     """
-    noise = _noise_at_range_0(evidence) / noise_share(1, evidence.cube.config.num_loops)
+    noise = evidence.noise_at_range_0 / noise_share(1, evidence.cube.config.num_loops)
     return FrameValues(decibels(evidence.still_power[:, evidence.range_m <= LEAKAGE_M].max(axis=1) / noise))
 
 
+@feature("leakage_spread", "leakage, strongest over weakest pair", "dB", 4.0)
 def leakage_spread(evidence: SignalEvidence) -> FrameValues:
     """Strongest over weakest pair of transmitter and receiver within 0.15 m, in dB. Raises CannotSeeError."""
-    _noise_at_range_0(evidence)
+    _ = evidence.noise_at_range_0
     pairs = (np.abs(evidence.still[:, evidence.range_m <= LEAKAGE_M]) ** 2).max(axis=1)
     return FrameValues(decibels(pairs.max(axis=1) / np.maximum(pairs.min(axis=1), 1e-300)))
 
 
+@feature("leakage_skirt", "end of the leakage's skirt", "m", 0.2, whole_frames=True)
 def leakage_skirt(evidence: SignalEvidence) -> FrameValues:
     """Range in m at which the skirt of the leakage has fallen to 3 dB over the noise of a cell.
 
     Raises CannotSeeError where an echo covers its end.
     """
-    noise = _noise_at_range_0(evidence)
+    noise = evidence.noise_at_range_0
     power = evidence.still_power / noise[:, None]
     first = evidence.still_power[:, evidence.range_m <= LEAKAGE_M].argmax(axis=1)
     values = np.full(len(power), np.nan)
@@ -106,8 +108,8 @@ def first_chirp(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
     adc = evidence.signal.adc
     if adc is None:
         raise CannotSeeError("the windowed cube is blind to the first chirp; it takes raw samples")
-    if adc.config.num_loops < FEWEST_CHIRPS or evidence.moving_profile is None:
-        raise CannotSeeError(f"{adc.config.num_loops} loops a frame are too few")
+    if not evidence.has_doppler:
+        raise CannotSeeError(f"{adc.config.num_loops} loops per frame are too few")
     frames = len(evidence.still)
     loops = adc.samples[:frames, : CHIRPS_AFTER.stop]
     spectrum = np.fft.fft(loops * hann(adc.config.num_samples), axis=-1)[..., _still_bins(evidence)]
@@ -119,14 +121,27 @@ def first_chirp(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
     for value, name in ((100 * (np.abs(own) - 1), "amplitude"), (1e3 * np.angle(own), "phase")):
         alone = value[:, :, first] - (value[:, :, rest].mean(axis=2) if rest else 0)
         varies = float(np.median(alone[:, CHIRPS_AFTER].std(axis=1))) / np.sqrt(frames)
-        if varies > MOST_VARIATION[name]:
+        if varies > MAX_VARIATION[name]:
             raise CannotSeeError(f"the {name} of its other chirps varies by {varies:.2g} {UNITS[name]}")
         found.append(alone[:, 0])
     return found[0], found[1]
 
 
+@feature("first_chirp_amplitude", "first chirp of a frame, amplitude", "%", 0.1, whole_frames=True)
+def first_chirp_amplitude(evidence: SignalEvidence) -> FrameValues:
+    """Amplitude of a frame's first chirp over the third to sixth, minus that of other transmitters."""
+    return FrameValues(first_chirp(evidence)[0])
+
+
+@feature("first_chirp_phase", "first chirp of a frame, phase", "mrad", 0.5, whole_frames=True)
+def first_chirp_phase(evidence: SignalEvidence) -> FrameValues:
+    """Phase of a frame's first chirp against the third to sixth, minus that of other transmitters."""
+    return FrameValues(first_chirp(evidence)[1])
+
+
+@feature("drift", "drift of static cells over frames", "mrad/m", 0.5, whole_frames=True)
 def drift(evidence: SignalEvidence) -> FrameValues:
-    """Size of the phase of static cells that grows with range, relative to its mean over the frames, in mrad a metre.
+    """Phase of static cells that grows with range, against its mean over the frames: absolute slope in mrad/m.
 
     An oscillator that is off by the share e turns a cell at range r by 4 pi r e / wavelength. Raises CannotSeeError.
     """
@@ -135,18 +150,18 @@ def drift(evidence: SignalEvidence) -> FrameValues:
 
 
 def drift_slopes(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
-    """The same with its sign, and its standard error, (frame,) each, in mrad a metre. Raises CannotSeeError."""
+    """The same with its sign, and its standard error, (frame,) each, in mrad/m. Raises CannotSeeError."""
     still = evidence.still
-    if len(still) < FEWEST_DRIFT_FRAMES:
-        raise CannotSeeError(f"it takes {FEWEST_DRIFT_FRAMES} frames, and these are {len(still)}")
+    if len(still) < MIN_DRIFT_FRAMES:
+        raise CannotSeeError(f"it takes {MIN_DRIFT_FRAMES} frames, and these are {len(still)}")
     mean = still.mean(axis=0)
     level = (np.abs(mean) ** 2).mean(axis=1)
     moves = (np.abs(still - mean) ** 2).mean(axis=(0, 2))
     config = evidence.cube.config
     wraps = config.first_range_bin + np.arange(still.shape[1]) >= config.num_unambiguous_range_bins - WRAPPED_BINS
-    steady = np.flatnonzero((moves < 0.01 * level) & (evidence.range_m > 0.25) & np.logical_not(wraps))
+    steady = np.flatnonzero((moves < 0.01 * level) & (evidence.range_m > 0.25) & ~wraps)
     range_m = evidence.range_m[steady]
-    if len(steady) < 4 or np.ptp(range_m) < SHORTEST_DRIFT_M:
+    if len(steady) < 4 or np.ptp(range_m) < MIN_DRIFT_SPAN_M:
         raise CannotSeeError("static cells span less than half a metre")
     phase = np.angle((still[:, steady] * mean[steady].conj()).sum(axis=2))
     weight = np.sqrt(level[steady] / np.maximum(moves[steady], 1e-30 + 1e-9 * level[steady]))
@@ -157,91 +172,15 @@ def drift_slopes(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
     return 1e3 * fitted[1], 1e3 * error
 
 
-def _whole_band(evidence: SignalEvidence) -> np.ndarray:
-    """Noise (frame, range) of all range bins. Raises CannotSeeError where the cube was cut."""
-    config = evidence.cube.config
-    if evidence.noise_of_bin is None:
-        raise CannotSeeError(f"{config.num_loops} loops a frame show no noise")
-    if config.num_range_bins < config.num_unambiguous_range_bins:
-        raise CannotSeeError("the range window is cut; it takes raw samples or a cube of all range bins")
-    return evidence.noise_of_bin
-
-
 def _middle(noise: np.ndarray) -> np.ndarray:
     low, high = (int(share * noise.shape[1]) for share in MIDDLE)
     return np.median(noise[:, low:high], axis=1)
 
 
-def _noise_at_range_0(evidence: SignalEvidence) -> np.ndarray:
-    config = evidence.cube.config
-    if config.first_range_bin:
-        raise CannotSeeError(f"the range window begins at {evidence.range_m[0]:.2f} m; it takes raw samples")
-    if not config.complex_samples:
-        raise CannotSeeError("of real samples the bins near range 0 hold the converter's offset")
-    if evidence.noise is None:
-        raise CannotSeeError(f"{config.num_loops} loops a frame show no noise")
-    return evidence.noise
-
-
 def _still_bins(evidence: SignalEvidence) -> np.ndarray:
     """Range bins without movement. Raises CannotSeeError where there are none."""
-    assert evidence.moving_profile is not None
     moving = evidence.moving_profile[0].mean(axis=0)
     still = np.flatnonzero(moving < STILL_SHARE * evidence.still_power.mean(axis=0))
     if not len(still):
         raise CannotSeeError("no range bin is static to a thousandth of its energy")
     return still
-
-
-FEATURES = (
-    Feature(
-        name="if_last_of_band", title="noise in the last 5 % of the band", unit="dB", tolerance=1.0,
-        definition="noise in the last 5 % of the beat frequencies over that from 30 to 80 % of them",
-        measure=last_of_band,
-    ),
-    Feature(
-        name="if_near_band", title="noise in range bins 2 to 6", unit="dB", tolerance=1.0,
-        definition="noise in range bins 2 to 6 over that from 30 to 80 % of the beat frequencies",
-        measure=near_band,
-    ),
-    Feature(
-        name="noise_level", title="noise of a sample", unit="dBm", tolerance=3.0,
-        definition="noise power of one ADC sample at the receiver's port",
-        measure=noise_level,
-    ),
-    Feature(
-        name="strongest_over_noise", title="strongest static bin over noise", unit="dB", tolerance=6.0,
-        definition="strongest static range bin beyond 0.5 m over the noise of one ADC sample",
-        measure=strongest_over_noise,
-    ),
-    Feature(
-        name="leakage_level", title="leakage near range 0 over noise", unit="dB", tolerance=4.0,
-        definition="strongest static power within 0.15 m, over the noise of a range bin of one chirp",
-        measure=leakage_level,
-    ),
-    Feature(
-        name="leakage_spread", title="leakage, strongest over weakest pair", unit="dB", tolerance=4.0,
-        definition="strongest over weakest pair of transmitter and receiver within 0.15 m",
-        measure=leakage_spread,
-    ),
-    Feature(
-        name="leakage_skirt", title="end of the leakage's skirt", unit="m", tolerance=0.2,
-        definition="range at which static power has fallen from range 0 to 3 dB over the noise of a cell",
-        measure=leakage_skirt, whole_frames=True,
-    ),
-    Feature(
-        name="first_chirp_amplitude", title="first chirp of a frame, amplitude", unit="%", tolerance=0.1,
-        definition="amplitude of a frame's first chirp over the third to sixth, less that of other transmitters",
-        measure=lambda evidence: FrameValues(first_chirp(evidence)[0]), whole_frames=True,
-    ),
-    Feature(
-        name="first_chirp_phase", title="first chirp of a frame, phase", unit="mrad", tolerance=0.5,
-        definition="phase of a frame's first chirp against the third to sixth, less that of other transmitters",
-        measure=lambda evidence: FrameValues(first_chirp(evidence)[1]), whole_frames=True,
-    ),
-    Feature(
-        name="drift", title="drift of static cells over frames", unit="mrad/m", tolerance=0.5,
-        definition="phase of static cells that grows with range, against its mean over the frames; median size",
-        measure=drift, whole_frames=True,
-    ),
-)  # fmt: skip

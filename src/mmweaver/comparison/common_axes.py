@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmweaver.comparison.signal_evidence import FEWEST_LOOPS, ComparedSignal, SignalEvidence
+from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
 from mmweaver.core.errors import InputError
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 
-FEWEST_BINS = 4
+MIN_BINS = 4
 AZIMUTHS = 61
-LOWEST_DB = -300.0
+MIN_DB = -300.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,19 +21,13 @@ class CommonAxes:
     """Centres of the cells that both signals are shown in."""
 
     range_m: np.ndarray
-    radial_velocity_mps: np.ndarray | None  # None where one of them has too few loops a frame
+    radial_velocity_mps: np.ndarray | None  # None where one of them has too few loops per frame
     azimuth_rad: np.ndarray | None  # None where one of them has a row of fewer than three antennas
     reference: str  # what 0 dB is
 
-
-@dataclass(frozen=True, kw_only=True)
-class SignalMaps:
-    """Power of one signal in dB on the common axes."""
-
-    range_profile_db: np.ndarray  # (range,), static power, mean over frames
-    range_doppler_db: np.ndarray | None  # (range, doppler), mean over frames
-    range_azimuth_db: np.ndarray | None  # (range, azimuth)
-    moving_over_time_db: np.ndarray | None  # (frame, range), mean chirp removed
+    @property
+    def azimuth_deg(self) -> np.ndarray | None:
+        return None if self.azimuth_rad is None else np.degrees(self.azimuth_rad)
 
 
 def shown_m(signal: ComparedSignal) -> np.ndarray:
@@ -45,23 +39,20 @@ def shown_m(signal: ComparedSignal) -> np.ndarray:
 
 
 def common_window_m(
-    names: Sequence[str], ranges: Sequence[np.ndarray], asked_m: tuple[float, float] | None = None
+    names: Sequence[str], ranges: Sequence[np.ndarray], wanted_m: tuple[float, float] | None = None
 ) -> tuple[float, float]:
-    """The ranges that all signals show and that are asked for, of the ranges of their bins.
+    """The ranges that all signals show and that are wanted, of the ranges of their bins.
 
     Raises InputError for fewer than four bins.
     """
-    if asked_m is not None:
-        names, ranges = [*names, "--range"], [*ranges, np.linspace(*asked_m, 2)]
+    if wanted_m is not None:
+        names, ranges = [*names, "--range"], [*ranges, np.linspace(*wanted_m, 2)]
     near, far = max(float(one[0]) for one in ranges), min(float(one[-1]) for one in ranges)
-    shown = ranges if asked_m is None else ranges[:-1]
+    shown = ranges if wanted_m is None else ranges[:-1]
     step_m = max(float(np.diff(one[:2])[0]) if len(one) > 1 else np.inf for one in shown)
-    if far - near < (FEWEST_BINS - 1) * step_m:
-        last, first = (
-            pick(range(len(ranges)), key=key)
-            for pick, key in ((max, lambda at: float(ranges[at][0])), (min, lambda at: float(ranges[at][-1])))
-        )
-        spans = [f"{names[at]} shows {ranges[at][0]:.2f} to {ranges[at][-1]:.2f} m" for at in sorted({last, first})]
+    if far - near < (MIN_BINS - 1) * step_m:
+        apart = {[one[0] for one in ranges].index(near), [one[-1] for one in ranges].index(far)}
+        spans = [f"{names[at]} shows {ranges[at][0]:.2f} to {ranges[at][-1]:.2f} m" for at in sorted(apart)]
         raise InputError(f"nothing to compare: {', '.join(spans)}; give recordings of common ranges")
     return near, far
 
@@ -73,7 +64,7 @@ def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
     near, far = max(near, a.window_m[0]), min(far, a.window_m[1])
     step_m = max(one.range_resolution_m for one in configs)
     velocity = None
-    if min(one.num_loops for one in configs) >= FEWEST_LOOPS:
+    if a.has_doppler and b.has_doppler:
         step = max(one.velocity_resolution_mps for one in configs)
         ends = [one.cube.grid.radial_velocity_mps[[0, -1]] / step for one in (a, b)]  # a Doppler axis has no +maximum
         first, last = max(one[0] for one in ends), min(one[1] for one in ends)
@@ -82,46 +73,50 @@ def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
     azimuth = azimuth_axis_rad(AZIMUTHS) if min(len(row) for row in rows) >= 3 else None
     if all(np.isfinite(one.cube.scale) for one in (a, b)):
         reference = "dBm at the receiver's port"
-    elif a.noise is not None and b.noise is not None:
+    elif a.has_doppler and b.has_doppler:
         reference = "dB over the noise of a sample"
     else:
         reference = "dB relative to the strongest static range"
     return CommonAxes(
-        range_m=np.arange(near, far + 1e-9, step_m), radial_velocity_mps=velocity, azimuth_rad=azimuth,
+        range_m=np.arange(near, far + 1e-9, step_m),
+        radial_velocity_mps=velocity,
+        azimuth_rad=azimuth,
         reference=reference,
-    )  # fmt: skip
+    )
 
 
-def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> SignalMaps:
-    """The maps of one signal on common axes; energy is kept, whatever the size of its own cells."""
+def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> dict[str, np.ndarray]:
+    """The power of one signal in dB on common axes; energy is kept, whatever the size of its own cells.
+
+    Returns:
+        Mean over frames of "range_profile" (range,), static power, "range_doppler" (range, doppler) and
+        "range_azimuth" (range, azimuth); and "moving" (range, frame), mean chirp removed. Maps without axes are
+        missing.
+    """
     cube, range_m = evidence.cube, evidence.range_m
-    gain = _gain(evidence, axes)
-    profile = _on_axis(evidence.still_power.mean(axis=0), range_m, axes.range_m)
-    doppler = azimuth = moving = None
+    power = {"range_profile": _resampled(evidence.still_power.mean(axis=0), range_m, axes.range_m)}
     if axes.radial_velocity_mps is not None:
-        own = _on_axis(evidence.power.mean(axis=0), range_m, axes.range_m)
-        doppler = _on_axis(own.T, cube.grid.radial_velocity_mps, axes.radial_velocity_mps).T
+        own = _resampled(evidence.power.mean(axis=0), range_m, axes.range_m)
+        power["range_doppler"] = _resampled(own.T, cube.grid.radial_velocity_mps, axes.radial_velocity_mps).T
         over_time = range_doppler_power(remove_static(cube)).sum(axis=2)
-        moving = _on_axis(over_time.T, range_m, axes.range_m).T
+        power["moving"] = _resampled(over_time.T, range_m, axes.range_m)
     if axes.azimuth_rad is not None:
-        azimuth = _on_axis(range_azimuth_power(cube, axes.azimuth_rad).mean(axis=0), range_m, axes.range_m)
-    return SignalMaps(
-        range_profile_db=_db(profile * gain), range_doppler_db=None if doppler is None else _db(doppler * gain),
-        range_azimuth_db=None if azimuth is None else _db(azimuth * gain),
-        moving_over_time_db=None if moving is None else _db(moving * gain),
-    )  # fmt: skip
+        own = range_azimuth_power(cube, axes.azimuth_rad).mean(axis=0)
+        power["range_azimuth"] = _resampled(own, range_m, axes.range_m)
+    gain, lowest = _gain(evidence, axes), 10 ** (MIN_DB / 10)
+    return {name: 10 * np.log10(np.maximum(one * gain, lowest)) for name, one in power.items()}
 
 
 def _gain(evidence: SignalEvidence, axes: CommonAxes) -> float:
     """What power is multiplied with, so that 1 is 0 dB of the common reference."""
     if axes.reference.startswith("dBm"):
         return evidence.cube.scale**2
-    if evidence.noise is not None and "noise" in axes.reference:
+    if "noise" in axes.reference:
         return evidence.noise_share / max(float(np.median(evidence.noise)), 1e-300)
     return 1 / max(float(evidence.still_power.mean(axis=0)[evidence.in_window].max()), 1e-300)
 
 
-def _on_axis(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+def _resampled(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Power along the first axis, moved from cells at `own` to cells at `wanted` centres; sums are kept."""
     from_edges, to_edges = _edges(own), _edges(wanted)
     summed = np.concatenate([np.zeros((1, *power.shape[1:])), np.cumsum(power, axis=0)])
@@ -135,7 +130,3 @@ def _on_axis(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarr
 def _edges(centre: np.ndarray) -> np.ndarray:
     half = (centre[1] - centre[0]) / 2
     return np.append(centre - half, centre[-1] + half)
-
-
-def _db(power: np.ndarray) -> np.ndarray:
-    return 10 * np.log10(np.maximum(power, 10 ** (LOWEST_DB / 10)))

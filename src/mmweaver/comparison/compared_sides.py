@@ -1,7 +1,7 @@
-"""What may stand on either side of a comparison: files and folders of any kind, records, or folders of these."""
+"""The signals of either side of a comparison: files and folders of any kind, records, or folders of these."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,29 +10,17 @@ import numpy as np
 from mmweaver.comparison.signal_evidence import ComparedSignal
 from mmweaver.compression.mmw_codec import read_cube
 from mmweaver.core.errors import InputError
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.capture_std import is_capture
-from mmweaver.recordings.read_recording import read_recording
+from mmweaver.recordings.read_recording import RawReading, read_recording
 from mmweaver.stored_result import ADC_FILE, StoredResult, read_result
 from mmweaver.stream_folder import is_stream
 
 CUBE, POINTS = "radar.npz", "points.npz"
 RAW_SUFFIXES = (".bin", ".npy", ".npz", ".pcap", ".pcapng")
-MOST_RECORDINGS, MOST_BYTES = 200, 4_000_000_000
-
-
-@dataclass(frozen=True, kw_only=True)
-class RawReading:
-    """How raw samples are read; see `recordings.read_recording`."""
-
-    radar: str | Path | RadarConfig | None = None
-    layout: str | None = None
-    axes: str | None = None
-    iq_order: str | None = None
-    tx_order: tuple[int, ...] | None = None
+MAX_RECORDINGS, MAX_BYTES = 200, 4_000_000_000
 
 
 def signals_of(source: Any, reading: RawReading, name: str) -> list[ComparedSignal]:
@@ -43,21 +31,21 @@ def signals_of(source: Any, reading: RawReading, name: str) -> list[ComparedSign
     if isinstance(source, ComparedSignal):
         return [source]
     if isinstance(source, str | Path):
-        return _of_path(Path(source), reading)
+        return _path_signals(Path(source), reading)
     if isinstance(source, AdcCube):
         return [ComparedSignal(name=name, cube=radar_cube(source), adc=source)]
     if isinstance(source, RadarCube):
         return [ComparedSignal(name=name, cube=source)]
     if isinstance(getattr(source, "cube", None), RadarCube):  # Generation, Recording, ProcessedRecording, StoredResult
-        return [_of_record(source, name)]
+        return [_record_signal(source, name)]
     if isinstance(source, Sequence) and source:
         return [one for part in source for one in signals_of(part, reading, name)]
     raise InputError(f"{name} cannot be compared: give a path, a RadarCube, an AdcCube or what Weaver.generate gives")
 
 
-def _of_record(source: Any, name: str) -> ComparedSignal:
+def _record_signal(source: Any, name: str) -> ComparedSignal:
     if isinstance(source, StoredResult):
-        return _of_result(source)
+        return _result_signal(source)
     adc, points, meta = (getattr(source, part, None) for part in ("adc", "points", "meta"))
     is_seen_by_cube = getattr(source, "compensate_tdm", True)
     return ComparedSignal(
@@ -66,22 +54,22 @@ def _of_record(source: Any, name: str) -> ComparedSignal:
     )  # fmt: skip
 
 
-def _of_path(path: Path, reading: RawReading) -> list[ComparedSignal]:
+def _path_signals(path: Path, reading: RawReading) -> list[ComparedSignal]:
     check_exists(path, "a recording, a result folder or a .mmw file")
     if not path.is_dir() or _is_signal(path) or reading.layout == "hupr":
-        return [_of_one(path, reading)]
+        return [_path_signal(path, reading)]
     inside = sorted(one for one in path.iterdir() if _is_signal(one))
     inside += sorted(path.glob("*/adc_data.bin")) if not inside else []
     if not inside:
-        return [_of_one(path, reading)]  # whose reader says what is missing
-    if len(inside) > MOST_RECORDINGS:
-        raise InputError(f"{path} holds {len(inside)} recordings; compare at most {MOST_RECORDINGS} at a time")
+        return [_path_signal(path, reading)]  # its reader reports what is missing
+    if len(inside) > MAX_RECORDINGS:
+        raise InputError(f"{path} holds {len(inside)} recordings; compare at most {MAX_RECORDINGS} at a time")
     signals: list[ComparedSignal] = []
     size = 0
     for one in inside:
-        signals.append(_of_one(one, reading))
+        signals.append(_path_signal(one, reading))
         size += signals[-1].cube.values.nbytes + (0 if signals[-1].adc is None else signals[-1].adc.samples.nbytes)
-        if size > MOST_BYTES:
+        if size > MAX_BYTES:
             raise InputError(
                 f"{path}: the first {len(signals)} of {len(inside)} recordings fill the memory; give fewer"
             )
@@ -95,22 +83,18 @@ def _is_signal(path: Path) -> bool:
     return path.suffix.lower() in (".mmw", *RAW_SUFFIXES) and path.name not in (POINTS, "pose.npz", "analysis.npz")
 
 
-def _of_one(path: Path, reading: RawReading) -> ComparedSignal:
+def _path_signal(path: Path, reading: RawReading) -> ComparedSignal:
     if path.suffix.lower() == ".mmwl":
         raise InputError(f"{path} holds packed raw samples; unpack it first: mmweaver decompress FILE -o ADC_DATA.bin")
     if path.suffix.lower() == ".mmw":
         return ComparedSignal(name=path.name, cube=read_cube(path))
     if path.is_dir() and (path / CUBE).is_file() and (path / POINTS).is_file():
-        return _of_result(read_result(path))
-    given = _reading_of(path, reading)
-    found = read_recording(
-        path, given.radar, layout=given.layout, axes=given.axes, iq_order=given.iq_order, tx_order=given.tx_order
-    )
-    return replace(_of_record(found, path.name), name=path.name or str(path))
+        return _result_signal(read_result(path))
+    return replace(_record_signal(read_recording(path, **vars(_reading_of(path, reading))), path.name), name=path.name)
 
 
 def _reading_of(path: Path, reading: RawReading) -> RawReading:
-    """What of the options is for this path; the rest is for the other side."""
+    """The options that apply to this path; the others apply to the other side."""
     if path.is_dir() and _is_signal(path):
         return RawReading()
     if path.suffix == ".npz":
@@ -118,7 +102,7 @@ def _reading_of(path: Path, reading: RawReading) -> RawReading:
     return reading if path.is_dir() or path.suffix == ".npy" else replace(reading, axes=None, layout=None)
 
 
-def _of_result(result: StoredResult) -> ComparedSignal:
+def _result_signal(result: StoredResult) -> ComparedSignal:
     """With its raw samples where it holds any, in the scale of its cube."""
     adc = None
     if (result.folder / ADC_FILE).is_file():

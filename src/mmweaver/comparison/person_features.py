@@ -4,16 +4,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from mmweaver.comparison.measured_feature import CannotSeeError, Feature, FrameValues, decibels
-from mmweaver.comparison.signal_evidence import NEAREST_BODY_M, SignalEvidence
+from mmweaver.comparison.measured_feature import FrameValues, feature
+from mmweaver.comparison.signal_evidence import NEAREST_BODY_M, CannotSeeError, SignalEvidence, decibels
 from mmweaver.dsp.slow_time import moving_cells
 from mmweaver.dsp.windows import hann
 
 BODY_HALF_M = 0.3
-LEAST_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be distinguished from none
+MIN_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be distinguished from none
 SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over the median bin
 SEATED_MPS = 0.3  # a breathing chest is slower
 WINDOW_S = 8.0
+MIN_SLOW_FRAMES = 32
 LOWEST_HZ = 0.1
 WAVES = 4  # multiples of the body's phase that an echo at twice the range is fitted with
 
@@ -24,8 +25,6 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
     Paths body -> room -> radar and back are longer than the direct one: their energy lies behind the body at its own
     Doppler. Raises CannotSeeError.
     """
-    if evidence.moving_profile is None:
-        raise CannotSeeError(f"{evidence.cube.config.num_loops} loops a frame separate no movement from clutter")
     profile, noise = evidence.moving_profile
     if not (evidence.body_bin >= 0).any():
         raise CannotSeeError("nobody moves 13 dB above the noise")
@@ -36,7 +35,7 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
         if body < 0 or behind_m[-1] < far_m - step_m:
             continue
         there = (behind_m >= near_m) & (behind_m <= far_m)
-        least = LEAST_NOISE_SHARE * float(noise[frame, there].sum())
+        least = MIN_NOISE_SHARE * float(noise[frame, there].sum())
         energy = float(profile[frame, there].sum())
         limited[frame] = energy < least
         values[frame] = decibels(max(energy, least) / profile[frame, np.abs(behind_m) <= BODY_HALF_M].sum())
@@ -46,6 +45,7 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
     return FrameValues(values, at_most=bool(limited[seen].mean() > 0.5))
 
 
+@feature("echo_at_twice_the_range", "echo at twice a seated person's range", "dB", 5.0, whole_frames=True)
 def echo_at_twice_the_range(evidence: SignalEvidence) -> FrameValues:
     """Power at twice the body's range whose phase swings by twice the breath, over the body's own power, in dB.
 
@@ -69,13 +69,13 @@ def echo_at_twice_the_range(evidence: SignalEvidence) -> FrameValues:
 
 
 def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) -> FrameValues:
-    """Displacement of a seated person from `low_hz` to `high_hz` over all of it, a value every 8 s, in dB.
+    """Displacement of a seated person from `low_hz` to `high_hz` over all of it, one value per 8 s, in dB.
 
     Breathing is below 0.6 Hz; what is above 3 Hz is tremor, heart sounds and noise. Raises CannotSeeError.
     """
     period_s = evidence.cube.config.frame_period_s
     if 0.5 / period_s < high_hz:
-        raise CannotSeeError(f"{1 / period_s:.1f} frames a second show nothing above {0.5 / period_s:.1f} Hz")
+        raise CannotSeeError(f"{1 / period_s:.1f} frames per second show nothing above {0.5 / period_s:.1f} Hz")
     _, phase = _seated(evidence)
     values = []
     for part in _windows(len(phase), period_s):
@@ -89,12 +89,12 @@ def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) ->
 
 def _seated(evidence: SignalEvidence) -> tuple[int, np.ndarray]:
     """Range bin and phase (frame,) of somebody who sits. Raises CannotSeeError."""
-    config, profile = evidence.cube.config, evidence.slow_profile
-    duration_s = len(evidence.still) * config.frame_period_s
-    if profile is None or duration_s < WINDOW_S:
+    duration_s = len(evidence.still) * evidence.cube.config.frame_period_s
+    if len(evidence.still) < MIN_SLOW_FRAMES or duration_s < WINDOW_S:
         raise CannotSeeError(f"slow time needs {WINDOW_S:g} s, and this is {duration_s:.1f} s")
     if (evidence.body_bin >= 0).mean() > 0.5 and _speed_mps(evidence) > SEATED_MPS:
         raise CannotSeeError("the person moves about")
+    profile = (np.abs(evidence.still - evidence.still.mean(axis=0)) ** 2).mean(axis=(0, 2))
     far = evidence.range_m >= NEAREST_BODY_M
     if not far.any() or profile[far].max() < SLOW_OVER_REST * np.median(profile[far]):
         raise CannotSeeError("nobody sits and breathes: no range bin moves 20 dB above the others")
@@ -120,30 +120,25 @@ def _windows(frames: int, period_s: float) -> list[slice]:
     return [slice(low, high) for low, high in pairwise(edges)]
 
 
-FEATURES = (
-    Feature(
-        name="behind_body_near", title="moving energy 0.6 to 1 m behind the body", unit="dB", tolerance=4.0,
-        definition="moving energy 0.6 to 1 m behind the strongest moving range bin, over that within 0.3 m of it",
-        measure=lambda evidence: behind_body(evidence, 0.6, 1.0),
-    ),
-    Feature(
-        name="behind_body_far", title="moving energy 1 to 2 m behind the body", unit="dB", tolerance=4.0,
-        definition="moving energy 1 to 2 m behind the strongest moving range bin, over that within 0.3 m of it",
-        measure=lambda evidence: behind_body(evidence, 1.0, 2.0),
-    ),
-    Feature(
-        name="echo_at_twice_the_range", title="echo at twice a seated person's range", unit="dB", tolerance=5.0,
-        definition="power at twice the range whose phase is twice the body's, over the body's moving power",
-        measure=echo_at_twice_the_range, whole_frames=True,
-    ),
-    Feature(
-        name="seated_3_to_5_hz", title="seated person, 3 to 5 Hz", unit="dB", tolerance=4.0,
-        definition="energy of a seated person's displacement from 3 to 5 Hz, over all of it above 0.1 Hz",
-        measure=lambda evidence: seated_slow_time(evidence, 3.0, 5.0), whole_frames=True,
-    ),
-    Feature(
-        name="seated_7_to_10_hz", title="seated person, 7 to 10 Hz", unit="dB", tolerance=4.0,
-        definition="energy of a seated person's displacement from 7 to 10 Hz, over all of it above 0.1 Hz",
-        measure=lambda evidence: seated_slow_time(evidence, 7.0, 10.0), whole_frames=True,
-    ),
-)  # fmt: skip
+@feature("behind_body_near", "moving energy 0.6 to 1 m behind the body", "dB", 4.0)
+def behind_body_near(evidence: SignalEvidence) -> FrameValues:
+    """Moving energy 0.6 to 1 m behind the strongest moving range bin, over that within 0.3 m of it."""
+    return behind_body(evidence, 0.6, 1.0)
+
+
+@feature("behind_body_far", "moving energy 1 to 2 m behind the body", "dB", 4.0)
+def behind_body_far(evidence: SignalEvidence) -> FrameValues:
+    """Moving energy 1 to 2 m behind the strongest moving range bin, over that within 0.3 m of it."""
+    return behind_body(evidence, 1.0, 2.0)
+
+
+@feature("seated_3_to_5_hz", "seated person, 3 to 5 Hz", "dB", 4.0, whole_frames=True)
+def seated_3_to_5_hz(evidence: SignalEvidence) -> FrameValues:
+    """Energy of a seated person's displacement from 3 to 5 Hz, over all of it above 0.1 Hz."""
+    return seated_slow_time(evidence, 3.0, 5.0)
+
+
+@feature("seated_7_to_10_hz", "seated person, 7 to 10 Hz", "dB", 4.0, whole_frames=True)
+def seated_7_to_10_hz(evidence: SignalEvidence) -> FrameValues:
+    """Energy of a seated person's displacement from 7 to 10 Hz, over all of it above 0.1 Hz."""
+    return seated_slow_time(evidence, 7.0, 10.0)

@@ -1,4 +1,4 @@
-"""One recorded or simulated signal, and what its features are measured on: static cells, movement, noise, the body."""
+"""One recorded or simulated signal, and what features are measured on: static cells, movement, noise, the body."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,19 +14,28 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
 from mmweaver.dsp.windows import noise_share
 
-LARGEST_CUBE_BYTES = 256_000_000  # of a signal; the rest of a longer one is left out
+MAX_CUBE_BYTES = 256_000_000  # of a signal; the rest of a longer one is left out
 QUARTERS = 4  # a recording of one or two frames is measured on quarters of them
-FEWEST_UNITS = 4  # frames that show a spread
-FEWEST_LOOPS = 8  # of a Doppler axis that separates movement from clutter
+MIN_UNITS = 4  # frames that show a spread
+MIN_LOOPS = 8  # of a Doppler axis that separates movement from clutter
 PERSON_OVER_NOISE = 20.0  # 13 dB: moving energy of a range bin over the noise in it
 NEAREST_BODY_M = 0.25  # leakage and cables lie nearer
-FEWEST_SLOW_FRAMES = 32
 NOISE_BINS = 9  # range bins over which noise is smoothed: an IF response is smooth
+
+
+class CannotSeeError(Exception):
+    """A feature that a recording does not show; the message gives the reason."""
+
+
+def decibels(ratio: np.ndarray | float) -> np.ndarray:
+    """10 log10 of a ratio of powers; nan where it is not positive."""
+    power = np.asarray(ratio, float)
+    return np.asarray(10 * np.log10(np.where((power > 0) & np.isfinite(power), power, np.nan)))
 
 
 @dataclass(frozen=True, kw_only=True)
 class ComparedSignal:
-    """A signal as `compare` takes it; `adc` shows all range bins, the cube only those that were kept."""
+    """One side of a comparison; `adc` shows all range bins, the cube only those that were kept."""
 
     name: str
     cube: RadarCube
@@ -74,7 +83,7 @@ class SignalEvidence:
     @cached_property
     def is_lost(self) -> np.ndarray:
         """Mask (frame,) of frames that hold nothing but zeros: lost packets."""
-        return np.logical_not(self.cube.values.reshape(len(self.cube.values), -1).any(axis=1))
+        return ~self.cube.values.any(axis=(1, 2, 3))
 
     @cached_property
     def still(self) -> np.ndarray:
@@ -93,16 +102,44 @@ class SignalEvidence:
         return velocity > 0.5 * self.cube.config.max_velocity_mps
 
     @cached_property
-    def noise_of_bin(self) -> np.ndarray | None:
-        """Noise power of a cell, (frame, range): median over the outer Doppler bins; None for few loops."""
-        if self.cube.config.num_loops < FEWEST_LOOPS:
-            return None
+    def mean_still(self) -> np.ndarray:
+        """Zero Doppler, mean over the frames that were not lost, complex128 (range, antenna)."""
+        return self.still[~self.is_lost].mean(axis=0)
+
+    @property
+    def has_doppler(self) -> bool:
+        """Whether a frame has enough loops to separate movement and noise from clutter."""
+        return self.cube.config.num_loops >= MIN_LOOPS
+
+    @cached_property
+    def noise_of_bin(self) -> np.ndarray:
+        """Noise power of a cell, (frame, range): median over the outer Doppler bins. Raises CannotSeeError."""
+        if not self.has_doppler:
+            raise CannotSeeError(f"{self.cube.config.num_loops} loops per frame show no noise")
         return np.median(self.power[:, :, self.far_doppler], axis=2)
 
     @cached_property
-    def noise(self) -> np.ndarray | None:
-        """Noise power of a cell, (frame,); None for few loops."""
-        return None if self.noise_of_bin is None else np.median(self.noise_of_bin, axis=1)
+    def noise(self) -> np.ndarray:
+        """Noise power of a cell, (frame,). Raises CannotSeeError for few loops."""
+        return np.median(self.noise_of_bin, axis=1)
+
+    @property
+    def noise_of_band(self) -> np.ndarray:
+        """Noise power (frame, range) of all range bins. Raises CannotSeeError where the cube was cut."""
+        noise, config = self.noise_of_bin, self.cube.config
+        if config.num_range_bins < config.num_unambiguous_range_bins:
+            raise CannotSeeError("the range window is cut; it takes raw samples or a cube of all range bins")
+        return noise
+
+    @property
+    def noise_at_range_0(self) -> np.ndarray:
+        """Noise power of a cell, (frame,), of a signal that shows leakage. Raises CannotSeeError for any other."""
+        config = self.cube.config
+        if config.first_range_bin:
+            raise CannotSeeError(f"the range window begins at {self.range_m[0]:.2f} m; it takes raw samples")
+        if not config.complex_samples:
+            raise CannotSeeError("of real samples the bins near range 0 hold the converter's offset")
+        return self.noise
 
     @property
     def noise_share(self) -> float:
@@ -110,38 +147,30 @@ class SignalEvidence:
         return noise_share(self.cube.config.num_samples, self.cube.config.num_loops)
 
     @cached_property
-    def moving_profile(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Moving energy without noise, and the noise that was taken away, both (frame, range); None for few loops.
+    def moving_profile(self) -> tuple[np.ndarray, np.ndarray]:
+        """Moving energy minus noise, and that noise, both (frame, range). Raises CannotSeeError for few loops.
 
-        The mean chirp of each frame is removed and the Doppler bins of movement are added up. Noise is that of each
+        The mean chirp of each frame is removed and the Doppler bins of movement are summed. Noise is that of each
         range, from the outer Doppler bins: an IF filter makes it slope by some decibels, and one level for all ranges
         leaves what looks like faint movement everywhere (3 dB of the energy 1 to 2 m behind a recorded person).
         """
-        if self.cube.config.num_loops < FEWEST_LOOPS:
-            return None
+        if not self.has_doppler:
+            raise CannotSeeError(f"{self.cube.config.num_loops} loops per frame separate no movement from clutter")
         power = range_doppler_power(remove_static(self.cube))
         moving = moving_doppler(self.cube)
         outer = power[:, :, self.far_doppler & moving]
-        # a median is deaf to limbs that are fast, and below the mean of antennas' powers by a known factor
+        # a median ignores fast limbs, and is below the mean of the antennas' powers by a known factor
         noise = median_filter(np.median(outer, axis=2), size=(1, NOISE_BINS), mode="nearest")
         noise *= moving.sum() / _median_over_mean(self.cube.config.num_antennas)
         return power[:, :, moving].sum(axis=2) - noise, noise
 
     @cached_property
-    def slow_profile(self) -> np.ndarray | None:
-        """Movement over the frames, (range,): power of zero Doppler without its mean; None for few frames."""
-        if len(self.still) < FEWEST_SLOW_FRAMES:
-            return None
-        return (np.abs(self.still - self.still.mean(axis=0)) ** 2).mean(axis=(0, 2))
-
-    @cached_property
     def body_bin(self) -> np.ndarray:
         """Range bin of the strongest movement of each frame, (frame,); -1 where nothing moves 13 dB above the noise."""
-        if self.moving_profile is None:
+        if not self.has_doppler:
             return np.full(len(self.still), -1)
         profile, noise = self.moving_profile
-        allowed = np.where(self.range_m >= NEAREST_BODY_M, profile, -np.inf)
-        at = allowed.argmax(axis=1)
+        at = np.where(self.range_m >= NEAREST_BODY_M, profile, -np.inf).argmax(axis=1)
         frame = np.arange(len(at))
         return np.where(profile[frame, at] > PERSON_OVER_NOISE * noise[frame, at], at, -1)
 
@@ -152,14 +181,10 @@ class SignalEvidence:
         distance = cloud.range_m
         return cloud.select((distance >= self.points_m[0]) & (distance <= self.points_m[1]))
 
-    @property
-    def num_point_frames(self) -> int:
-        return len(self.signal.cube.values)
-
     def quarters(self) -> "SignalEvidence | None":
         """The same signal with each frame divided into four shorter ones; None where that cannot be."""
         adc = self.signal.adc
-        if adc is None or adc.config.num_loops < QUARTERS * FEWEST_LOOPS:
+        if adc is None or adc.config.num_loops < QUARTERS * MIN_LOOPS:
             return None
         loops = adc.config.num_loops // QUARTERS
         period_s = loops * adc.config.loop_period_s
@@ -175,7 +200,7 @@ def _median_over_mean(num_antennas: int) -> float:
 
 
 def _frames_that_fit(shape: tuple[int, ...]) -> int:
-    return max(1, LARGEST_CUBE_BYTES // (8 * int(np.prod(shape[1:]))))
+    return max(1, MAX_CUBE_BYTES // (8 * int(np.prod(shape[1:]))))
 
 
 def _first_frames(cube: RadarCube, frames: int) -> RadarCube:

@@ -4,6 +4,7 @@ Fields, units and where each enters: docs/board.md. An ideal board has the defau
 """
 
 import dataclasses
+import functools
 import hashlib
 import json
 from dataclasses import dataclass, field
@@ -16,11 +17,12 @@ import numpy as np
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.record_values import record_fields
 from mmweaver.core.safe_files.safe_text import MEGABYTE, parse_json, read_text
 
 BOARD_VERSION = 1
 MAX_BYTES = 4 * MEGABYTE
-MOST_TAPS, MOST_ANTENNAS, MOST_SHARES = 256, 256, 4096
+MAX_TAPS, MAX_ANTENNAS, MAX_SHARES = 256, 256, 4096
 # the largest size of each number: a board beyond it is a mistake
 LIMITS = {
     "if_gain_db": 120.0, "if_phase_deg": 36e3, "channel_gain_db": 60.0, "channel_phase_deg": 720.0,
@@ -29,10 +31,13 @@ LIMITS = {
     "first_chirp_amplitude_percent": 50.0, "first_chirp_phase_mrad": 3200.0, "drift_ppm": 100.0,
     "noise_figure_db": 100.0, "element_spacing_m": 1.0, "cfar_threshold": 65535.0,
 }  # fmt: skip
-
-
-def _none() -> np.ndarray:
-    return np.zeros(0)
+SAME_SHAPE = (
+    ("if_share", "if_gain_db", "if_phase_deg"),
+    ("channel_gain_db", "channel_phase_deg"),
+    ("coupling_real", "coupling_imag"),
+    ("leakage_level_db", "leakage_phase_deg"),
+)
+_none = functools.partial(np.zeros, 0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,9 +66,9 @@ class Board:
     first_chirp_phase_mrad: float = 0.0
     drift_ppm: float = 0.0  # rms over time of the carrier's relative error
     gain_db: float = 0.0  # of echoes, over what the radar's power and gains give
-    noise_figure_db: float | None = None  # None: the radar's
-    element_spacing_m: float | None = None  # between antennas that the radar puts half a wavelength apart; None: so
-    cfar_threshold: float | None = None  # of a TI demo's CFAR in range, in its counts; None: the settings'
+    noise_figure_db: float | None = None  # None keeps the radar's
+    element_spacing_m: float | None = None  # between antennas half a wavelength apart in the radar; None keeps that
+    cfar_threshold: float | None = None  # of a TI demo's CFAR in range, in its counts; None keeps the settings'
 
     def __post_init__(self) -> None:
         self._check_sizes()
@@ -83,23 +88,17 @@ class Board:
     def _check_shapes(self) -> None:
         """Raises InputError for tables that do not go together."""
         share, taps = self.if_share, self.leakage_range_m
-        same = [
-            ("if_share, if_gain_db and if_phase_deg", [share, self.if_gain_db, self.if_phase_deg]),
-            ("channel_gain_db and channel_phase_deg", [self.channel_gain_db, self.channel_phase_deg]),
-            ("coupling_real and coupling_imag", [self.coupling_real, self.coupling_imag]),
-            ("leakage_level_db and leakage_phase_deg", [self.leakage_level_db, self.leakage_phase_deg]),
-        ]
-        for names, arrays in same:
-            if len({one.shape for one in arrays}) > 1:
-                raise self._impossible(f"{names} must have one shape")
-        if share.ndim != 1 or len(share) > MOST_SHARES or not ((share >= 0) & (share <= 1)).all():
-            raise self._impossible(f"if_share must be a list of at most {MOST_SHARES} numbers from 0 to 1")
+        for names in SAME_SHAPE:
+            if len({getattr(self, name).shape for name in names}) > 1:
+                raise self._impossible(f"{', '.join(names[:-1])} and {names[-1]} must have one shape")
+        if share.ndim != 1 or len(share) > MAX_SHARES or not ((share >= 0) & (share <= 1)).all():
+            raise self._impossible(f"if_share must be a list of at most {MAX_SHARES} numbers from 0 to 1")
         if (np.diff(share) <= 0).any():
             raise self._impossible("if_share must rise")
-        if taps.ndim != 1 or len(taps) > MOST_TAPS or (taps < 0).any():
-            raise self._impossible(f"leakage_range_m must be a list of at most {MOST_TAPS} ranges from 0 on")
+        if taps.ndim != 1 or len(taps) > MAX_TAPS or (taps < 0).any():
+            raise self._impossible(f"leakage_range_m must be a list of at most {MAX_TAPS} ranges from 0 on")
         if len(taps) != len(self.leakage_level_db) or (len(taps) and self.leakage_level_db.ndim != 3):
-            raise self._impossible("leakage_level_db must be a list of (tx, rx) tables, one a leakage_range_m")
+            raise self._impossible("leakage_level_db must be a list of (tx, rx) tables, one per leakage_range_m")
         for name in ("element_spacing_m", "cfar_threshold"):
             if (getattr(self, name) or 1.0) <= 0:
                 raise self._impossible(f"{name} must be above 0")
@@ -117,7 +116,7 @@ class Board:
         pairs = next(iter(found), None)
         if self.coupling_real.size:
             rows, *columns = self.coupling_real.shape
-            if columns != [rows] or rows > MOST_ANTENNAS or (pairs is not None and rows != pairs[0] * pairs[1]):
+            if columns != [rows] or rows > MAX_ANTENNAS or (pairs is not None and rows != pairs[0] * pairs[1]):
                 raise self._impossible("coupling_real must be a square table of all antennas")
         return pairs
 
@@ -155,7 +154,7 @@ class Board:
         return values
 
     def to_json(self) -> str:
-        """JSON, one line a field; `from_json` restores the same Board."""
+        """JSON, one line per field; `from_json` restores the same Board."""
         lines = [f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in self.to_values().items()]
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
@@ -165,7 +164,7 @@ class Board:
         return hashlib.sha256(self.to_json().encode()).hexdigest()
 
     def meta(self) -> dict[str, Any]:
-        """What meta.json says of it: the name and all single numbers; tables are in board.json."""
+        """The entry of meta.json: the name and all single numbers; tables are in board.json."""
         tables = {each.name for each in dataclasses.fields(self) if isinstance(getattr(self, each.name), np.ndarray)}
         return {name: value for name, value in self.to_values().items() if name not in tables}
 
@@ -178,10 +177,7 @@ class Board:
         version = values.pop("board_version")
         if version != BOARD_VERSION:
             raise InputError(f"{place} has board_version {version!r}; this version reads {BOARD_VERSION}")
-        own = {each.name: each for each in dataclasses.fields(cls)}
-        if unknown := sorted(set(values) - set(own)):
-            raise InputError(f"{place}: unknown key {', '.join(unknown)[:100]}")
-        return cls(**{name: _read_value(value, name, place) for name, value in values.items()})
+        return cls(**record_fields(cls, values, place))
 
     def save(self, path: Path) -> None:
         """Writes board.json, whole or not at all."""
@@ -192,28 +188,3 @@ class Board:
 def read_board(path: Path | str) -> Board:
     """The board of a board.json. Raises InputError."""
     return Board.from_json(read_text(path, max_bytes=MAX_BYTES), str(path))
-
-
-def _read_value(value: Any, name: str, place: str) -> Any:
-    if name in ("name", "made_from"):
-        if not isinstance(value, str) or len(value) > 1000:
-            raise InputError(f"{place}: {name} must be a short text")
-        return value
-    if name == "notes":
-        if not isinstance(value, list) or not all(isinstance(note, str) for note in value):
-            raise InputError(f"{place}: notes must be a list of texts")
-        return tuple(value)
-    is_table = name.startswith(("if_", "channel_", "coupling_", "leakage_"))
-    if not is_table and type(value) in (int, float):
-        return float(value)
-    try:
-        array = np.asarray(value, float) if is_table and isinstance(value, list) and _is_numbers(value) else None
-    except (ValueError, OverflowError):
-        array = None
-    if array is None:
-        raise InputError(f"{place}: {name} must be {'a table of numbers' if is_table else 'a number'}")
-    return array
-
-
-def _is_numbers(value: Any) -> bool:
-    return all(map(_is_numbers, value)) if isinstance(value, list) else type(value) in (int, float)

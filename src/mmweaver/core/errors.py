@@ -1,7 +1,8 @@
 """The errors for bad input, which the user can correct."""
 
+import contextlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 MAX_CHARACTERS = 500
@@ -17,6 +18,16 @@ class InputError(ValueError):
 
     def __init__(self, message: object = ""):
         super().__init__(one_line(str(message)))
+
+
+@contextlib.contextmanager
+def file_named(path: object) -> Iterator[None]:
+    """Puts a file's name before the InputErrors raised inside, where they lack it."""
+    try:
+        yield
+    except InputError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
 
 
 class NoRoomError(InputError):

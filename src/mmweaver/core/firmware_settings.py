@@ -6,8 +6,8 @@ from mmweaver.core.errors import InputError
 
 AVERAGE_MODES = ("ca", "cago", "caso")  # 0, 1, 2 of cfarCfg
 DEVICES = ("xwr14xx", "xwr16xx")
-MOST_OBJECTS, MOST_OBJECTS_3D = 100, 64  # the demo's lists; an elevated row leaves memory for fewer
-SDK3_MOST_OBJECTS = 500  # of both of its detection chains, with the hardware accelerator and on the DSP
+MAX_OBJECTS, MAX_OBJECTS_3D = 100, 64  # the demo's lists; an elevated row leaves memory for fewer
+SDK3_MAX_OBJECTS = 500  # of both of its detection chains, with the hardware accelerator and on the DSP
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +82,7 @@ SDK3 = FirmwareSettings(
     device="xwr16xx",
     range_cfar=FirmwareCfar(average="caso", window=8, guard=4, noise_shift=4, threshold=SDK3_COUNTS),
     doppler_cfar=FirmwareCfar(average="ca", window=4, guard=2, noise_shift=3, cyclic=True, threshold=SDK3_COUNTS),
-    most_objects=SDK3_MOST_OBJECTS,
+    most_objects=SDK3_MAX_OBJECTS,
 )
 
 # By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal

@@ -11,13 +11,13 @@ import numpy as np
 
 from mmweaver.core.constants import BOLTZMANN_J_PER_K, NOISE_TEMPERATURE_K, SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
-from mmweaver.core.radar_limits import impossible_together, impossible_values
+from mmweaver.core.radar_limits import problems
+from mmweaver.core.record_values import record_fields
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.shapes import AntennaPositions, PerDoppler, PerRange
 from mmweaver.core.transmit_code import TxCode, decoder, separates_transmitters, virtual_tx_m, weights_of
 
 SCHEMA_VERSION = 1
-RAMP_BEYOND_BAND_HZ = 100e6  # that boards accept past the end of their band: the ADC has stopped by then
 # fields that radar files have only where they differ from the default
 RARE_FIELDS = (
     "loop_gap_s", "tx_code", "lvds_lanes", "lvds_iq_order", "rx_channels", "rx_inverted", "frame_words_before",
@@ -72,61 +72,8 @@ class RadarConfig:
     frame_words_after: int = 0
 
     def __post_init__(self) -> None:
-        for problem, text in self._problems():
-            if problem:
-                raise InputError(f"radar {self.name!r} is impossible: {text}")
-        if self.is_coded:
-            _ = self.tx_decoder  # raises where transmitters cannot be separated
-        if (wrong := impossible_together(self)) is not None:
-            raise InputError(f"radar {self.name!r} is impossible: {wrong}")
-
-    def _problems(self) -> list[tuple[bool, str]]:
-        if (wrong := impossible_values(self)) is not None:
-            return [(True, wrong)]
-        adc_end_s = self.adc_start_time_s + self.num_samples / self.sample_rate_hz
-        bins = self.num_unambiguous_range_bins
-        if self.tx_code and any(len(row) != self.num_tx or not any(map(any, row)) for row in self.tx_code):
-            return [(True, f"each row of tx_code needs a weight of each of its {self.num_tx} transmitters, not all 0")]
-        low_hz, high_hz = self.frequency_limits_hz
-        end_hz = self.start_frequency_hz + self.chirp_slope_hz_per_s * self.ramp_end_time_s
-        return [
-            (
-                adc_end_s > self.ramp_end_time_s * (1 + 1e-9),
-                f"the ADC samples until {adc_end_s * 1e6:.2f} us, but the ramp ends at {self.ramp_end_time_s * 1e6:.2f}"
-                " us; take fewer samples, a higher sample rate or a longer ramp",
-            ),
-            (
-                self.start_frequency_hz < low_hz or end_hz > high_hz + RAMP_BEYOND_BAND_HZ,
-                f"the chirp runs from {self.start_frequency_hz / 1e9:.3f} to {end_hz / 1e9:.3f} GHz, outside"
-                f" {low_hz / 1e9:g} to {high_hz / 1e9:g} GHz; lower the slope or the ramp end",
-            ),
-            (
-                self.active_time_s > self.frame_period_s * (1 + 1e-9),
-                f"its {self.num_loops} loops last {self.active_time_s * 1e3:.2f} ms, longer than the frame period of"
-                f" {self.frame_period_s * 1e3:.2f} ms; fewer loops or frames further apart",
-            ),
-            (
-                sorted(self.tx_order) != list(range(len(self.tx_position_m))),
-                f"tx_order {self.tx_order} must name each of its {len(self.tx_position_m)} transmitters once",
-            ),
-            (self.loop_gap_s < 0, "loop_gap_s cannot be negative"),
-            (self.lvds_lanes not in (0, 2, 4), f"a DCA1000 records 2 or 4 lanes, not {self.lvds_lanes}"),
-            (self.lvds_iq_order not in ("iq", "qi"), f"I/Q order is iq or qi, not {self.lvds_iq_order!r}"),
-            (
-                bool(self.rx_channels) and len(set(self.rx_channels)) != self.num_rx,
-                f"rx_channels {self.rx_channels} must name each of its {self.num_rx} receivers once",
-            ),
-            (
-                not set(self.rx_inverted) <= set(range(self.num_rx)),
-                f"rx_inverted {self.rx_inverted} names receivers that it does not have",
-            ),
-            (min(self.frame_words_before, self.frame_words_after) < 0, "words of a frame cannot be negative"),
-            (
-                self.first_range_bin + self.num_range_bins > bins,
-                f"range bins {self.first_range_bin} to {self.first_range_bin + self.num_range_bins - 1} are asked for,"
-                f" but {self.num_samples} samples give only {bins}",
-            ),
-        ]
+        for text in problems(self):
+            raise InputError(f"radar {self.name!r} is impossible: {text}")
 
     # counts -----------------------------------------------------------------------------------------------------
     @property
@@ -316,43 +263,8 @@ class RadarConfig:
         version = values.pop("schema_version", None)
         if version != SCHEMA_VERSION:
             raise InputError(f"the radar file has schema_version {version!r}; this version reads {SCHEMA_VERSION}")
-        fields = {field.name: field for field in dataclasses.fields(cls)}
-        if unknown := sorted(set(values) - set(fields)):
-            raise InputError(f"unknown key in the radar file: {', '.join(unknown)}")
-        required = {name for name, field in fields.items() if field.default is dataclasses.MISSING}
-        if missing := sorted(required - set(values)):
-            raise InputError(f"missing key in the radar file: {', '.join(missing)}")
-        return cls(**{name: _coerced(name, fields[name].type, value) for name, value in values.items()})
-
-
-def _coerced(name: str, kind: Any, value: Any) -> Any:
-    """JSON has lists and whole floats; the record has tuples and floats."""
-    if kind is float and _is_number(value):
-        return float(value)
-    if kind in (int, bool, str) and type(value) is kind:
-        return value
-    if kind == tuple[int, ...] and isinstance(value, list) and all(type(item) is int for item in value):
-        return tuple(value)
-    if kind == tuple[float, float] and _is_vector(value, 2):
-        return tuple(float(item) for item in value)
-    if kind == TxCode and isinstance(value, list) and all(_is_code_row(row) for row in value):
-        return tuple(tuple((float(one[0]), float(one[1])) for one in row) for row in value)
-    if kind == tuple[Position, ...] and isinstance(value, list) and all(_is_vector(item, 3) for item in value):
-        return tuple(tuple(float(number) for number in item) for item in value)
-    raise InputError(f"radar file: {name} cannot be {value!r}")
+        return cls(**record_fields(cls, values, "the radar file"))
 
 
 def _as_list(value: Any) -> Any:
     return [_as_list(item) for item in value] if isinstance(value, tuple) else value
-
-
-def _is_number(value: Any) -> bool:
-    return type(value) in (int, float)
-
-
-def _is_code_row(value: Any) -> bool:
-    return isinstance(value, list) and all(_is_vector(one, 2) for one in value)
-
-
-def _is_vector(value: Any, length: int) -> bool:
-    return isinstance(value, list) and len(value) == length and all(_is_number(item) for item in value)

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Complex, Float, Int
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.firmware_settings import MOST_OBJECTS, MOST_OBJECTS_3D, FirmwareSettings
+from mmweaver.core.firmware_settings import MAX_OBJECTS, MAX_OBJECTS_3D, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import PerIndex, PerPoint
@@ -145,7 +145,7 @@ def _objects(
     column, row = np.nonzero(np.fft.ifftshift(passed, axes=1).T)
     column = (column + loops // 2) % loops
     pair = elevation_rows(config.antenna_position_m, config.wavelength_m)
-    most = settings.most_objects or (MOST_OBJECTS if pair is None else MOST_OBJECTS_3D)
+    most = settings.most_objects or (MAX_OBJECTS if pair is None else MAX_OBJECTS_3D)
     row, column = row[:most], column[:most]
     delay_s = np.repeat(config.tx_delay_s, config.num_rx)
     doppler_hz = 2 * config.radial_velocity_mps[column] / config.wavelength_m

@@ -9,18 +9,17 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
-from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order, refuse_headers, ti_cfg_lines, whole
+from mmweaver.formats.ti_cfg import read_ti_cfg, refuse_headers, ti_cfg_lines
 
 PACKETS, RADAR = "dca.pcap", "radar.cfg"
 
 
 @dataclass(frozen=True, kw_only=True)
 class RadarCapture:
-    """The radar data of a capture folder: reassembled packets, radar configuration and I/Q order."""
+    """The radar data of a capture folder: reassembled packets and radar configuration."""
 
     folder: Path
     config: RadarConfig
-    iq_order: str
     packets: PacketCapture
 
 
@@ -53,11 +52,11 @@ def read_radar_capture(path: Path | str, frames: slice = slice(None)) -> RadarCa
     cfg = folder / RADAR
     if not cfg.is_file():
         raise InputError(f"{folder} holds {PACKETS} but no {RADAR}; put the .cfg of the recording there")
-    config, iq_order = read_ti_cfg(cfg), read_ti_cfg_iq_order(cfg)
+    config = read_ti_cfg(cfg)
     refuse_headers(str(cfg))
-    num_frames = whole(ti_cfg_lines(cfg)["frameCfg"][-1], "frameCfg", 3)
-    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=num_frames or None, frames=frames)
-    return RadarCapture(folder=folder, config=config, iq_order=iq_order, packets=packets)
+    num_frames = ti_cfg_lines(cfg)["frameCfg"][-1].whole(3)
+    packets = read_pcap(folder / PACKETS, config, num_frames=num_frames or None, frames=frames)
+    return RadarCapture(folder=folder, config=config, packets=packets)
 
 
 def _radar_folders(path: Path) -> list[Path]:

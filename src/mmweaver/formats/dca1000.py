@@ -31,22 +31,24 @@ HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` choo
 
 
 def read_bin(
-    path: Path | str,
-    config: RadarConfig,
-    *,
-    iq_order: str | None = None,
-    tx_order: tuple[int, ...] | None = None,
-    frames: slice = slice(None),
+    path: Path | str, config: RadarConfig, *, iq_order: str | None = None, frames: slice = slice(None)
 ) -> AdcCube:
-    """Reads a recording, or a stretch of its frames; samples are in counts of the converter, so their scale is unknown
-    (nan).
+    """Reads a recording, or a stretch of its frames.
 
-    `tx_order` is the firing order of the recording where it differs from the configuration's; the returned
-    configuration then has it, because the TDM timing depends on it. Raises InputError where the file cannot be read,
-    is empty or ends within a frame, or where the radar's complex samples are odd in number.
+    Args:
+        path: The file.
+        config: The radar, whose `tx_order` is the firing order of the recording.
+        iq_order: One of IQ_ORDERS. Default: the radar's.
+        frames: Stretch of frames; all by default.
+
+    Returns:
+        Samples in counts of the converter, so their scale is unknown (nan).
+
+    Raises:
+        InputError: where the file cannot be read, is empty or ends within a frame, or where the radar's complex samples
+            are odd in number.
     """
-    config = _checked(config, iq_order, tx_order)
-    path = Path(path)
+    _check(config, iq_order)
     chosen = range(num_frames_of_bin(path, config))[frames]
     frame_words = bytes_of_frame(config) // 2
     words = read_words(path, "<i2", count=len(chosen) * frame_words, first=chosen.start * frame_words)
@@ -55,7 +57,20 @@ def read_bin(
 
 def num_frames_of_bin(path: Path | str, config: RadarConfig) -> int:
     """Number of frames of a recording. Raises InputError where it is empty or ends within a frame."""
-    return _num_frames(Path(path), check_regular(path), config)
+    path, size, frame_bytes = Path(path), check_regular(path), bytes_of_frame(config)
+    if size == 0:
+        raise InputError(f"{path} is empty")
+    if size % frame_bytes and not (size >= frame_bytes and path.with_name(GROWING).is_file()):
+        channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
+        layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x"
+        layout += f" {2 * _num_parts(config)}"
+        if others := config.frame_words_before + config.frame_words_after:
+            layout += f" + {2 * others} of other sub-frames"
+        raise InputError(
+            f"{path} has {size} bytes: {size // frame_bytes} whole frames of {frame_bytes} bytes ({layout}) and"
+            f" {size % frame_bytes} bytes more; the file is truncated or --radar is not the radar that recorded it"
+        )
+    return size // frame_bytes
 
 
 def bytes_of_frame(config: RadarConfig) -> int:
@@ -65,11 +80,32 @@ def bytes_of_frame(config: RadarConfig) -> int:
 
 def _own_words(config: RadarConfig) -> int:
     channels = LANES if config.lvds_lanes == LANES else config.num_rx
-    return config.num_loops * config.num_slots * channels * config.num_samples * _words_per_sample(config)
+    return config.num_loops * config.num_slots * channels * config.num_samples * _num_parts(config)
 
 
-def _words_per_sample(config: RadarConfig) -> int:
+def _num_parts(config: RadarConfig) -> int:
     return 2 if config.complex_samples else 1
+
+
+def _parts(words: np.ndarray, config: RadarConfig, iq_order: str | None) -> np.ndarray:
+    """Words (frame, word) as a view of I and Q: (part, frame, loop, slot, receiver or lane, group, sample of it)."""
+    head = (len(words), config.num_loops, config.num_slots)
+    order = iq_order or config.lvds_iq_order
+    if config.lvds_lanes == LANES:
+        lanes = words.reshape(*head, config.num_samples, _num_parts(config), LANES)
+        parts = np.moveaxis(lanes, (-2, -1), (0, -2))[..., None]
+    elif config.complex_samples:
+        pairs = words.reshape(*head, config.num_rx, config.num_samples // 2, 2, 2)
+        parts = np.moveaxis(pairs.swapaxes(-1, -2) if order == "interleaved" else pairs, -2, 0)
+    else:
+        parts = words.reshape(1, *head, config.num_rx, config.num_samples, 1)
+    return parts[::-1] if order == "qi" else parts
+
+
+def _channels(config: RadarConfig) -> list[int]:
+    """Where a radar's receivers are among those of `_parts`."""
+    is_laned = config.lvds_lanes == LANES
+    return list(config.rx_channels) if is_laned and config.rx_channels else list(range(config.num_rx))
 
 
 def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None = None) -> AdcCube:
@@ -77,37 +113,19 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str | None
 
     Raises InputError where the radar's complex samples are odd in number.
     """
-    config = _checked(config, iq_order, None)
-    num_frames = 2 * len(words) // bytes_of_frame(config)
-    first = config.frame_words_before
-    words = words.reshape(num_frames, bytes_of_frame(config) // 2)[:, first : first + _own_words(config)]
-    real, imaginary = _parts(config, iq_order)
-    head = (num_frames, config.num_loops, config.num_slots)
-    if not config.complex_samples:
-        return _of_real(words.reshape(*head, -1), config)
-    if config.lvds_lanes == LANES:
-        lanes = words.reshape(*head, config.num_samples, 2, LANES)[..., _channels(config)]
-        parts = lanes[..., real, :].swapaxes(-1, -2), lanes[..., imaginary, :].swapaxes(-1, -2)
+    _check(config, iq_order)
+    first, last = config.frame_words_before, config.frame_words_before + _own_words(config)
+    words = words.reshape(-1, bytes_of_frame(config) // 2)[:, first:last]
+    shape = (len(words), config.num_loops, config.num_slots, config.num_rx, config.num_samples)
+    parts = [part[..., _channels(config), :, :].reshape(shape) for part in _parts(words, config, iq_order)]
+    if config.complex_samples:
+        samples = np.empty(shape, np.complex64)
+        samples.real, samples.imag = parts
     else:
-        pairs = _pairs(words, config, iq_order)
-        shape = (*head, config.num_rx, config.num_samples)
-        parts = pairs[:, real].reshape(shape), pairs[:, imaginary].reshape(shape)
-    samples = np.empty((*head, config.num_rx, config.num_samples), np.complex64)
-    samples.real, samples.imag = parts
+        # under the range window: a plain mean holds some of each echo, which would then move at range 0
+        weight = 1 - np.cos(2 * np.pi * np.arange(config.num_samples) / config.num_samples)
+        samples = (parts[0] - (parts[0] @ (weight / weight.sum()))[..., None]).astype(np.complex64)
     samples = upright(by_transmitter(samples, config), config)
-    return AdcCube(samples=samples, config=config, scale=float("nan"))
-
-
-def _of_real(words: np.ndarray, config: RadarConfig) -> AdcCube:
-    """Words (frame, loop, slot, word) of real samples."""
-    if config.lvds_lanes == LANES:
-        values = words.reshape(*words.shape[:3], config.num_samples, LANES)[..., _channels(config)].swapaxes(-1, -2)
-    else:
-        values = words.reshape(*words.shape[:3], config.num_rx, config.num_samples)
-    # under the range window: a plain mean holds some of each echo, which would then move at range 0
-    weight = 1 - np.cos(2 * np.pi * np.arange(config.num_samples) / config.num_samples)
-    values = values - (values @ (weight / weight.sum()))[..., None]
-    samples = upright(by_transmitter(values.astype(np.complex64), config), config)
     return AdcCube(samples=samples, config=config, scale=float("nan"))
 
 
@@ -119,16 +137,25 @@ def write_bin(
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> float:
-    """Writes a file for `read_bin` and TI's own tools; returns the counts per unit of the samples.
+    """Writes a file for `read_bin` and TI's own tools.
 
-    Without `counts_per_unit` the largest component is scaled to half of full scale. `tx_order` changes only the order
-    in the file, for readers with a fixed order; the samples keep the timing of their own configuration. Raises
-    InputError where a sample is not finite or does not fit int16, where complex samples are odd in number, or where
-    the file cannot be written.
+    Args:
+        path: The file.
+        adc: The samples.
+        iq_order: One of IQ_ORDERS. Default: the radar's.
+        tx_order: Firing order of the file, for readers with a fixed one; the samples keep the timing of their radar.
+        counts_per_unit: Scale. Default: the largest component is half of full scale.
+
+    Returns:
+        The counts per unit of the samples.
+
+    Raises:
+        InputError: where a sample is not finite or does not fit int16, where complex samples are odd in number, or
+            where the file cannot be written.
     """
-    pairs, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
+    words, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
     with atomic_file(Path(path)) as temporary:
-        pairs.tofile(temporary)
+        words.tofile(temporary)
     return counts
 
 
@@ -139,10 +166,11 @@ def words_of(
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> tuple[np.ndarray, float]:
-    """The int16 words that `write_bin` writes, and the counts per unit. Raises InputError as it does."""
-    config = _checked(adc.config, iq_order, tx_order)
+    """The int16 words (frame, word) that `write_bin` writes, and the counts per unit. Raises InputError as it does."""
+    config = adc.config if tx_order is None else replace(adc.config, tx_order=tuple(tx_order))
+    _check(config, iq_order)
     samples = upright(adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)], config)
-    parts = (np.real(samples), np.imag(samples)) if config.complex_samples else (np.real(samples),)
+    parts = (np.real(samples), np.imag(samples))[: _num_parts(config)]
     low = float(min(part.min(initial=0) for part in parts))
     high = float(max(part.max(initial=0) for part in parts))
     peak = max(-low, high)
@@ -158,49 +186,13 @@ def words_of(
             f"a sample of {peak * counts_per_unit:.0f} counts does not fit int16;"
             f" take at most {INT16_MAX / peak:.6g} counts per unit"
         )
-    words = _words(samples, config, iq_order, counts_per_unit)
-    frame = np.zeros((len(samples), bytes_of_frame(config) // 2), "<i2")
-    frame[:, config.frame_words_before : config.frame_words_before + _own_words(config)] = words
-    return frame, float(counts_per_unit)
-
-
-def _words(samples: np.ndarray, config: RadarConfig, iq_order: str | None, counts_per_unit: float) -> np.ndarray:
-    """Samples (frame, loop, slot, rx, sample) as int16 words (frame, word)."""
-    real, imaginary = _parts(config, iq_order)
-    if not config.complex_samples:
-        counts = np.rint(np.real(samples) * np.float64(counts_per_unit))
-        if config.lvds_lanes == LANES:
-            every = np.zeros((*samples.shape[:3], config.num_samples, LANES), "<i2")
-            every[..., _channels(config)] = counts.swapaxes(-1, -2)
-            counts = every
-        return counts.astype("<i2").reshape(len(samples), -1)
-    if config.lvds_lanes == LANES:
-        lanes = np.zeros((*samples.shape[:3], config.num_samples, 2, LANES), "<i2")
-        for part, component in ((np.real(samples), real), (np.imag(samples), imaginary)):
-            lanes[..., component, _channels(config)] = np.rint(part.swapaxes(-1, -2) * np.float64(counts_per_unit))
-        return lanes.reshape(len(samples), -1)
-    grouped = samples.reshape(-1, 2)
-    words = np.empty(4 * len(grouped), "<i2")
-    pairs = _pairs(words, config, iq_order)
-    pairs[:, real] = np.rint(np.real(grouped) * np.float64(counts_per_unit))
-    pairs[:, imaginary] = np.rint(np.imag(grouped) * np.float64(counts_per_unit))
-    return words.reshape(len(samples), -1)
-
-
-def _pairs(words: np.ndarray, config: RadarConfig, iq_order: str | None) -> np.ndarray:
-    """A view of two lanes' words as (two samples, component, sample of the two)."""
-    pairs = words.reshape(-1, 2, 2)
-    return pairs.swapaxes(1, 2) if (iq_order or config.lvds_iq_order) == "interleaved" else pairs
-
-
-def _parts(config: RadarConfig, iq_order: str | None) -> tuple[int, int]:
-    """Places of I and of Q in a sample."""
-    return (1, 0) if (iq_order or config.lvds_iq_order) == "qi" else (0, 1)
-
-
-def _channels(config: RadarConfig) -> list[int]:
-    """The lanes of a radar's receivers."""
-    return list(config.rx_channels or range(config.num_rx))
+    words = np.zeros((len(samples), _own_words(config)), "<i2")
+    for place, part in zip(_parts(words, config, iq_order), parts, strict=True):
+        channels = _channels(config)
+        counts = np.rint(part * np.float64(counts_per_unit))
+        place[..., channels, :, :] = counts.reshape(*part.shape[:3], len(channels), *place.shape[-2:])
+    around = ((0, 0), (config.frame_words_before, config.frame_words_after))
+    return np.pad(words, around), float(counts_per_unit)
 
 
 def by_transmitter(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
@@ -217,32 +209,16 @@ def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
     return samples * sign[:, None]
 
 
-def _checked(config: RadarConfig, iq_order: str | None, tx_order: tuple[int, ...] | None) -> RadarConfig:
+def _check(config: RadarConfig, iq_order: str | None) -> None:
+    """Raises InputError where a DCA1000 has no such recordings."""
+    is_paired = config.lvds_lanes != LANES and config.complex_samples
     if iq_order is not None and iq_order not in IQ_ORDERS:
         raise InputError(f"unknown I/Q order {iq_order!r}; known: {', '.join(IQ_ORDERS)}")
-    if iq_order == "interleaved" and (config.lvds_lanes == LANES or not config.complex_samples):
+    if iq_order == "interleaved" and not is_paired:
         raise InputError(f"I/Q order 'interleaved' is for complex samples of two lanes, not for radar {config.name!r}")
     if config.lvds_lanes == 0:
         raise InputError(f"radar {config.name!r} is no board for a DCA1000, so there is no .bin of it; use .npy")
-    if config.num_samples % 2 and config.lvds_lanes != LANES and config.complex_samples:
+    if config.num_samples % 2 and is_paired:
         raise InputError(
             f"a DCA1000 file holds samples in pairs, but a chirp has {config.num_samples}; take an even number"
         )
-    return config if tx_order is None else replace(config, tx_order=tuple(tx_order))
-
-
-def _num_frames(path: Path, size: int, config: RadarConfig) -> int:
-    frame_bytes = bytes_of_frame(config)
-    channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
-    layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x"
-    layout += f" {2 * _words_per_sample(config)}"
-    if config.frame_words_before or config.frame_words_after:
-        layout += f" + {2 * (config.frame_words_before + config.frame_words_after)} of other sub-frames"
-    if size == 0:
-        raise InputError(f"{path} is empty")
-    if size % frame_bytes and not (size >= frame_bytes and path.with_name(GROWING).is_file()):
-        raise InputError(
-            f"{path} has {size} bytes: {size // frame_bytes} whole frames of {frame_bytes} bytes ({layout}) and"
-            f" {size % frame_bytes} bytes more; the file is truncated or --radar is not the radar that recorded it"
-        )
-    return size // frame_bytes

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.checksums import check_file
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
@@ -20,6 +20,15 @@ from mmweaver.core.shapes import PerFrame
 from mmweaver.core.skeleton import JOINT_NAMES
 
 CUBE_AXES = ("frame", "range", "doppler", "antenna")
+CUBE_UNITS = {
+    "cube": "sqrt(mW) at the receiver's port, divided by scale",
+    "frame_time_s": "s",
+    "range_m": "m",
+    "radial_velocity_mps": "m/s, positive = moving away",
+    "antenna_position_m": "m, (x right, y away, z up)",
+    "wavelength_m": "m",
+    "scale": "sqrt(mW) for a value of 1.0; nan = unknown",
+}
 POINT_COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 FIRMWARE_COLUMNS = ("intensity",)
 MAX_CUBE, MAX_TIME_S = 1e15, 1e12  # far above what is recorded; squares and sums stay finite
@@ -29,27 +38,14 @@ NO_DATE = (1980, 1, 1, 0, 0, 0)  # the first a zip file can name
 # radar.npz ----------------------------------------------------------------------------------------------------------
 def write_radar_npz(path: Path, cube: RadarCube) -> None:
     """Writes a cube with its axes: complex64 (frame, range, doppler, antenna), s, m, m/s, m."""
-    grid = cube.grid
-    units = {
-        "cube": "sqrt(mW) at the receiver's port, divided by scale",
-        "frame_time_s": "s",
-        "range_m": "m",
-        "radial_velocity_mps": "m/s, positive = moving away",
-        "antenna_position_m": "m, (x right, y away, z up)",
-        "wavelength_m": "m",
-        "scale": "sqrt(mW) for a value of 1.0; nan = unknown",
-    }
+    axes = {name: np.asarray(value, np.float64) for name, value in vars(cube.grid).items()}
     write_npz(
         path,
         cube=np.asarray(cube.values, np.complex64),
-        frame_time_s=np.asarray(grid.frame_time_s, np.float64),
-        range_m=np.asarray(grid.range_m, np.float64),
-        radial_velocity_mps=np.asarray(grid.radial_velocity_mps, np.float64),
-        antenna_position_m=np.asarray(grid.antenna_position_m, np.float64),
-        wavelength_m=np.float64(grid.wavelength_m),
+        **axes,
         scale=np.float64(cube.scale),
         axes=np.array(CUBE_AXES),
-        units=np.array([f"{name}: {unit}" for name, unit in units.items()]),
+        units=np.array([f"{name}: {unit}" for name, unit in CUBE_UNITS.items()]),
     )
 
 
@@ -84,47 +80,32 @@ def _radar_of(path: Path) -> RadarConfig:
     if not file.exists():
         raise InputError(f"no radar.json next to {path}; give the radar that recorded it")
     check_file(file)
-    try:
+    with file_named(file):
         return RadarConfig.from_values(read_json(file))
-    except InputError as error:
-        raise InputError(f"{file}: {error}") from None
 
 
 # pose.npz -----------------------------------------------------------------------------------------------------------
-def write_pose_npz(path: Path, pose: PoseSequence, *others: PoseSequence) -> None:
-    """Writes joints in metres in the radar's frame, with names and times: float32 (frame, 22, 3) for one person.
+def write_pose_npz(path: Path, *poses: PoseSequence, time_s: PerFrame | None = None) -> None:
+    """Writes joints in metres in the radar's frame, with names and times.
 
-    For several people, all at the same times: (person, frame, 22, 3), and `height_m` (person,).
+    Args:
+        path: The file.
+        *poses: People, all at the same times: float32 (frame, 22, 3) and `height_m` () for one, (person, frame, 22, 3)
+            and (person,) for none or several.
+        time_s: Times (frame,) in s of an empty place. Default: those of the poses.
     """
-    poses = (pose, *others)
-    joints_m = np.stack([np.asarray(one.joints_m, np.float32) for one in poses])
-    height_m = np.array([one.height_m for one in poses], np.float64)
-    first = ... if others else 0
-    _write_joints(path, joints_m[first], height_m[first], pose.time_s)
-
-
-def write_empty_pose_npz(path: Path, time_s: PerFrame) -> None:
-    """Writes that nobody is there at these times: `joints_m` (0, frame, 22, 3), `height_m` (0,)."""
-    joints_m = np.empty((0, len(time_s), len(JOINT_NAMES), 3), np.float32)
-    _write_joints(path, joints_m, np.empty(0, np.float64), time_s)
-
-
-def _write_joints(path: Path, joints_m: np.ndarray, height_m: np.ndarray | np.generic, time_s: PerFrame) -> None:
+    time_s = np.asarray(poses[0].time_s if time_s is None else time_s, np.float64)
+    joints_m = np.array([one.joints_m for one in poses], np.float32).reshape(
+        len(poses), len(time_s), len(JOINT_NAMES), 3
+    )
+    height_m, first = np.array([one.height_m for one in poses], np.float64), 0 if len(poses) == 1 else ...
     write_npz(
         path,
-        joints_m=joints_m,
+        joints_m=joints_m[first],
         joint_names=np.array(JOINT_NAMES),
-        frame_time_s=np.asarray(time_s, np.float64),
-        height_m=height_m,
+        frame_time_s=time_s,
+        height_m=height_m[first],
     )
-
-
-def read_pose_npz(path: str | Path) -> PoseSequence:
-    """Reads a pose.npz of one person. Raises InputError for anything else, several people included."""
-    poses = read_poses_npz(path)
-    if len(poses) != 1:
-        raise InputError(f"{path} holds {len(poses)} people; read it with read_poses_npz")
-    return poses[0]
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:

@@ -22,7 +22,7 @@ PCAPNG = b"\x0a\x0d\x0d\x0a"
 SECTION, INTERFACE, PACKET, RESOLUTION = 0x0A0D0D0A, 1, 6, 9  # blocks of pcapng, and an option of an interface
 # link type: bytes before the network layer, and the offset of the protocol number in them (None: always IP)
 LINK_TYPES: dict[int, tuple[int, int | None]] = {1: (14, 12), 101: (0, None), 113: (16, 14), 276: (20, 0)}
-MOST_KEPT = 2**18  # bytes of a packet that recorders keep at most; longer ones are skipped
+MAX_KEPT = 2**18  # bytes of a packet that recorders keep at most; longer ones are skipped
 IPV4, VLAN, UDP = 0x0800, 0x8100, 17
 
 
@@ -45,81 +45,79 @@ def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
     size = check_regular(path)
     with open_regular(path) as file:
         start = file.read(24)
-        if start[:4] == PCAPNG:
-            file.seek(0)
-            yield from _of_pcapng(path, file, size, port)
-            return
-        order, ticks, link = _header(path, start)
-        at, header = 24, struct.Struct(f"{order}IIII")
-        while len(head := file.read(16)) == 16:
-            seconds, fraction, kept, _ = header.unpack(head)
-            at += 16
-            if at + kept > size:
-                return
-            found = _udp_payload(_read(file, kept), link, port)
-            if found is not None:
-                first, payload = found
-                yield UdpPacket(seconds + fraction / ticks, payload, at + first)
-            at += kept
+        records = _pcapng_records(path, file, size) if start[:4] == PCAPNG else _pcap_records(path, file, size, start)
+        for time_s, link, at, data in records:
+            if (found := _udp_payload(data, link, port)) is not None:
+                yield UdpPacket(time_s, found[1], at + found[0])
+
+
+Record = tuple[float, int, int, bytes]  # time in s, link type, place in the file, bytes of a packet
+
+
+def _known_link(path: Path, link: int) -> int:
+    if link not in LINK_TYPES:
+        raise InputError(
+            f"{path} was captured on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)"
+        )
+    return link
 
 
 def _read(file: BufferedReader, num: int) -> bytes:
     """So many bytes; none of a packet that is longer than any."""
-    if num <= MOST_KEPT:
+    if num <= MAX_KEPT:
         return file.read(num)
     file.seek(num, os.SEEK_CUR)
     return b""
 
 
-def _header(path: Path, data: bytes) -> tuple[str, float, int]:
-    if data[:4] not in MAGIC:
-        raise InputError(f"{path} is not a .pcap file{' (it is empty)' if not data else ''}; record it with tcpdump -w")
-    if len(data) < 24:
-        raise InputError(f"{path} is truncated within its header; it holds no packets")
-    order, ticks = MAGIC[data[:4]]
-    link = struct.unpack_from(f"{order}I", data, 20)[0] & 0xFFFF
-    if link not in LINK_TYPES:
+def _pcap_records(path: Path, file: BufferedReader, size: int, start: bytes) -> Iterator[Record]:
+    if start[:4] not in MAGIC:
         raise InputError(
-            f"{path} was captured on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)"
+            f"{path} is not a .pcap file{' (it is empty)' if not start else ''}; record it with tcpdump -w"
         )
-    return order, ticks, link
+    if len(start) < 24:
+        raise InputError(f"{path} is truncated within its header; it holds no packets")
+    order, ticks = MAGIC[start[:4]]
+    link = _known_link(path, struct.unpack_from(f"{order}I", start, 20)[0] & 0xFFFF)
+    at, header = 24, struct.Struct(f"{order}IIII")
+    while len(head := file.read(16)) == 16:
+        seconds, fraction, kept, _ = header.unpack(head)
+        at += 16
+        if at + kept > size:
+            return
+        yield seconds + fraction / ticks, link, at, _read(file, kept)
+        at += kept
 
 
-def _of_pcapng(path: Path, file: BufferedReader, size: int, port: int) -> Iterator[UdpPacket]:
-    """The same of a pcapng file: enhanced packet blocks, with the link and clock of their interface."""
-    order = "<"
-    links: list[tuple[int, float]] = []  # of each interface: link type, ticks a second
-    at = 0
+def _pcapng_records(path: Path, file: BufferedReader, size: int) -> Iterator[Record]:
+    """Enhanced packet blocks of a pcapng file, with the link and clock of their interface."""
+    order, at = "<", 0
+    links: list[tuple[int, float]] = []  # of each interface: link type, ticks per second
+    file.seek(0)
     while len(head := file.read(12)) == 12:
         kind, length = struct.unpack_from(f"{order}II", head)
         if kind == SECTION:
             order, links = ("<" if head[8:12] == b"\x4d\x3c\x2b\x1a" else ">"), []
             length = struct.unpack_from(f"{order}I", head, 4)[0]
-        if length < 12 or length % 4:
-            raise InputError(f"{path} has a damaged block at byte {at}; record it again")
-        if at + length > size:
+        is_damaged = length < 12 or length % 4
+        if not is_damaged and at + length > size:
             return  # the recorder was stopped
-        data = head + _read(file, length - 12)
+        data = head if is_damaged else head + _read(file, length - 12)
         if kind == INTERFACE and len(data) >= 16:
             links.append((struct.unpack_from(f"{order}H", data, 8)[0], _ticks(data, 16, length, order)))
         elif kind == PACKET and len(data) >= 28:
             interface, high, low, kept = struct.unpack_from(f"{order}IIII", data, 8)
-            if interface >= len(links) or kept > length - 32:
-                raise InputError(f"{path} has a damaged block at byte {at}; record it again")
-            link, ticks = links[interface]
-            if link not in LINK_TYPES:
-                raise InputError(
-                    f"{path} was captured on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)"
-                )
-            found = _udp_payload(data[28 : 28 + kept], link, port)
-            if found is not None:
-                first, payload = found
-                yield UdpPacket((high << 32 | low) / ticks, payload, at + 28 + first)
+            is_damaged = interface >= len(links) or kept > length - 32
+            if not is_damaged:
+                link, ticks = links[interface]
+                yield (high << 32 | low) / ticks, _known_link(path, link), at + 28, data[28 : 28 + kept]
+        if is_damaged:
+            raise InputError(f"{path} has a damaged block at byte {at}; record it again")
         at += length
 
 
 def _ticks(data: bytes, at: int, end: int, order: str) -> float:
-    """Clock ticks a second of an interface, from its option if_tsresol; microseconds without it."""
+    """Clock ticks per second of an interface, from its option if_tsresol; microseconds without it."""
     while at + 4 <= end - 4:
         code, size = struct.unpack_from(f"{order}HH", data, at)
         if code == 0:

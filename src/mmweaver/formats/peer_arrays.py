@@ -8,6 +8,7 @@ mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of frames. RF-Gene
 (frame, tx, rx, loop, sample).
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,10 +20,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
-from mmweaver.formats.dca1000 import by_transmitter
-from mmweaver.formats.raw_npy import MAX_SAMPLE, read_adc_npy
+from mmweaver.formats.raw_npy import MAX_SAMPLE, adc_of_array, read_adc_npy
 
-LAYOUTS = ("hupr", "mmmesh", "rf_genesis", "cubelearn")
 HUPR_SHAPE = (16, 64, 64, 8)
 HUPR_ANTENNAS = (3, 4)
 ADC_SHAPE = (3, 4, 128, 256)
@@ -58,19 +57,14 @@ def detect_layout(path: Path) -> str:
 def read_cubelearn(path: Path, config: RadarConfig) -> AdcCube:
     """Reads (I/Q, frame, loop, virtual antenna, sample), antennas in firing order. Raises InputError."""
     values = read_npy(path)
-    wanted = (config.num_loops, config.num_antennas, config.num_samples)
-    if values.ndim != 5 or len(values) != 2 or values.shape[2:] != wanted or values.dtype.kind not in "fi":
+    if values.ndim != 5 or len(values) != 2 or values.dtype.kind not in "fi":
         raise InputError(
-            f"{path} has shape {values.shape} of {values.dtype}; CubeLearn's with radar {config.name!r} is (2, frames,"
-            f" {', '.join(map(str, wanted))}) of real numbers, I and Q"
+            f"{path} has shape {values.shape} of {values.dtype}; CubeLearn's is (2, frame, loop, antenna, sample) of"
+            " real numbers, I and Q"
         )
-    ArrayChecks(path).numbers("the array", values, low=-MAX_SAMPLE, high=MAX_SAMPLE)
     if config.is_coded or not config.complex_samples:
         raise InputError(f"CubeLearn's radar is a TDM one with complex samples, not {config.name!r}")
-    samples = (values[0] + 1j * values[1].astype(np.float64)).astype(np.complex64)
-    shape = (len(samples), config.num_loops, config.num_tx, config.num_rx, config.num_samples)
-    ordered = by_transmitter(samples.reshape(shape), config)
-    return AdcCube(samples=np.ascontiguousarray(ordered), config=config, scale=float("nan"))
+    return adc_of_array(path, values[0] + 1j * values[1].astype(np.float64), config, "frame,loop,vrx,sample")
 
 
 def read_mmmesh(path: Path, config: RadarConfig) -> AdcCube:
@@ -132,3 +126,12 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     if energy - np.sum(np.abs(out) ** 2) > MAX_RESIDUAL * energy:
         raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
+
+
+# project: reader of its arrays, (path, radar) -> samples or cube
+LAYOUTS: dict[str, Callable[[Path, RadarConfig], AdcCube | RadarCube]] = {
+    "hupr": read_hupr,
+    "mmmesh": read_mmmesh,
+    "rf_genesis": read_rf_genesis,
+    "cubelearn": read_cubelearn,
+}

@@ -1,18 +1,19 @@
 """Loads a radar by name or from any supported file, and describes it in a table."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
-from mmweaver.formats.radar_options import RadarOptions, split_radar, with_options
+from mmweaver.formats.radar_options import RadarOptions, split_radar
 from mmweaver.formats.studio_script import read_studio_script
-from mmweaver.formats.ti_cfg import read_ti_cfg
+from mmweaver.formats.ti_cfg import cfg_path, read_ti_cfg
 from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
@@ -24,14 +25,10 @@ def load_radar(name_or_path: str) -> RadarConfig:
     """
     name_or_path, options = split_radar(name_or_path)
     if name_or_path in PRESETS:
-        return with_options(PRESETS[name_or_path], options)
+        return options.applied(PRESETS[name_or_path])
     path = Path(name_or_path)
-    if path.suffix.lower() == ".cfg" and path.is_file():
-        return read_ti_cfg(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
-    if path.suffix.lower() == ".json" and path.is_file():
-        return _from_json(path, options)
-    if path.suffix.lower() == ".lua" and path.is_file():
-        return read_studio_script(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
+    if path.is_file() and path.suffix.lower() in RADAR_FILES:
+        return RADAR_FILES[path.suffix.lower()](path, options)
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json or"
@@ -44,21 +41,24 @@ def load_firmware(name_or_path: str) -> FirmwareSettings:
 
     Raises InputError where the .cfg does not hold them.
     """
-    name_or_path, _ = split_radar(name_or_path)
-    path = Path(name_or_path)
-    if name_or_path not in PRESETS and path.suffix.lower() == ".cfg" and path.is_file():
-        return read_ti_firmware(path)
-    return FIRMWARE.get(name_or_path, FirmwareSettings())
+    path = None if name_or_path in PRESETS else cfg_path(name_or_path)
+    return FIRMWARE.get(split_radar(name_or_path)[0], FirmwareSettings()) if path is None else read_ti_firmware(path)
 
 
-def _from_json(path: Path, options: RadarOptions) -> RadarConfig:
+def _read_json_radar(path: Path, options: RadarOptions) -> RadarConfig:
     values = read_json(path)
     if is_mmwave_studio(values):
-        return read_mmwave_studio(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
-    try:
-        return with_options(RadarConfig.from_values(values), options)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        return read_mmwave_studio(path, options)
+    with file_named(path):
+        return options.applied(RadarConfig.from_values(values))
+
+
+# suffix: reader of a radar's file, (path, options) -> radar
+RADAR_FILES: dict[str, Callable[[Path, RadarOptions], RadarConfig]] = {
+    ".cfg": read_ti_cfg,
+    ".json": _read_json_radar,
+    ".lua": read_studio_script,
+}
 
 
 def describe_radar(config: RadarConfig) -> str:

@@ -21,6 +21,26 @@ class RadarOptions:
     antennas: AntennaTable | None = None
     lanes: int | None = None
 
+    def applied(self, config: RadarConfig) -> RadarConfig:
+        """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
+        if self.sub_frame is not None:
+            raise InputError(f"radar {config.name!r} has no sub-frames; leave out --subframe")
+        if self.lanes is not None:
+            config = replace(config, lvds_lanes=self.lanes)
+        table = self.antennas
+        if table is None:
+            return config
+        if (config.num_tx, config.num_rx) != (len(table.tx_halfwaves), len(table.rx_halfwaves)):
+            raise InputError(
+                f"antenna table {table.name!r} has {len(table.tx_halfwaves)} transmitters and {len(table.rx_halfwaves)}"
+                f" receivers, radar {config.name!r} has {config.num_tx} and {config.num_rx}"
+            )
+        return replace(
+            config, rx_inverted=table.rx_inverted,
+            tx_position_m=halfwave_positions(table.tx_halfwaves, config.centre_frequency_hz),
+            rx_position_m=halfwave_positions(table.rx_halfwaves, config.centre_frequency_hz),
+        )  # fmt: skip
+
 
 def split_radar(name: str) -> tuple[str, RadarOptions]:
     """The name or file of a radar, and the options behind its last #. Raises InputError for options it cannot have."""
@@ -66,27 +86,6 @@ def read_antennas(name_or_path: str) -> AntennaTable:
     except (ValueError, KeyError, TypeError, AttributeError):
         raise InputError(f"{path} is no table of antennas; write for example {EXAMPLE}, in half wavelengths") from None
     return AntennaTable(name=path.stem, tx_halfwaves=tx, rx_halfwaves=rx, rx_inverted=inverted, source=str(path))
-
-
-def with_options(config: RadarConfig, options: RadarOptions) -> RadarConfig:
-    """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
-    if options.sub_frame is not None:
-        raise InputError(f"radar {config.name!r} has no sub-frames; leave out --subframe")
-    if options.lanes is not None:
-        config = replace(config, lvds_lanes=options.lanes)
-    table = options.antennas
-    if table is None:
-        return config
-    if (config.num_tx, config.num_rx) != (len(table.tx_halfwaves), len(table.rx_halfwaves)):
-        raise InputError(
-            f"antenna table {table.name!r} has {len(table.tx_halfwaves)} transmitters and {len(table.rx_halfwaves)}"
-            f" receivers, radar {config.name!r} has {config.num_tx} and {config.num_rx}"
-        )
-    return replace(
-        config, rx_inverted=table.rx_inverted,
-        tx_position_m=halfwave_positions(table.tx_halfwaves, config.centre_frequency_hz),
-        rx_position_m=halfwave_positions(table.rx_halfwaves, config.centre_frequency_hz),
-    )  # fmt: skip
 
 
 def _places(rows: Any) -> Places:

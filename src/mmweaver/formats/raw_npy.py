@@ -37,10 +37,16 @@ def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: sl
     Samples stay in the
     file's unit, so their scale is unknown (nan). Raises InputError where the file is not such an array.
     """
+    return adc_of_array(Path(path), read_npy(path, mapped=frames != slice(None)), config, axes, frames)
+
+
+def adc_of_array(
+    path: Path, values: np.ndarray, config: RadarConfig, axes: str, frames: slice = slice(None)
+) -> AdcCube:
+    """The samples of an array of a file, as in `read_adc_npy`."""
     names = [name.strip() for name in axes.split(",")]
-    values = read_npy(path, mapped=frames != slice(None))
     sizes = {"loop": config.num_loops, "tx": config.num_slots, "rx": config.num_rx, "sample": config.num_samples}
-    parts = _checked_axes(Path(path), names, values.shape, sizes)
+    parts = _checked_axes(path, names, values.shape, sizes)
     if not values.size:
         raise InputError(f"{path} is empty: its shape is {values.shape}")
     if "frame" in names:
@@ -49,7 +55,7 @@ def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: sl
         sizes["frame"] = values.shape[axis]
     else:
         sizes["frame"] = 1
-    values = _numbers(Path(path), values, config)
+    values = _numbers(path, values, config)
     values = values.reshape([sizes[part] for part in parts])
     missing = [name for name in ORDER if name not in parts]
     values = values.reshape(values.shape + (1,) * len(missing))

@@ -6,14 +6,15 @@ example scripts (DataCaptureDemo_xWR.lua).
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
-from mmweaver.core.antenna_tables import AntennaTable
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_text
-from mmweaver.formats.ti_cfg import Line, radar_of_lines
-from mmweaver.formats.ti_chirps import SHIFTER_DEG
+from mmweaver.formats.radar_options import RadarOptions
+from mmweaver.formats.ti_cfg import Line, Lines, setup_of_lines
+from mmweaver.formats.ti_chirps import SHIFTER_DEG, radar_from_ti
 
 MAX_BYTES = 2**20
 CALL = re.compile(r"\bar1\.(\w+)\s*\(([^()]*)\)")
@@ -30,13 +31,16 @@ REFUSED = {"AdvanceFrameConfig": "an advanced frame", "AdvanceChirpConfig": "adv
 TX, FIRST_RX, NUM_RX = 3, 3, 4
 
 
-def read_studio_script(
-    path: Path | str, *, sub_frame: int | None = None, antennas: AntennaTable | None = None, lanes: int | None = None
-) -> RadarConfig:
+def read_studio_script(path: Path | str, options: RadarOptions | None = None) -> RadarConfig:
     """The radar that a script sets up, named after the file; the last call of a kind counts, of chirps all.
 
-    `sub_frame`, `antennas` and `lanes` as in `formats.ti_cfg.read_ti_cfg`. Raises InputError where calls are missing or
-    take other things than numbers, chirps differ or cannot be separated, or the radar could not exist.
+    Args:
+        path: The file.
+        options: The board's antennas and lanes where they differ.
+
+    Raises:
+        InputError: where calls are missing or take other things than numbers, chirps differ or cannot be separated, or
+            the radar could not exist.
     """
     path = Path(path)
     text = _without_comments(read_text(path, max_bytes=MAX_BYTES, errors="replace"))
@@ -49,12 +53,14 @@ def read_studio_script(
             )
         if (needed := {**NEEDED, **OPTIONAL}.get(found[1])) is not None:
             number = text.count("\n", 0, found.start()) + 1
-            calls.setdefault(found[1], []).append(Line(number, _numbers(path, found, names, needed)))
+            calls.setdefault(found[1], []).append(Line(number, found[1], _numbers(path, found, names, needed)))
     if missing := [name for name in NEEDED if name not in calls]:
         raise InputError(f"{path} lacks ar1.{', ar1.'.join(missing)}; is it a script of mmWave Studio?")
     lane = [*calls.get("LVDSLaneConfig", []), *calls.get("LvdsLaneConfig", [])][-1:]
-    own = 4 if lane and all(lane[0].values[1:5]) else 2
-    return radar_of_lines(path, _cfg_lines(calls), sub_frame=sub_frame, antennas=antennas, lanes=lanes or own)
+    with file_named(path):
+        setup = setup_of_lines(path.stem, _cfg_lines(calls))
+        setup = replace(setup, lvds_lanes=4 if lane and all(lane[0].values[1:5]) else 2)
+        return radar_from_ti(setup, options or RadarOptions())
 
 
 def _without_comments(text: str) -> str:
@@ -83,22 +89,23 @@ def _numbers(path: Path, found: re.Match[str], names: dict[str, float], needed: 
     return values
 
 
-def _cfg_lines(calls: dict[str, list[Line]]) -> dict[str, list[Line]]:
+def _cfg_lines(calls: dict[str, list[Line]]) -> Lines:
     """The calls as commands of a .cfg."""
     channels, frame = calls["ChanNAdcConfig"][-1], calls["FrameConfig"][-1]
     tx_mask, rx_mask = _mask(channels.values[:TX]), _mask(channels.values[FIRST_RX : FIRST_RX + NUM_RX])
     bits, samples, swap = channels.values[FIRST_RX + NUM_RX : FIRST_RX + NUM_RX + 3]
     first, last, frames, loops, period_ms = frame.values[:5]
+    commands = {
+        "channelCfg": [(channels, (rx_mask, tx_mask))],
+        "adcCfg": [(channels, (bits, samples))],
+        "adcbufCfg": [(channels, (-1.0, 0.0, swap, 1.0, 1.0))],
+        "profileCfg": [(line, _profile(line.values)) for line in calls["ProfileConfig"]],
+        "chirpCfg": [(line, (*line.values[:7], _mask(line.values[7:10]))) for line in calls["ChirpConfig"]],
+        "frameCfg": [(frame, (first, last, loops, frames, period_ms, 1.0, 0.0))],
+    }
     return {
-        "channelCfg": [Line(channels.number, (rx_mask, tx_mask))],
-        "adcCfg": [Line(channels.number, (bits, samples))],
-        "adcbufCfg": [Line(channels.number, (-1.0, 0.0, swap, 1.0, 1.0))],
-        "profileCfg": [Line(line.number, _profile(line.values)) for line in calls["ProfileConfig"]],
-        "chirpCfg": [
-            Line(line.number, (*line.values[:7], _mask(line.values[7:10]))) for line in calls["ChirpConfig"]
-        ],
-        "frameCfg": [Line(frame.number, (first, last, loops, frames, period_ms, 1.0, 0.0))],
-    }  # fmt: skip
+        command: [Line(line.number, command, values) for line, values in found] for command, found in commands.items()
+    }
 
 
 def _profile(values: tuple[float, ...]) -> tuple[float, ...]:

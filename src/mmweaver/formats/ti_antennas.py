@@ -6,75 +6,56 @@ that turn the receivers of an AOP or an ODS over then tell which. Reference: TI,
 Visualizer.
 """
 
-import re
-
 import numpy as np
 
 from mmweaver.core.antenna_tables import ANTENNAS, AntennaTable, table_of_virtual_array
 from mmweaver.core.errors import InputError
 
 NUM_RX = 4
-COMMANDS = ("antGeometry0", "antGeometry1", "antPhaseRot", "antGeometryCfg", "compRangeBiasAndRxChanPhase")
 TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides
 # of the platform's name, without its punctuation: board
 PLATFORMS = (("68xxaop", "aop"), ("6843aop", "aop"), ("18xxaop", "aop"), ("1843aop", "aop"), ("68xxods", "ods"),
              ("6843ods", "ods"), ("16xx", "boost1642"), ("1642", "boost1642"), ("294", "evm2944"), ("14xx", "boost"),
              ("1443", "boost"), ("18xx", "boost"), ("1843", "boost"), ("68xx", "isk"), ("6843", "isk"))  # fmt: skip
-FOUR_LANE_PLATFORMS = ("12xx", "14xx", "1243", "1443")
 
 
-def antennas_of_cfg(text: str) -> AntennaTable | None:
-    """The table that a .cfg gives or names; None where it says nothing. Raises InputError for lines of no board."""
-    lines = _antenna_lines(text)
-    if "antGeometry0" in lines and "antGeometry1" in lines:
-        column, row = (np.array(lines[name]) for name in COMMANDS[:2])
+def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> AntennaTable | None:
+    """The table that a .cfg gives or names; None without either. Raises InputError for lines of no board.
+
+    Args:
+        values: Numbers of each command.
+        platform: What the comments name, in small letters and digits.
+    """
+    if "antGeometry0" in values and "antGeometry1" in values:
+        column, row = np.array(values["antGeometry0"]), np.array(values["antGeometry1"])
         if len(column) != len(row):
             raise InputError("antGeometry0 and antGeometry1 differ in length")
-        turned = lines.get("antPhaseRot", [1.0] * len(row))
+        turned = values.get("antPhaseRot", (1.0,) * len(row))
         inverted = tuple(rx for rx, sign in enumerate(turned[:NUM_RX]) if sign < 0)
         if len(turned) >= NUM_RX and turned[0] < 0:  # all the other way round means the same
             inverted = tuple(rx for rx in range(NUM_RX) if rx not in inverted)
         places = np.stack([-column, row], axis=1)
         return table_of_virtual_array("antGeometry", places, NUM_RX, inverted, "antGeometry0/1 of the .cfg")
-    if "antGeometryCfg" in lines:
-        numbers = lines["antGeometryCfg"]
+    if "antGeometryCfg" in values:
+        numbers = values["antGeometryCfg"]
+        if len(numbers) % 2:
+            raise InputError("antGeometryCfg holds an odd number of numbers; it takes pairs and two distances")
         pairs, (across, up) = np.array(numbers[:-2]).reshape(-1, 2), numbers[-2:]
         places = np.stack([2 * across * pairs[:, 1], -2 * up * pairs[:, 0]], axis=1)
         return table_of_virtual_array("antGeometryCfg", places, NUM_RX, source="antGeometryCfg of the .cfg")
-    platform = _platform(text)
-    if platform in ("", "xwr68xx", "xwr64xx") and (turned := _turned_receivers(lines)):
+    if platform in ("", "xwr68xx", "xwr64xx") and (
+        turned := _turned_receivers(values.get("compRangeBiasAndRxChanPhase", ()))
+    ):
         return next((board for board in TURNED if board.rx_inverted == turned), None)
     return next((ANTENNAS[board] for part, board in PLATFORMS if part in platform), None)
 
 
-def _turned_receivers(lines: dict[str, list[float]]) -> tuple[int, ...]:
+def _turned_receivers(compensation: tuple[float, ...]) -> tuple[int, ...]:
     """The receivers that the channel phases turn over, the same for each transmitter; () where they are other ones."""
-    factors = np.array(lines.get("compRangeBiasAndRxChanPhase", [])[1:])
+    factors = np.array(compensation[1:])
     if not factors.size or factors.size % (2 * NUM_RX):
         return ()
     each = factors.reshape(-1, NUM_RX, 2)
     if not (np.abs(each[..., 0]) == 1).all() or each[..., 1].any() or (each != each[0]).any():
         return ()
     return tuple(int(rx) for rx in np.flatnonzero(each[0, :, 0] < 0))
-
-
-def has_four_lanes(text: str) -> bool:
-    """Whether the comments name a platform whose DCA1000 recordings have four lanes."""
-    return any(part in _platform(text) for part in FOUR_LANE_PLATFORMS)
-
-
-def _platform(text: str) -> str:
-    found = re.search(r"%\s*platform\s*:\s*(\S+)", text, re.IGNORECASE)
-    return "" if found is None else re.sub(r"[^a-z0-9]", "", found[1].lower())
-
-
-def _antenna_lines(text: str) -> dict[str, list[float]]:
-    found: dict[str, list[float]] = {}
-    for raw in text.splitlines():
-        words = raw.split("%")[0].split()
-        if words and words[0] in COMMANDS:
-            try:
-                found[words[0]] = [float(word) for word in words[1:]]
-            except ValueError:
-                raise InputError(f"{words[0]} holds something that is not a number: {' '.join(words[1:])}") from None
-    return found

@@ -6,14 +6,13 @@ writes 1 0 -1 0 for the AOP), unless an antPhaseRot does. Reference: mmWave SDK 
 "compRangeBiasAndRxChanPhase".
 """
 
-from pathlib import Path
-
 import numpy as np
 
 from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.formats.radar_options import split_radar
-from mmweaver.formats.ti_cfg import fired_transmitters, ti_cfg_lines, whole
+from mmweaver.formats.ti_cfg import cfg_path, setup_of_lines, ti_cfg_lines
+from mmweaver.formats.ti_chirps import MAX_TX
 
 COMMAND, TURNS = "compRangeBiasAndRxChanPhase", "antPhaseRot"
 NUM_RX = 4
@@ -24,28 +23,26 @@ def read_ti_calibration(name_or_path: str) -> ChannelCalibration | None:
 
     Raises InputError where the line is too short for the transmitters that fire.
     """
-    name, options = split_radar(name_or_path)
-    path = Path(name)
-    if path.suffix.lower() != ".cfg" or not path.is_file():
-        return None
-    lines = ti_cfg_lines(path, {COMMAND: 3, TURNS: 1})
+    path = cfg_path(name_or_path)
+    lines = {} if path is None else ti_cfg_lines(path, {COMMAND: 3})
     if COMMAND not in lines:
         return None
-    line = lines[COMMAND][-1]
+    line, setup = lines[COMMAND][-1], setup_of_lines("", lines)
     bias_m, numbers = line.values[0], np.array(line.values[1:])
     pairs = numbers[: len(numbers) // 2 * 2].reshape(-1, 2) @ np.array([1, 1j])
-    fired = fired_transmitters(lines, options.sub_frame)
-    receivers = [rx for rx in range(NUM_RX) if whole(lines["channelCfg"][-1], "channelCfg", 0) >> rx & 1]
-    if len(pairs) < NUM_RX * (max(fired) + 1):
+    chirps, _ = setup.loop(setup.chosen_frame(split_radar(name_or_path)[1].sub_frame))
+    fired = [tx for tx in range(MAX_TX) if any(chirp.tx_mask >> tx & 1 for chirp in chirps)]
+    receivers = [rx for rx in range(NUM_RX) if setup.rx_mask >> rx & 1]
+    needed = NUM_RX * (max(fired) + 1)
+    if len(pairs) < needed:
         raise InputError(
             f"{path}, line {line.number}: {COMMAND} has {len(pairs)} antenna pairs; transmitter {max(fired)} needs"
-            f" {NUM_RX * (max(fired) + 1)}"
+            f" {needed}"
         )
-    factors = pairs[: NUM_RX * (max(fired) + 1)].reshape(-1, NUM_RX)[np.ix_(fired, receivers)]
+    factors = pairs[:needed].reshape(-1, NUM_RX)[np.ix_(fired, receivers)]
     if not np.abs(factors).all():
         raise InputError(f"{path}, line {line.number}: {COMMAND} has a factor of zero; leave the line out")
-    if bias_m == 0 and np.allclose(factors, 1):
+    is_one = np.allclose(factors, 1)
+    if bias_m == 0 and is_one:
         return None
-    return ChannelCalibration(
-        factors=factors, range_bias_m=bias_m, turns_receivers=not (np.allclose(factors, 1) or TURNS in lines)
-    )
+    return ChannelCalibration(factors=factors, range_bias_m=bias_m, turns_receivers=not (is_one or TURNS in lines))

@@ -1,6 +1,9 @@
-"""Converts the chirp configuration of a TI radar, in TI's units, to a RadarConfig."""
+"""The configuration of a TI radar in TI's units, whatever file it came from, and the RadarConfig that follows from it.
 
-from dataclasses import dataclass
+A file's reader fills a `TiSetup`: profiles, chirps by their index, and the frame or the sub-frames of an advanced one.
+"""
+
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,26 +13,19 @@ from mmweaver.core.presets import BAND_60_HZ, BAND_77_HZ, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import default_range_bins
 from mmweaver.core.transmit_code import tx_code_of
+from mmweaver.formats.radar_options import RadarOptions
 
-MOST_TX = 4
+MAX_TX = 4
+MAX_CHIRPS = 512
 SHIFTER_DEG = 5.625  # a step of the phase shifters
+NO_PHASE = (0.0,) * MAX_TX
 Chirp = tuple[complex, ...]  # weight of each of the board's transmitters
 
 
 @dataclass(frozen=True, kw_only=True)
-class SubFrame:
-    """Which sub-frame of an advanced frame a configuration is, and the samples of the others in each frame."""
+class TiProfile:
+    """A chirp profile; units are in the names."""
 
-    index: int
-    samples_before: int
-    samples_after: int
-
-
-@dataclass(frozen=True, kw_only=True)
-class TiChirps:
-    """The profile, chirps and frame of a TI configuration. Units are in the names."""
-
-    name: str
     start_frequency_ghz: float
     idle_time_us: float
     adc_start_time_us: float
@@ -38,90 +34,156 @@ class TiChirps:
     num_samples: int
     sample_rate_ksps: float
     rx_gain_db: float
+    phase_code: int = 0  # txPhaseShifter
+
+
+@dataclass(frozen=True, kw_only=True)
+class TiChirp:
+    """One chirp: its profile, the transmitters that fire, and their phases in the samples (BPM or shifters)."""
+
+    profile: int
+    tx_mask: int
+    phase_deg: tuple[float, ...] = NO_PHASE
+
+
+@dataclass(frozen=True, kw_only=True)
+class TiFrame:
+    """The chirps of a loop, both ends included, of the frame or of a sub-frame."""
+
+    first: int
+    last: int
+    num_loops: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class TiSetup:
+    """A configuration before a sub-frame is chosen."""
+
+    name: str
+    profiles: dict[int, TiProfile]
+    frames: list[TiFrame]  # one, or the sub-frames
+    has_sub_frames: bool
+    frame_period_ms: float  # of all sub-frames together
     rx_mask: int
     tx_mask: int
-    chirp_tx_masks: tuple[int, ...]  # of one loop, in firing order
-    num_loops: int
-    frame_period_ms: float
-    complex_samples: bool = True
-    # phase of each transmitter (tx,) in each chirp, in degrees: BPM or phase shifters; () = all 0
-    chirp_phase_deg: tuple[tuple[float, ...], ...] = ()
-    profile_phase_deg: tuple[float, ...] = (0.0,) * MOST_TX  # of each transmitter in all chirps, added to the former
+    complex_samples: bool
+    lvds_iq_order: str
+    lvds_lanes: int
     antennas: AntennaTable | None = None  # None: the xWR1843BOOST's, or the AWR2944EVM's with a fourth transmitter
-    lvds_lanes: int = 2
-    lvds_iq_order: str = "iq"
-    sub_frame: SubFrame | None = None
+    chirps: dict[int, TiChirp] = field(default_factory=dict)
+
+    def add_chirps(self, first: int, last: int, chirp: TiChirp) -> None:
+        """Defines chirps `first` to `last`. Raises InputError for indices that no device has."""
+        if not 0 <= first <= last < MAX_CHIRPS:
+            raise InputError(f"chirps {first} to {last} must lie in 0 to {MAX_CHIRPS - 1}")
+        self.chirps.update(dict.fromkeys(range(first, last + 1), chirp))
+
+    def chosen_frame(self, sub_frame: int | None) -> int:
+        """Index of the frame that is meant. Raises InputError where it has to be chosen, or there is none such."""
+        count = len(self.frames)
+        if not self.has_sub_frames and sub_frame is not None:
+            raise InputError("it has one plain frame and no sub-frames; leave out --subframe")
+        if sub_frame is None and count > 1:
+            raise InputError(f"it has {count} sub-frames; choose one with --subframe 0 to {count - 1}")
+        if not 0 <= (sub_frame or 0) < count:
+            raise InputError(f"it has sub-frames 0 to {count - 1}, not {sub_frame}")
+        return sub_frame or 0
+
+    def loop(self, index: int) -> tuple[list[TiChirp], TiProfile]:
+        """The chirps of a frame's loop, and the profile that they share. Raises InputError for any other."""
+        frame = self.frames[index]
+        if not 0 <= frame.first <= frame.last < MAX_CHIRPS:
+            raise InputError(f"the frame's chirps {frame.first} to {frame.last} must lie in 0 to {MAX_CHIRPS - 1}")
+        numbers = range(frame.first, frame.last + 1)
+        if missing := [number for number in numbers if number not in self.chirps]:
+            raise InputError(f"the frame uses chirp {missing[0]}, which is not defined")
+        chirps = [self.chirps[number] for number in numbers]
+        profiles = sorted({chirp.profile for chirp in chirps})
+        if len(profiles) > 1:
+            raise InputError(f"the frame's chirps use profiles {profiles}; only one profile can be read")
+        if profiles[0] not in self.profiles:
+            raise InputError(f"the chirps use profile {profiles[0]}, which is not defined")
+        return chirps, self.profiles[profiles[0]]
+
+    def num_samples(self, index: int) -> int:
+        """Samples of each receiver in a frame."""
+        chirps, profile = self.loop(index)
+        return len(chirps) * self.frames[index].num_loops * profile.num_samples
 
 
 def profile_phases_deg(code: int) -> tuple[float, ...]:
-    """A profile's txPhaseShifter as phases in the samples: six bits a transmitter, in steps of 5.625 degrees.
+    """A profile's txPhaseShifter as phases in the samples: six bits per transmitter, in steps of 5.625 degrees.
 
     Samples turn against the shifter: they are the ramp times the conjugate echo. Source: rlProfileCfg_t of mmWaveLink.
 
     >>> profile_phases_deg(0x00_40_20_00)
     (0.0, -45.0, -90.0, 0.0)
     """
-    return tuple(-SHIFTER_DEG * (code >> (8 * tx + 2) & 0x3F) + 0.0 for tx in range(MOST_TX))
+    return tuple(-SHIFTER_DEG * (code >> (8 * tx + 2) & 0x3F) + 0.0 for tx in range(MAX_TX))
 
 
-def radar_from_ti(chirps: TiChirps) -> RadarConfig:
+def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
     """The radar with the board's array, restricted to the transmitters that fire.
 
-    Transmitters are renumbered in the board's order. All range bins are kept, up to a cube of 4 MiB a frame. Raises
-    InputError where the chirps cannot be separated, or where the radar could not exist.
+    Transmitters are renumbered in the board's order. All range bins are kept, up to a cube of 4 MiB per frame.
+
+    Args:
+        setup: The configuration.
+        options: Sub-frame, antennas and lanes that replace those of the file.
+
+    Raises:
+        InputError: where a sub-frame has to be chosen, chirps differ or cannot be separated, or the radar could not
+            exist.
     """
-    board = _board(chirps)
-    sequence, repeats = _repeated_sequence(_weights(chirps, board))
+    index = setup.chosen_frame(options.sub_frame)
+    chirps, profile = setup.loop(index)
+    board = options.antennas or setup.antennas or (EVM_2944 if any(one.tx_mask >> 3 for one in chirps) else ISK)
+    lanes = options.lanes or setup.lvds_lanes
+    sequence, repeats = _repeated_sequence(_weights(setup.tx_mask, chirps, profile, board))
     enabled = [tx for tx in range(len(board.tx_halfwaves)) if any(chirp[tx] for chirp in sequence)]
     weights = np.array([[chirp[tx] for tx in enabled] for chirp in sequence])
     is_tdm = len(weights) == len(enabled) and (np.count_nonzero(weights, axis=1) == 1).all()
     is_tdm = is_tdm and np.linalg.matrix_rank(weights) == len(enabled)
     order = tuple(int(np.flatnonzero(row)[0]) for row in weights) if is_tdm else tuple(range(len(enabled)))
-    receivers = [bit for bit in range(len(board.rx_halfwaves)) if chirps.rx_mask >> bit & 1]
-    if not receivers or chirps.rx_mask >> len(board.rx_halfwaves):
-        raise InputError(f"receiver mask {chirps.rx_mask} must name some of the {len(board.rx_halfwaves)} receivers")
-    start_hz, slope = chirps.start_frequency_ghz * 1e9, chirps.slope_mhz_per_us * 1e12
-    sample_rate_hz = chirps.sample_rate_ksps * 1e3
-    if slope <= 0 or sample_rate_hz <= 0 or chirps.num_samples <= 0:
+    receivers = [bit for bit in range(len(board.rx_halfwaves)) if setup.rx_mask >> bit & 1]
+    if not receivers or setup.rx_mask >> len(board.rx_halfwaves):
+        raise InputError(f"receiver mask {setup.rx_mask} must name some of the {len(board.rx_halfwaves)} receivers")
+    start_hz, slope = profile.start_frequency_ghz * 1e9, profile.slope_mhz_per_us * 1e12
+    sample_rate_hz = profile.sample_rate_ksps * 1e3
+    if slope <= 0 or sample_rate_hz <= 0 or profile.num_samples <= 0:
         raise InputError("the profile's slope, samples and sample rate must be above 0")
-    middle_hz = start_hz + slope * (chirps.adc_start_time_us * 1e-6 + chirps.num_samples / sample_rate_hz / 2)
-    bins = chirps.num_samples if chirps.complex_samples else chirps.num_samples // 2
-    loops = max(chirps.num_loops * repeats, 1)
-    lanes = len(receivers) if chirps.lvds_lanes == 2 else 4
-    words = 2 * lanes if chirps.complex_samples else lanes  # of a sample of all receivers
-    other = chirps.sub_frame or SubFrame(index=0, samples_before=0, samples_after=0)
+    middle_hz = start_hz + slope * (profile.adc_start_time_us * 1e-6 + profile.num_samples / sample_rate_hz / 2)
+    bins = profile.num_samples if setup.complex_samples else profile.num_samples // 2
+    num_loops = setup.frames[index].num_loops * repeats
+    channels = len(receivers) if lanes == 2 else 4
+    words = 2 * channels if setup.complex_samples else channels  # of a sample of all receivers
+    counts = [setup.num_samples(at) for at in range(len(setup.frames))]
     return RadarConfig(
-        name=chirps.name,
+        name=f"{setup.name}_{index}" if setup.has_sub_frames else setup.name,
         start_frequency_hz=start_hz,
         chirp_slope_hz_per_s=slope,
-        idle_time_s=chirps.idle_time_us * 1e-6,
-        adc_start_time_s=chirps.adc_start_time_us * 1e-6,
-        ramp_end_time_s=chirps.ramp_end_time_us * 1e-6,
-        num_samples=chirps.num_samples,
+        idle_time_s=profile.idle_time_us * 1e-6,
+        adc_start_time_s=profile.adc_start_time_us * 1e-6,
+        ramp_end_time_s=profile.ramp_end_time_us * 1e-6,
+        num_samples=profile.num_samples,
         sample_rate_hz=sample_rate_hz,
-        num_loops=chirps.num_loops * repeats,
-        frame_period_s=chirps.frame_period_ms * 1e-3,
+        num_loops=num_loops,
+        frame_period_s=setup.frame_period_ms * 1e-3,
         tx_position_m=halfwave_positions(tuple(board.tx_halfwaves[bit] for bit in enabled), middle_hz),
         rx_position_m=halfwave_positions(tuple(board.rx_halfwaves[bit] for bit in receivers), middle_hz),
         tx_order=order,
-        complex_samples=chirps.complex_samples,
-        num_range_bins=default_range_bins(max(bins, 1), loops * len(enabled) * len(receivers)),
-        rx_gain_db=chirps.rx_gain_db,
+        complex_samples=setup.complex_samples,
+        num_range_bins=default_range_bins(max(bins, 1), max(num_loops, 1) * len(enabled) * len(receivers)),
+        rx_gain_db=profile.rx_gain_db,
         frequency_limits_hz=_band_hz(start_hz),
         tx_code=() if is_tdm else tx_code_of(weights),
-        lvds_lanes=chirps.lvds_lanes,
-        lvds_iq_order=chirps.lvds_iq_order,
+        lvds_lanes=lanes,
+        lvds_iq_order=setup.lvds_iq_order,
         rx_channels=() if receivers == list(range(len(receivers))) else tuple(receivers),
-        rx_inverted=tuple(index for index, bit in enumerate(receivers) if bit in board.rx_inverted),
-        frame_words_before=other.samples_before * words,
-        frame_words_after=other.samples_after * words,
+        rx_inverted=tuple(at for at, bit in enumerate(receivers) if bit in board.rx_inverted),
+        frame_words_before=sum(counts[:index]) * words,
+        frame_words_after=sum(counts[index + 1 :]) * words,
     )
-
-
-def _board(chirps: TiChirps) -> AntennaTable:
-    if chirps.antennas is not None:
-        return chirps.antennas
-    return EVM_2944 if any(mask >> 3 & 1 for mask in chirps.chirp_tx_masks) else ISK
 
 
 def _band_hz(start_hz: float) -> tuple[float, float]:
@@ -136,30 +198,27 @@ def _band_hz(start_hz: float) -> tuple[float, float]:
 
 def _repeated_sequence(chirps: tuple[Chirp, ...]) -> tuple[tuple[Chirp, ...], int]:
     """The shortest sequence that the chirps repeat, and its number of repetitions."""
-    if not chirps:
-        raise InputError("the frame names no chirps")
-    for length in range(1, len(chirps) + 1):
-        if len(chirps) % length == 0 and chirps[:length] * (len(chirps) // length) == chirps:
-            return chirps[:length], len(chirps) // length
-    raise AssertionError("a sequence repeats itself once")
+    lengths = (length for length in range(1, len(chirps) + 1) if len(chirps) % length == 0)
+    length = next(length for length in lengths if chirps[:length] * (len(chirps) // length) == chirps)
+    return chirps[:length], len(chirps) // length
 
 
-def _weights(chirps: TiChirps, board: AntennaTable) -> tuple[Chirp, ...]:
+def _weights(tx_mask: int, chirps: list[TiChirp], profile: TiProfile, board: AntennaTable) -> tuple[Chirp, ...]:
     """The weights of the board's transmitters in each chirp, the first that fires with phase 0 where it is alone."""
-    num_tx = len(board.tx_halfwaves)
-    phases = chirps.chirp_phase_deg or ((0.0,) * MOST_TX,) * len(chirps.chirp_tx_masks)
+    num_tx, profile_deg = len(board.tx_halfwaves), profile_phases_deg(profile.phase_code)
     found: list[Chirp] = []
-    for mask, phase_deg in zip(chirps.chirp_tx_masks, phases, strict=True):
+    for chirp in chirps:
+        mask = chirp.tx_mask
         if mask == 0 or mask >> num_tx:
             raise InputError(
                 f"a chirp with transmitter mask {mask} must fire some of the {num_tx} transmitters of board"
                 f" {board.name!r}; another board: --antennas"
             )
-        if mask & ~chirps.tx_mask:
+        if mask & ~tx_mask:
             raise InputError(
-                f"a chirp fires transmitter mask {mask}, but the channel mask {chirps.tx_mask} does not enable it"
+                f"a chirp fires transmitter mask {mask}, but the channel mask {tx_mask} does not enable it"
             )
-        phase_deg = tuple(map(sum, zip(phase_deg, chirps.profile_phase_deg, strict=True)))
+        phase_deg = [sum(both) for both in zip(chirp.phase_deg, profile_deg, strict=True)]
         on = [tx for tx in range(num_tx) if mask >> tx & 1]
         turn = 0.0 if len(on) > 1 else phase_deg[on[0]]  # of one alone it means nothing
         found.append(tuple(_phasor(phase_deg[tx] - turn) if tx in on else 0j for tx in range(num_tx)))

@@ -5,15 +5,14 @@ multiObjBeamForming.
 """
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
-from mmweaver.core.errors import InputError
-from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MOST_OBJECTS, FirmwareCfar, FirmwareSettings
+from mmweaver.core.errors import InputError, file_named
+from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MAX_OBJECTS, FirmwareCfar, FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.formats.ti_cfg import Line, read_ti_cfg, ti_cfg_lines, whole
+from mmweaver.formats.ti_cfg import Line, adc_buffer, read_ti_cfg, ti_cfg_lines
 
-# SDK 2 and later put the subframe before these numbers, so lines have one more than in SDK 1.
+# SDK 2 and later put the sub-frame before these numbers, so lines have one more than in SDK 1.
 PLAIN_LENGTH = {"cfarCfg": 7, "peakGrouping": 5, "clutterRemoval": 1, "multiObjBeamForming": 2}
 SDK3_CFAR_LENGTH = 9
 DB_PER_OCTAVE = 20 * math.log10(2)
@@ -33,48 +32,45 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
             f"{path} has no cfarCfg, so its firmware's point cloud is unknown; add the line or use --points cfar"
         )
     config = read_ti_cfg(path)
-    device = _device(lines)
-    try:
-        grouping = _grouping(lines)
-        cfars = {line.values[_start(line, "cfarCfg")]: line for line in lines["cfarCfg"]}
+    device = "xwr16xx" if adc_buffer(lines)[1] == 1 else "xwr14xx"
+    own = {command: _without_sub_frame(found[-1]) for command, found in lines.items() if command in PLAIN_LENGTH}
+    with file_named(path):
+        cfars = {line.values[0]: line for line in map(_without_sub_frame, lines["cfarCfg"])}
         if unknown := sorted(set(cfars) - {0.0, 1.0}):
             raise InputError(f"cfarCfg is for direction {unknown[0]:g}; known are 0 (range) and 1 (Doppler)")
-        in_range, in_doppler = (_own_grouping(cfars.get(direction)) for direction in (0.0, 1.0))
+        values: dict[str, bool | int] = {}
+        if "peakGrouping" in own:
+            _, in_range, in_doppler, first, last = own["peakGrouping"].wholes(5)
+            values = {"group_range": in_range == 1, "group_doppler": in_doppler == 1}
+            values |= {"first_range_bin": first, "last_range_bin": last}
+        for direction, name in ((0.0, "group_range"), (1.0, "group_doppler")):
+            if direction in cfars and _is_of_sdk3(cfars[direction]):
+                values[name] = cfars[direction].whole(SDK3_CFAR_LENGTH - 2) == 1
+        beams = own.get("multiObjBeamForming")
         return FirmwareSettings(
             device=device,
             range_cfar=_cfar(cfars.get(0.0), device, config),
             doppler_cfar=_cfar(cfars.get(1.0), device, config),
-            group_range=grouping.in_range if in_range is None else in_range,
-            group_doppler=grouping.in_doppler if in_doppler is None else in_doppler,
-            first_range_bin=grouping.first_bin,
-            last_range_bin=grouping.last_bin,
-            static_removal=_is_on(lines, "clutterRemoval"),
-            second_peak=_second_peak(lines),
-            most_objects=SDK3_MOST_OBJECTS if any(map(_is_of_sdk3, cfars.values())) else None,
+            static_removal="clutterRemoval" in own and own["clutterRemoval"].values[0] == 1,
+            second_peak=None if beams is None or beams.values[0] != 1 else float(beams.values[1]),
+            most_objects=SDK3_MAX_OBJECTS if any(map(_is_of_sdk3, cfars.values())) else None,
+            **values,
         )
-    except InputError as error:
-        text = str(error)
-        raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
 
 
-def _device(lines: dict[str, list[Line]]) -> str:
-    if "adcbufCfg" not in lines:
-        return "xwr14xx"
-    values = lines["adcbufCfg"][-1].values
-    interleave = values[2] if len(values) == 4 else values[3]
-    return "xwr16xx" if interleave == 1 else "xwr14xx"
+def _without_sub_frame(line: Line) -> Line:
+    """A line with the numbers of SDK 1 first."""
+    return Line(line.number, line.command, line.values[len(line.values) > PLAIN_LENGTH[line.command] :])
 
 
-def _start(line: Line, command: str) -> int:
-    """Index of a line's own first number: after the subframe, if it has one."""
-    return 1 if len(line.values) > PLAIN_LENGTH[command] else 0
+def _is_of_sdk3(line: Line) -> bool:
+    return len(line.values) >= SDK3_CFAR_LENGTH - 1
 
 
 def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar | None:
     if line is None:
         return None
-    start = _start(line, "cfarCfg")
-    average, window, guard, shift, cyclic = (whole(line, "cfarCfg", start + at) for at in range(1, 6))
+    _, average, window, guard, shift, cyclic = line.wholes(6)
     if not 0 <= average < len(AVERAGE_MODES):
         raise InputError(f"line {line.number}: cfarCfg has average mode {average}; known are 0, 1 and 2")
     in_db = _is_of_sdk3(line)
@@ -86,19 +82,8 @@ def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar |
         guard=guard,
         noise_shift=shift,
         cyclic=cyclic == 1,
-        threshold=_counts(line.values[start + 6], device, config) if in_db else whole(line, "cfarCfg", start + 6),
+        threshold=_counts(line.values[6], device, config) if in_db else line.whole(6),
     )
-
-
-def _is_of_sdk3(line: Line) -> bool:
-    return len(line.values) >= SDK3_CFAR_LENGTH
-
-
-def _own_grouping(line: Line | None) -> bool | None:
-    """Whether an SDK 3 line groups peaks in its direction; None for older ones."""
-    if line is None or not _is_of_sdk3(line):
-        return None
-    return whole(line, "cfarCfg", SDK3_CFAR_LENGTH - 1) == 1
 
 
 def _counts(threshold_db: float, device: str, config: RadarConfig) -> int:
@@ -106,38 +91,3 @@ def _counts(threshold_db: float, device: str, config: RadarConfig) -> int:
     num = config.num_antennas
     per_octave = 256 * num if device == "xwr16xx" else 512 * num / 2 ** (num - 1).bit_length()
     return round(threshold_db / DB_PER_OCTAVE * per_octave)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Grouping:
-    in_range: bool
-    in_doppler: bool
-    first_bin: int
-    last_bin: int
-
-
-def _grouping(lines: dict[str, list[Line]]) -> _Grouping:
-    if "peakGrouping" not in lines:
-        default = FirmwareSettings()
-        return _Grouping(
-            in_range=default.group_range, in_doppler=default.group_doppler, first_bin=default.first_range_bin,
-            last_bin=default.last_range_bin,
-        )  # fmt: skip
-    line = lines["peakGrouping"][-1]
-    start = _start(line, "peakGrouping")
-    in_range, in_doppler, first, last = (whole(line, "peakGrouping", start + at) for at in range(1, 5))
-    return _Grouping(in_range=in_range == 1, in_doppler=in_doppler == 1, first_bin=first, last_bin=last)
-
-
-def _is_on(lines: dict[str, list[Line]], command: str) -> bool:
-    if command not in lines:
-        return False
-    line = lines[command][-1]
-    return line.values[_start(line, command)] == 1
-
-
-def _second_peak(lines: dict[str, list[Line]]) -> float | None:
-    if not _is_on(lines, "multiObjBeamForming"):
-        return None
-    line = lines["multiObjBeamForming"][-1]
-    return float(line.values[_start(line, "multiObjBeamForming") + 1])

@@ -1,1 +1,1 @@
-"""Scores of a radar cube against the ground truth, each with its baselines."""
+"""Scores that training, comparisons and recognisers report."""

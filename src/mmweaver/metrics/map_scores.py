@@ -4,7 +4,6 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.metrics.ssim import ssim_map
 
 SHOWN_DB = 50.0
 
@@ -23,17 +22,6 @@ def shown_db(power: PowerMaps, peak_power: float) -> PowerMaps:
     return 10 * np.log10(np.maximum(power, lowest) / lowest)
 
 
-def log_map_ssim(prediction: PowerMaps, truth: PowerMaps, *, all_cells: bool = False) -> float:
-    """Mean SSIM of the 50 dB displays over the cells that are non-zero in either; 1 is perfect.
-
-    The top of both displays is the peak of the ground truth over all frames, the data range is 50 dB. Cells empty in
-    both are excluded, for they would flatter all zeros; `all_cells` includes them.
-    """
-    p, t, is_shown = _displays(prediction, truth)
-    similar = ssim_map(p, t, data_range=SHOWN_DB)
-    return float((similar if all_cells else similar[is_shown]).mean())
-
-
 def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:
     """Absolute difference of the same displays, summed over all cells, per non-zero cell of the ground truth, in dB.
 
@@ -43,11 +31,11 @@ def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:
     >>> log_map_difference_db(truth / 10, truth), log_map_difference_db(truth * 0, truth)
     (10.0, 35.0)
     """
-    p, t, _ = _displays(prediction, truth)
+    p, t = displays(prediction, truth)
     return float(np.abs(p - t).sum() / np.count_nonzero(t > 0))
 
 
-def _displays(prediction: PowerMaps, truth: PowerMaps) -> tuple[PowerMaps, PowerMaps, np.ndarray]:
+def displays(prediction: PowerMaps, truth: PowerMaps) -> tuple[PowerMaps, PowerMaps]:
+    """Both maps in dB on the 50 dB display of the truth."""
     peak = float(truth.max())
-    p, t = shown_db(prediction, peak), shown_db(truth, peak)
-    return p, t, (p > 0) | (t > 0)
+    return shown_db(prediction, peak), shown_db(truth, peak)

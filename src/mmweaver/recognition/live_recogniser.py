@@ -13,7 +13,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.formats.point_clouds.point_tables import csv_columns
-from mmweaver.formats.point_clouds.ti_uart import MAGIC, ByteSource, packets_of
+from mmweaver.formats.point_clouds.ti_uart import MAGIC, ByteSource, point_packets
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser, Recognition
 
@@ -110,7 +110,7 @@ def frames_of(source: ByteSource) -> Iterator[FramePoints]:
         rest = TextIOWrapper(cast("Any", source), encoding="utf-8", errors="replace")
         yield from _frames_of_csv(chain((head.decode() + rest.readline()).splitlines(), rest))
     elif head:
-        yield from (packet[:, :5] for packet in packets_of(source, head))
+        yield from (packet[:, :5] for packet in point_packets(source, head))
 
 
 def _frames_of_csv(lines: Iterator[str]) -> Iterator[FramePoints]:

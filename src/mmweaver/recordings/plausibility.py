@@ -20,7 +20,7 @@ from mmweaver.core.shapes import PerFrame
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.formats.dca1000 import upright
-from mmweaver.formats.radar_options import RadarOptions, with_options
+from mmweaver.formats.radar_options import RadarOptions
 from mmweaver.recordings.frame_boundaries import loops_of_other_frames
 from mmweaver.recordings.transmitter_order import agreements
 from mmweaver.recordings.word_order import wrong_iq_order, wrong_lanes
@@ -235,7 +235,7 @@ def _agreements_of_boards(cube: RadarCube) -> dict[str, float]:
     for name, table in ANTENNAS.items():
         if (len(table.tx_halfwaves), len(table.rx_halfwaves)) != (config.num_tx, config.num_rx):
             continue
-        other = with_options(config, RadarOptions(antennas=table))
+        other = RadarOptions(antennas=table).applied(config)
         turned = [
             -1.0 if (rx in config.rx_inverted) != (rx in other.rx_inverted) else 1.0 for rx in range(other.num_rx)
         ]

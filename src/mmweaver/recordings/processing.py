@@ -6,14 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
 from mmweaver.core.board import Board, read_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
-from mmweaver.core.shapes import Array, PerFrame, PerIndex
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import remove_static
@@ -79,29 +77,34 @@ def process_recording(
     path: str | Path,
     radar: str | Path | RadarConfig | None = None,
     *,
-    layout: str | None = None,
-    axes: str | None = None,
-    iq_order: str | None = None,
-    tx_order: tuple[int, ...] | None = None,
-    range_m: tuple[float, float] | None = None,
-    range_bins: tuple[int, int] | None = None,
     points: str = "cfar",
     static_removal: str = "none",
     board: str | Path | Board | None = None,
     analyse: bool = True,
     strict: bool = False,
     stages: Stages | None = None,
+    **reading: Any,
 ) -> ProcessedRecording:
     """Reads a recording and takes it through range, Doppler, angle and CFAR.
 
-    `board`: whose errors are taken away first, a board.json (`mmweaver calibrate`) or a Board.
-    `path`, `radar`, `layout`, `axes`, `iq_order`, `tx_order`, `range_m` and `range_bins` as in `read_recording`.
-    `static_removal` (see `dsp.cube.remove_static`) takes static clutter away from the cube and its points; `analyse`
-    looks for slow movement, vital signs, micro-Doppler and people. The meta warns of samples that do not fit the
-    settings; if `strict` they are refused (`recordings.plausibility`). `points` chooses the point cloud: "cfar", or
-    "firmware" as TI's demo would report it with the settings of the radar's .cfg. Lost packets of a capture folder are
-    zeros and counted; where it has a RealSense too, the meta says which of its photos is nearest in time to each radar
-    frame, by the recorder's clock. Raises InputError for anything that cannot be read so.
+    Args:
+        path: The recording, as in `read_recording`.
+        radar: Its radar, as in `read_recording`.
+        points: Detector: "cfar", or "firmware" as TI's demo would report it with the settings of the radar's .cfg.
+        static_removal: How static clutter is removed from the cube and its points, see `dsp.cube.remove_static`.
+        board: The board whose errors are removed first: a board.json (`mmweaver calibrate`) or a Board.
+        analyse: Whether to look for slow movement, vital signs, micro-Doppler and people.
+        strict: Whether samples that do not fit the settings are refused (`recordings.plausibility`) rather than
+            reported in the meta.
+        stages: Timer of the stages.
+        **reading: `range_m`, `range_bins`, `layout`, `axes`, `iq_order` and `tx_order` of `read_recording`.
+
+    Returns:
+        Cube, points, analysis and meta. Lost packets of a capture folder are zeros and counted; where it has a
+        RealSense too, the meta gives the photo nearest in time to each radar frame, by the recorder's clock.
+
+    Raises:
+        InputError: for anything that cannot be read so.
     """
     stages = stages or Stages()
     made_by = read_board(board) if isinstance(board, str | Path) else board
@@ -109,18 +112,13 @@ def process_recording(
         check_points(points, as_config(radar))
         _firmware(points, None if isinstance(radar, RadarConfig) else str(radar))
     with stages("read the recording"):
-        recording = read_recording(
-            path, radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order, range_m=range_m,
-            range_bins=range_bins,
-        )  # fmt: skip
+        recording = read_recording(path, radar, **reading)
         if made_by is not None:
             recording = without_board(recording, made_by)
         check_points(points, recording.config)
         if recording.adc is None and points != "firmware" and needs_adc(points):
             raise InputError(f"{path} holds a cube, but --points {points} needs raw samples; give the raw recording")
         firmware = _firmware(points, recording.radar_source)
-        inputs = {name: _digest(file) for name, file in recording.files.items()}
-        of_packets = {} if recording.packets is None else _packets_meta(recording.path, recording.packets)
     with stages("range, Doppler, antennas"):
         whole = recording.cube
         cube = remove_static(whole, static_removal)
@@ -139,33 +137,33 @@ def process_recording(
         "axes": recording.axes,
         "points": points,
         "static_removal": static_removal,
-        "calibration": _calibration_meta(recording),
-        "board": _board_meta(recording),
+        **_board_metas(recording),
         "warnings": warnings,
         "analysis": None if analysis is None else analysis.meta(),
         "firmware": firmware,
         **radar_meta(cube.config),
-        "inputs": inputs,
-        **of_packets,
+        "inputs": {name: _digest(file) for name, file in recording.files.items()},
+        **({} if recording.packets is None else _packets_meta(recording.path, recording.packets)),
         "assumed": [*_assumptions(recording), *recording.config.notes],
     }
     return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis)
 
 
-def _calibration_meta(recording: Recording) -> dict[str, Any] | None:
-    """What was compensated of the board's channel errors."""
-    own = recording.calibration
-    if own is None:
-        return None
-    return {"range_bias_m": own.range_bias_m, "factor_abs": np.abs(own.factors), "factor_rad": np.angle(own.factors)}
-
-
-def _board_meta(recording: Recording) -> dict[str, Any] | None:
-    """The board whose errors were taken away, which of them were and were not."""
-    own = recording.board
-    if own is None:
-        return None
-    return {**own.board.meta(), "corrected": own.corrected, "left_in": own.left_in}
+def _board_metas(recording: Recording) -> dict[str, Any]:
+    """The channel errors that were compensated, and the board whose errors were removed."""
+    channels, board = recording.calibration, recording.board
+    return {
+        "calibration": None
+        if channels is None
+        else {
+            "range_bias_m": channels.range_bias_m,
+            "factor_abs": np.abs(channels.factors),
+            "factor_rad": np.angle(channels.factors),
+        },
+        "board": None
+        if board is None
+        else {**board.board.meta(), "corrected": board.corrected, "left_in": board.left_in},
+    }
 
 
 def _warnings(recording: Recording, strict: bool) -> list[str]:
@@ -177,22 +175,6 @@ def _warnings(recording: Recording, strict: bool) -> list[str]:
     if found and strict:
         raise InputError(f"{recording.path}: {'; '.join(found)} (--strict)")
     return found
-
-
-def nearest_photos(frame_time_s: PerFrame, photo_time_s: Float[Array, " photo"]) -> tuple[PerIndex, PerFrame]:
-    """For each radar frame the index of the photo nearest in time, and photo minus frame in seconds.
-
-    >>> index, late_s = nearest_photos(np.array([0.0, 0.1, 0.2]), np.array([0.02, 0.09, 0.15]))
-    >>> index.tolist(), np.round(late_s, 2).tolist()
-    ([0, 1, 2], [0.02, -0.01, -0.05])
-    """
-    order = np.argsort(photo_time_s)
-    rising = photo_time_s[order]
-    after = np.clip(np.searchsorted(rising, frame_time_s), 0, len(rising) - 1)
-    before = np.maximum(after - 1, 0)
-    is_before = np.abs(rising[before] - frame_time_s) <= np.abs(rising[after] - frame_time_s)
-    index = order[np.where(is_before, before, after)]
-    return index, photo_time_s[index] - frame_time_s
 
 
 def _firmware(points: str, radar_source: str | None) -> FirmwareSettings | None:
@@ -212,8 +194,12 @@ def _packets_meta(folder: Path, packets: PacketCapture) -> dict[str, Any]:
     camera = photo_folder(folder)
     if camera is None:
         return meta
-    index, late_s = nearest_photos(packets.frame_time_s, photo_times_s(camera))
-    return meta | {"photo_of_frame": index, "photo_minus_frame_s": np.round(late_s, 4)}
+    late_s = photo_times_s(camera) - packets.frame_time_s[:, None]
+    nearest = np.abs(late_s).argmin(axis=1)
+    return meta | {
+        "photo_of_frame": nearest,
+        "photo_minus_frame_s": np.round(np.take_along_axis(late_s, nearest[:, None], axis=1)[:, 0], 4),
+    }
 
 
 def _assumptions(recording: Recording) -> list[str]:

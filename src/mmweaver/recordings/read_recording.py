@@ -11,6 +11,7 @@ folder of .npy                             frames of HuPR
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
 from mmweaver.formats.npz_files import read_radar_npz
-from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_cubelearn, read_hupr, read_mmmesh, read_rf_genesis
+from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.formats.ti_calibration import read_ti_calibration
@@ -76,91 +77,88 @@ class Recording:
         return replace(cube, grid=CubeGrid.of(cube.config, len(cube.values), self.first_frame))
 
 
+@dataclass(frozen=True, kw_only=True)
+class RawReading:
+    """How raw samples are read that do not bring it themselves; None keeps the default."""
+
+    radar: str | Path | RadarConfig | None = None  # a preset, a file that describes one, or its configuration
+    layout: str | None = None  # the project whose array a .npy is, one of LAYOUTS
+    axes: str | None = None  # of any other .npy, such as "frame,loop,tx,rx,sample"
+    iq_order: str | None = None  # "iq", "qi" or "interleaved"; default: what the radar's file says
+    tx_order: tuple[int, ...] | None = None  # in which transmitters fire; default: the radar's
+
+
 def read_recording(
     path: str | Path,
     radar: str | Path | RadarConfig | None = None,
     *,
-    layout: str | None = None,
-    axes: str | None = None,
-    iq_order: str | None = None,
-    tx_order: tuple[int, ...] | None = None,
     range_m: tuple[float, float] | None = None,
     range_bins: tuple[int, int] | None = None,
     frames: slice = slice(None),
     mapped: bool = False,
+    **samples: Any,
 ) -> Recording:
-    """Reads a recording, or a stretch of its `frames`; which kind it is follows from the path.
+    """Reads a recording, or a stretch of its frames; which kind it is follows from the path.
 
-    `range_m` (near, far) or `range_bins` (first, last) choose the range bins of its cube; by default those of a preset,
-    or all of a .cfg.
+    Args:
+        path: File or folder, see above.
+        radar: A preset, a file that describes one, or its configuration. A capture folder brings its own, a radar.npz
+            its radar.json, and the arrays of other projects default to the preset of that name.
+        range_m: Range window (near, far) of the cube, m. Default: that of a preset, or all bins of a .cfg.
+        range_bins: The same as range bins (first, last).
+        frames: Stretch of frames; all by default.
+        mapped: Leaves the cube of a radar.npz on the disk, read-only, until its values are used.
+        **samples: `layout`, `axes`, `iq_order` and `tx_order`, see `RawReading`. A .npy needs its `axes`, or a
+            `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis" or "cubelearn".
 
-    `mapped` leaves the cube of a radar.npz on the disk, read-only, until its values are used.
+    Returns:
+        The samples, or the cube where the file holds no samples.
 
-    `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz its
-    radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq", "qi" or
-    "interleaved" (default: what the radar's file says, else "iq"), `tx_order` the order in which transmitters fire
-    (default: the radar's). A .npy needs its `axes`, such as "frame,loop,tx,rx,sample", or a `layout`: "hupr"
-    (recognised by its shape), "mmmesh", "rf_genesis" or "cubelearn". Raises InputError where the file cannot be read
-    so.
+    Raises:
+        InputError: where the file cannot be read so.
     """
     if frames.step not in (None, 1) or (frames.start or 0) < 0:
         raise ValueError("frames are a stretch that begins with a frame of the recording")
-    how = {"layout": layout, "axes": axes, "iq_order": iq_order, "tx_order": tx_order}
-    found = _read(Path(path), radar, frames=frames, mapped=mapped, **how)
-    return _with_range(found, range_m, range_bins)
+    found = _read(Path(path), RawReading(radar=radar, **samples), frames, mapped)
+    return _cropped(found, range_m, range_bins)
 
 
-def _read(
-    path: Path,
-    radar: str | Path | RadarConfig | None,
-    *,
-    layout: str | None,
-    axes: str | None,
-    iq_order: str | None,
-    tx_order: tuple[int, ...] | None,
-    frames: slice,
-    mapped: bool,
-) -> Recording:
+def _read(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recording:
     """The recording with the range bins of its radar."""
-    if layout is not None and (layout not in LAYOUTS or axes is not None):
-        raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
+    layout, radar = reading.layout, reading.radar
+    if layout is not None and (layout not in LAYOUTS or reading.axes is not None):
+        raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {reading.axes!r}")
     check_exists(path, "a recording or a capture folder")
-    if path.is_dir() and layout is None:
-        given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
-        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames, mapped)
-        if found is not None:
-            return found
+    if path.is_dir() and layout is None and (found := _read_folder(path, reading, frames, mapped)) is not None:
+        return found
     if path.suffix == ".npz":
-        return _stretch(_from_cube(path, radar, mapped), frames)
-    if (path.suffix == ".npy" or path.is_dir()) and axes is None:
+        return _stretch(_read_cube(path, radar, mapped), frames)
+    if (path.suffix == ".npy" or path.is_dir()) and reading.axes is None:
         layout = layout or detect_layout(path)
-    source = radar if radar is not None or layout == "cubelearn" else layout
-    if source is None:
+    radar = radar if radar is not None or layout == "cubelearn" else layout
+    if radar is None:
         raise InputError(
             f"{path}: which radar recorded it? give --radar, for example --radar awr1843; only a capture folder and"
             f" {CUBE} bring their own"
         )
-    config = as_config(source)
-    if tx_order is not None:
-        config = replace(config, tx_order=tx_order)
-    source = None if isinstance(source, RadarConfig) else str(source)
+    config = as_config(radar)
+    if reading.tx_order is not None:
+        config = replace(config, tx_order=reading.tx_order)
+    source = None if isinstance(radar, RadarConfig) else str(radar)
+    found = Recording(path=path, files={"recording": path}, config=config, radar_source=source)
     if layout is not None:
-        return _stretch(_from_layout(path, config, layout, source), frames)
-    found = _of_samples(path, config, axes, iq_order or config.lvds_iq_order, source, frames)
+        return _stretch(_read_layout(found, layout), frames)
+    found = replace(_read_samples(found, reading, frames), first_frame=frames.start or 0)
     return _calibrated(found, None if source is None else read_ti_calibration(source))
 
 
-def _of_samples(
-    path: Path, config: RadarConfig, axes: str | None, iq_order: str, source: str | None, frames: slice
-) -> Recording:
+def _read_samples(found: Recording, reading: RawReading, frames: slice) -> Recording:
     """A .npy with named axes, the packets or the .bin of a DCA1000."""
-    found = Recording(
-        path=path, files={"recording": path}, config=config, radar_source=source, first_frame=frames.start or 0
-    )
-    if axes is None and source is not None:
-        refuse_headers(source)
-    if axes is not None:
-        return replace(found, adc=read_adc_npy(path, config, axes, frames=frames), axes=axes)
+    path, config, iq_order = found.path, found.config, reading.iq_order or found.config.lvds_iq_order
+    if reading.axes is not None:
+        return replace(found, adc=read_adc_npy(path, config, reading.axes, frames=frames), axes=reading.axes)
+    if found.radar_source is not None:
+        refuse_headers(found.radar_source)
     if path.suffix.lower() in PACKET_SUFFIXES:
         packets = read_pcap(path, config, iq_order=iq_order, frames=frames)
         return replace(found, adc=packets.adc, packets=packets, iq_order=iq_order)
@@ -187,7 +185,7 @@ def _calibrated(found: Recording, calibration: ChannelCalibration | None) -> Rec
     return replace(found, adc=calibration.compensated(found.adc), calibration=calibration)
 
 
-def _with_range(found: Recording, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None) -> Recording:
+def _cropped(found: Recording, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None) -> Recording:
     """The recording with chosen range bins. Raises InputError for bins that its radar or its stored cube lacks."""
     config = chosen_range(found.config, range_m, range_bins)
     if config == found.config:
@@ -224,17 +222,15 @@ def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
     return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
 
 
-def _from_folder(
-    path: Path, radar: str | Path | RadarConfig | None, given: list[str], frames: slice, mapped: bool
-) -> Recording | None:
+def _read_folder(path: Path, reading: RawReading, frames: slice, mapped: bool) -> Recording | None:
     """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
     if (path / CUBE).is_file():
-        return _stretch(_from_cube(path / CUBE, radar, mapped), frames)
+        return _stretch(_read_cube(path / CUBE, reading.radar, mapped), frames)
     if is_stream(path):
         cube = read_stream_cube(path, frames)
         return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
     if is_capture(path):
-        return _from_capture(path, given, frames)
+        return _read_capture(path, reading, frames)
     if any(path.glob("*.npy")):
         return None
     raise InputError(
@@ -243,33 +239,35 @@ def _from_folder(
     )
 
 
-def _from_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool) -> Recording:
+def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool) -> Recording:
     cube = read_radar_npz(path, None if radar is None else as_config(radar), mapped=mapped)
     source = None if radar is None or isinstance(radar, RadarConfig) else str(radar)
-    return Recording(
-        path=path, files={"recording": path}, config=cube.config, stored_cube=cube, radar_source=source
-    )  # fmt: skip
+    return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube, radar_source=source)
 
 
-def _from_capture(path: Path, given: list[str], frames: slice) -> Recording:
-    if given:
-        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {given[0]}")
+def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
+    if given := [name for name, value in vars(reading).items() if value is not None]:
+        option = given[0].replace("_", "-")
+        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out --{option}")
     capture = read_radar_capture(path, frames)
+    cfg = capture.folder / RADAR
     found = Recording(
-        path=capture.folder, files={"recording": capture.folder / PACKETS, "radar": capture.folder / RADAR},
-        config=capture.config, adc=capture.packets.adc, iq_order=capture.iq_order,
-        radar_source=str(capture.folder / RADAR), packets=capture.packets, first_frame=frames.start or 0,
-    )  # fmt: skip
-    return _calibrated(found, read_ti_calibration(str(capture.folder / RADAR)))
-
-
-def _from_layout(path: Path, config: RadarConfig, layout: str, source: str | None) -> Recording:
-    files = {"recording": path}
-    if layout == "hupr":
-        cube = read_hupr(path, config)
-        cube = replace(cube, values=np.asarray(cube.values * tdm_compensation(config)))
-        return Recording(path=path, files=files, config=cube.config, stored_cube=cube, radar_source=source)
-    adc = {"mmmesh": read_mmmesh, "rf_genesis": read_rf_genesis, "cubelearn": read_cubelearn}[layout](path, config)
-    return Recording(
-        path=path, files=files, config=adc.config, adc=adc, compensate_tdm=layout != "rf_genesis", radar_source=source
+        path=capture.folder,
+        files={"recording": capture.folder / PACKETS, "radar": cfg},
+        config=capture.config,
+        adc=capture.packets.adc,
+        iq_order=capture.config.lvds_iq_order,
+        radar_source=str(cfg),
+        packets=capture.packets,
+        first_frame=frames.start or 0,
     )
+    return _calibrated(found, read_ti_calibration(str(cfg)))
+
+
+def _read_layout(found: Recording, layout: str) -> Recording:
+    """The array of another project: a cube (HuPR) or samples."""
+    read = LAYOUTS[layout](found.path, found.config)
+    if isinstance(read, RadarCube):
+        cube = replace(read, values=np.asarray(read.values * tdm_compensation(read.config)))
+        return replace(found, config=read.config, stored_cube=cube)
+    return replace(found, config=read.config, adc=read, compensate_tdm=layout != "rf_genesis")

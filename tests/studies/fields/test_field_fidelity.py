@@ -6,12 +6,12 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.scorecard import METRICS
 from studies.fields import field_fidelity
 from studies.fields.field_signals import simulated
 from studies.manifest import StudyRun
 from studies.paper.paper_inr import InrField, InrShape, fresh_modulation
 from studies.paper.single_signal import PAPER
+from studies.scores.scorecard import METRICS
 
 
 def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch):

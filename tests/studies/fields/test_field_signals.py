@@ -6,10 +6,10 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.scorecard import scorecard
 from mmweaver.paths.paths import Interaction
 from studies.fields.field_signals import SIGNALS, sample_scene, simulated, simulator_of, without_room
+from studies.scores.cube_scores import cells_of
+from studies.scores.scorecard import scorecard
 
 
 def test_the_walking_person_moves_and_the_twin_is_a_twin():

@@ -7,7 +7,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.metrics.cube_errors import nmse_db
 from studies.fields.finer_radar import (
     interpolated,
     middle_delay_s,
@@ -19,6 +18,7 @@ from studies.fields.finer_radar import (
 )
 from studies.fields.phase_centring import centred
 from studies.fields.sampling import coordinates_on, finer_grid
+from studies.scores.cube_scores import nmse_db
 from tests.cubes import SMALL, point_adc
 
 

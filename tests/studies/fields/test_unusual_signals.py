@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.metrics.cells import cells_of
 from studies.fields.unusual_signals import (
     CLIPPED_SHARE,
     UNUSUAL,
@@ -13,6 +12,7 @@ from studies.fields.unusual_signals import (
     saturated,
     with_bursts,
 )
+from studies.scores.cube_scores import cells_of
 
 
 def test_recordings_are_changed_as_their_names_say():

@@ -4,9 +4,9 @@ import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.metrics.cube_errors import complex_ssim
 from mmweaver.models.activity_network import ActivityNetwork
 from studies.paper.paper_loss import SHARE_CSSIM, paper_loss, perceived
+from studies.scores.cube_scores import complex_ssim
 from tests.cubes import point_cube
 
 

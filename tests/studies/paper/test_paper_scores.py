@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.metrics.baselines import all_zeros
 from studies.network.room_cache import RoomCache
 from studies.paper import paper_scores
 from studies.paper.paper_scores import learning_curve, rows_of, scores_of
+from studies.scores.cube_scores import all_zeros
 from tests.cubes import point_cube
 
 

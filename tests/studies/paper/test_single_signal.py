@@ -5,10 +5,9 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import nmse_db, peak_of
 from studies.paper.paper_inr import InrField
 from studies.paper.single_signal import PAPER, PAPER_BASE, RECIPES, TUNED_SHORT, InrFitRecipe, _Draw, fit
+from studies.scores.cube_scores import cells_of, nmse_db, peak_of
 from tests.cubes import SMALL, point_cube
 
 

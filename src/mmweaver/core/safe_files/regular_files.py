@@ -93,6 +93,8 @@ def cannot_read(path: Path | str, error: Exception) -> str:
 def _reason(error: Exception) -> str:
     """What a library says, shortened; numpy and torch advise to allow pickles, which is never right."""
     text = one_line(str(error) or type(error).__name__, 160)
+    if "max_header_size" in text:
+        return "its header is too large"
     if "pickle" in text.lower() or "weights_only" in text:
         return "it holds pickled objects, which could run code and are not opened"
     return text

@@ -3,9 +3,7 @@
 Pickled objects are never loaded. Reference: numpy.lib.format; PKWARE APPNOTE.TXT for zip.
 """
 
-import ast
 import math
-import re
 import struct
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,7 +16,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, foreign_errors, open_regular
 
-MAGIC = b"\x93NUMPY"
 MAX_HEADER_BYTES = 10_000
 UNICODE_END = 0x110000
 KINDS = "biufcUS"  # what mmWeaver reads: no objects, dates or records
@@ -27,7 +24,7 @@ INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
 NO_NPY = "no plain .npy array of numbers ({reason}); save it with numpy.save"
 NO_NPZ = "no plain .npz archive, or it is damaged ({reason}); write it again with numpy.savez"
 ZIP_LOCAL, ZIP_LENGTHS = 30, 26  # bytes of a local header before its name, and before the lengths of name and extra
-_LONG_SUFFIX = re.compile(r"(\d)L\b")  # of Python 2
+_HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 
 
 def read_npy(path: Path | str, *, mapped: bool = False) -> np.ndarray:
@@ -144,7 +141,7 @@ def _mapped_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, file: Any) -
     if not needed:
         return np.empty(shape, dtype)
     file.seek(entry.header_offset + ZIP_LENGTHS)
-    front = ZIP_LOCAL + sum(struct.unpack("<HH", _exactly(file, 4)))  # name and extra field may differ from the index
+    front = ZIP_LOCAL + sum(struct.unpack("<HH", file.read(4)))  # name and extra field may differ from the index
     start = entry.header_offset + front + header_bytes
     return np.memmap(file, dtype=dtype, mode="r", offset=start, shape=shape, order=order)
 
@@ -171,32 +168,17 @@ class _UnreadTypeError(ValueError):
 
 def _header(file: Any) -> tuple[np.dtype, tuple[int, ...], Any]:
     """Type, shape and order ("C" or "F") of a .npy stream. Raises ValueError for anything else."""
-    start = file.read(len(MAGIC) + 2)
-    if len(start) < len(MAGIC) + 2 or start[:-2] != MAGIC:
-        raise ValueError("it does not begin as a .npy")
-    size_format = {1: "<H", 2: "<I", 3: "<I"}.get(start[-2])
-    if size_format is None:
-        raise ValueError(f"version {start[-2]} of .npy is unknown")
-    (size,) = struct.unpack(size_format, _exactly(file, struct.calcsize(size_format)))
-    if size > MAX_HEADER_BYTES:
-        raise ValueError(f"its header has {size} bytes")
-    text = _exactly(file, size).decode("utf-8" if start[-2] == 3 else "latin-1")
-    header = ast.literal_eval(_LONG_SUFFIX.sub(r"\1", text.strip()))
-    if not isinstance(header, dict) or set(header) != {"descr", "fortran_order", "shape"}:
-        raise ValueError("its header lacks descr, fortran_order or shape")
-    shape = header["shape"]
-    if not isinstance(shape, tuple) or not all(type(length) is int and 0 <= length < 2**48 for length in shape):
+    version = np.lib.format.read_magic(file)
+    if version not in _HEADERS:
+        raise _UnreadTypeError("it holds records, not plain numbers")  # of which alone version 3 is written
+    shape, is_fortran, dtype = _HEADERS[version](file, MAX_HEADER_BYTES)
+    if len(shape) > 16 or not all(type(length) is int and 0 <= length < 2**48 for length in shape):
         raise ValueError("its header has an impossible shape")
-    if len(shape) > 16 or type(header["fortran_order"]) is not bool:
-        raise ValueError("its header is impossible")
-    if not isinstance(header["descr"], str):
-        raise _UnreadTypeError("it holds records, not plain numbers")
-    dtype = np.dtype(header["descr"])
     if dtype.kind == "O":
         raise _UnreadTypeError("it holds pickled objects")
     if dtype.kind not in KINDS or dtype.itemsize == 0:
         raise _UnreadTypeError(f"it holds values of type {dtype}")
-    return dtype, shape, "F" if header["fortran_order"] else "C"
+    return dtype, shape, "F" if is_fortran else "C"
 
 
 def _filled(file: Any, dtype: np.dtype, shape: tuple[int, ...], order: Any) -> np.ndarray:
@@ -215,10 +197,3 @@ def _filled(file: Any, dtype: np.dtype, shape: tuple[int, ...], order: Any) -> n
     if dtype.kind == "U" and array.size and array.view(letters).max() >= UNICODE_END:  # Python raises SystemError
         raise ValueError("it holds text that is none")
     return array.reshape(shape, order=order)
-
-
-def _exactly(file: Any, size: int) -> bytes:
-    data = file.read(size)
-    if len(data) != size:
-        raise ValueError("its header is cut off")
-    return data

@@ -15,10 +15,11 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, read_bytes
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_text
-from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
+from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud, point_format
+from mmweaver.formats.point_clouds.ti_uart import MAGIC
 
 MAX_BYTES = 500 * MEGABYTE
-LARGEST_FRAME = 2**31
+MAX_FRAME = 2**31
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
 # columns of a CSV, in letters and digits alone: name here
 COLUMNS = {
@@ -29,6 +30,9 @@ RADHAR_LINE = re.compile(rb"^(point_id|x|y|z|velocity|intensity): *(\S+)", re.MU
 NUMBERED = re.compile(r"(\d+)")
 
 
+@point_format(
+    "csv", "CSV with Frame, X, Y, Z, Doppler (MARS, mRI, mHomeGes)", lambda path, head: path.suffix.lower() == ".csv"
+)
 def read_csv_points(path: Path) -> LoggedCloud:
     """A CSV with a header that names frame, x, y, z and Doppler (m, m/s), as MARS and mRI have. Raises InputError."""
     text = read_text(path, max_bytes=MAX_BYTES)
@@ -41,9 +45,12 @@ def read_csv_points(path: Path) -> LoggedCloud:
         raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
     column = dict(zip(at, table.reshape(-1, len(at)).T, strict=True))
     return logged_cloud(
-        _renumbered(path, column["frame"]), np.column_stack([column[axis] for axis in "xyz"]), column["velocity"],
-        snr_db=column.get("snr"), intensity=column.get("intensity"),
-    )  # fmt: skip
+        _renumbered(path, column["frame"]),
+        np.column_stack([column[axis] for axis in "xyz"]),
+        column["velocity"],
+        snr_db=column.get("snr"),
+        intensity=column.get("intensity"),
+    )
 
 
 def csv_columns(header: list[str], place: str) -> dict[str, int]:
@@ -55,6 +62,13 @@ def csv_columns(header: list[str], place: str) -> dict[str, int]:
     return at
 
 
+def _is_mmfi(path: Path, head: bytes) -> bool:
+    return path.is_dir() or (
+        path.suffix.lower() == ".bin" and len(head) % (8 * MMFI_COLUMNS) == 0 and MAGIC not in head
+    )
+
+
+@point_format("mmfi", "frames of float64 (MM-Fi), a file or a folder", _is_mmfi)
 def read_mmfi(path: Path) -> LoggedCloud:
     """A frame of MM-Fi (.bin of float64), or a folder of frames in the order of their numbers. Raises InputError.
 
@@ -63,20 +77,20 @@ def read_mmfi(path: Path) -> LoggedCloud:
     files = sorted(path.glob("*.bin"), key=_number) if path.is_dir() else [path]
     if not files:
         raise InputError(f"{path} holds no frames (.bin)")
-    frames, points = [], []
-    for index, file in enumerate(files):
+    tables = []
+    for file in files:
         raw = read_bytes(file, max_bytes=MAX_BYTES)
         if len(raw) % (8 * MMFI_COLUMNS):
-            raise InputError(f"{file} has {len(raw)} bytes; a frame of MM-Fi has 40 a point, five float64")
+            raise InputError(f"{file} has {len(raw)} bytes; a frame of MM-Fi has 40 per point, five float64")
         table = np.frombuffer(raw, "<f8").reshape(-1, MMFI_COLUMNS)
         if not np.isfinite(table).all() or np.abs(table[:, :3]).max(initial=0.0) > 1e3:
             raise InputError(f"{file} holds no point cloud of MM-Fi: float64 x, y, z, Doppler, intensity")
-        frames.append(np.full(len(table), index))
-        points.append(table)
-    table = np.concatenate(points)
-    return logged_cloud(np.concatenate(frames), table[:, :3], table[:, 3], intensity=table[:, 4])
+        tables.append(table)
+    frame, table = np.repeat(np.arange(len(tables)), list(map(len, tables))), np.concatenate(tables)
+    return logged_cloud(frame, table[:, :3], table[:, 3], intensity=table[:, 4])
 
 
+@point_format("radhar", "text of RadHAR", lambda path, head: b"point_id:" in head)
 def read_radhar_text(path: Path) -> LoggedCloud:
     """RadHAR's text: a message a point, point_id 0 begins a frame; x ahead, y left. Raises InputError."""
     columns: dict[bytes, list[float]] = {}
@@ -95,11 +109,16 @@ def read_radhar_text(path: Path) -> LoggedCloud:
     return logged_cloud(frame, np.column_stack([-left, ahead, up]), velocity, intensity=intensity)
 
 
+@point_format(
+    "npz",
+    "archive with frame and pts (mHomeGes, RadHAR)",
+    lambda path, head: path.suffix.lower() == ".npz" and {"frame", "pts"} <= set(read_npz(path)),
+)
 def read_point_npz(path: Path) -> LoggedCloud:
     """mHomeGes: `frame`, `pts` (x, y, z, velocity, intensity); RadHAR as .npz: eight columns. Raises InputError."""
     held = read_npz(path)
     if not {"frame", "pts"} <= set(held):
-        raise InputError(f"{path} holds {', '.join(held)}; known are archives with frame and pts, and points.npz")
+        raise InputError(f"{path} holds {', '.join(held)}, not frame and pts")
     frame = held.numbers("frame", ("point",))
     points = held.numbers("pts", ("point", "column"), nan=True).astype(float)
     if points.shape[1] not in (5, 8):
@@ -107,14 +126,15 @@ def read_point_npz(path: Path) -> LoggedCloud:
     frame = _renumbered(path, frame)
     if points.shape[1] == 5:
         return logged_cloud(frame, points[:, :3], points[:, 3], intensity=points[:, 4])
-    x_ahead, y_left, z_up = points[:, 0], points[:, 1], points[:, 2]
-    return logged_cloud(frame, np.column_stack([-y_left, x_ahead, z_up]), points[:, 4], intensity=points[:, 7])
+    return logged_cloud(
+        frame, points[:, [1, 0, 2]] * [-1, 1, 1], points[:, 4], intensity=points[:, 7]
+    )  # x ahead, y left
 
 
 def _renumbered(path: Path, frame: np.ndarray) -> np.ndarray:
     """Frames counted from 0, gaps kept. Raises InputError where they are no rising whole numbers."""
     frame = np.asarray(frame, float)
-    is_whole = bool((np.abs(frame) < LARGEST_FRAME).all()) and not (frame % 1).any()
+    is_whole = bool((np.abs(frame) < MAX_FRAME).all()) and not (frame % 1).any()
     if not is_whole or (np.diff(frame) < 0).any():
         raise InputError(f"{path} has frame numbers that are not whole or not in order; leave it out")
     return (frame - frame[0]).astype(int) if len(frame) else frame.astype(int)

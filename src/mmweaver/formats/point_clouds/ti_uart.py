@@ -3,7 +3,7 @@
 Out-of-box demos: TLV 1 are detected points, x, y, z in m and velocity in m/s as float32 (SDK 3 and later), or integers
 with a Q format (SDK 1 and 2); TLV 7 are SNR and noise in 0.1 dB; TLV 301 are compressed points with their units
 (xWRL6432, xWRL1432). The header ends with a sub-frame number, but on an xWR1443. 3D People Tracking: TLV 1020 are
-compressed spherical points with their units, TLV 1010 tracked targets. Its predecessor, 3D People Counting, has
+compressed spherical points with their units. Its predecessor, 3D People Counting, has
 another header, and TLV lengths that count their own eight bytes; its TLV 6 is that of 1020. Packets that are cut or
 whose lengths make no sense are skipped and counted.
 
@@ -15,13 +15,13 @@ import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
-from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
+from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud, point_format
 
 MAGIC = bytes([2, 1, 4, 3, 6, 5, 8, 7])
 MAX_BYTES = 2000 * MEGABYTE
@@ -29,12 +29,11 @@ HEADER = struct.Struct("<8sIIIIIII")  # magic, version, length, platform, frame,
 COUNTING_HEADER = struct.Struct("<8sIIIIIIIIIHH")  # ..., frame, sub-frame, margins, times, TLVs, checksum
 TLV = struct.Struct("<II")
 MAX_PACKET, MAX_TLVS = 1 << 17, 30
-MOST_PADDING = 32  # bytes of a packet after its last TLV
-POINTS, SIDE_INFO, COMPRESSED, TARGETS, SPHERICAL, COUNTED = 1, 7, 301, 1010, 1020, 6
-LARGEST_KIND = 2000  # of a TLV
+MAX_PADDING = 32  # bytes of a packet after its last TLV
+POINTS, SIDE_INFO, COMPRESSED, SPHERICAL, COUNTED = 1, 7, 301, 1020, 6
+MAX_KIND = 2000  # of a TLV
 WITHOUT_SUB_FRAME = 0x1443  # lower half of the platform
 INTEGER_POINT_BYTES = 12
-TARGET_BYTES = 112
 
 
 @runtime_checkable
@@ -48,43 +47,46 @@ class ByteSource(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class UartLog:
-    """The points of a log, the targets of the people tracker, and what was left out."""
+    """The points of a log, and what was left out."""
 
     points: LoggedCloud
     frame_number: np.ndarray  # (frame,) as the board counts
-    targets: np.ndarray  # (target, 8): frame, id, x, y, z in m, velocity x, y, z in m/s
     skipped: int  # packets
+
+
+class Packet(NamedTuple):
+    """One packet: its frame's number, points (point, 6) as in `point_packets`, and its end in the data."""
+
+    number: int
+    points: np.ndarray
+    end: int
+
+
+@point_format("ti_uart", ".dat of a TI demo's data port", lambda path, head: MAGIC in head)
+def read_uart_points(path: Path) -> LoggedCloud:
+    """The points of a log alone. Raises InputError."""
+    return read_ti_uart(path).points
 
 
 def read_ti_uart(path: Path | str) -> UartLog:
     """Reads a log of the data port. Raises InputError where it holds no packet."""
     data = read_bytes(path, max_bytes=MAX_BYTES)
-    columns: list[np.ndarray] = []
-    targets: list[np.ndarray] = []
-    numbers: list[int] = []
+    packets: list[Packet] = []
     skipped, at = 0, data.find(MAGIC)
     while at >= 0:
         packet = _packet(data, at)
-        if packet is None:
-            skipped += 1
-            at = data.find(MAGIC, at + 1)
-            continue
-        number, points, found, end = packet
-        frame = len(numbers)
-        numbers.append(number)
-        columns.append(np.column_stack([np.full(len(points), frame), points]))
-        targets.append(np.column_stack([np.full(len(found), frame), found]))
-        at = data.find(MAGIC, end)
-    if not numbers:
+        packets += [] if packet is None else [packet]
+        skipped += packet is None
+        at = data.find(MAGIC, at + 1 if packet is None else packet.end)
+    if not packets:
         raise InputError(f"{path} holds no packet of a TI demo's data port; log the port at its data rate, in binary")
-    table = np.concatenate(columns)
-    cloud = logged_cloud(table[:, 0], table[:, 1:4], table[:, 4], snr_db=table[:, 5], intensity=table[:, 6])
-    return UartLog(
-        points=cloud, frame_number=np.array(numbers), targets=np.concatenate(targets), skipped=skipped
-    )  # fmt: skip
+    table = np.concatenate([packet.points for packet in packets])
+    frame = np.repeat(np.arange(len(packets)), [len(packet.points) for packet in packets])
+    cloud = logged_cloud(frame, table[:, :3], table[:, 3], snr_db=table[:, 4], intensity=table[:, 5])
+    return UartLog(points=cloud, frame_number=np.array([packet.number for packet in packets]), skipped=skipped)
 
 
-def packets_of(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
+def point_packets(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
     """The points (point, 6) of each packet of a stream as it arrives, `head` being what was already read of it.
 
     Columns: x, y, z in m, velocity in m/s, SNR in dB, intensity. Raises InputError where no packet begins for long.
@@ -99,22 +101,17 @@ def packets_of(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
                 break  # the packet is still on its way
             packet = _packet(data, at)
             any_found |= packet is not None
-            data = data[at + 1 :] if packet is None else data[packet[3] :]
+            data = data[at + 1 if packet is None else packet.end :]
             if packet is not None:
-                yield packet[1]
+                yield packet.points
         if not any_found and len(data) > MAX_PACKET:
             raise InputError("the stream holds no packet of a TI demo's data port, nor CSV with a header")
         if len(data) > 2 * MAX_PACKET:
             data = data[-MAX_PACKET:]
 
 
-def is_ti_uart(head: bytes) -> bool:
-    """Whether the beginning of a file holds the magic word."""
-    return MAGIC in head
-
-
-def _packet(data: bytes, at: int) -> tuple[int, np.ndarray, np.ndarray, int] | None:
-    """Frame number, points (point, 6), targets (target, 7) and the end of the packet at a place; None if damaged."""
+def _packet(data: bytes, at: int) -> Packet | None:
+    """The packet at a place; None where it is damaged."""
     if at + HEADER.size > len(data):
         return None
     _, _, length, platform, number, _, objects, tlvs = HEADER.unpack_from(data, at)
@@ -125,16 +122,14 @@ def _packet(data: bytes, at: int) -> tuple[int, np.ndarray, np.ndarray, int] | N
     for header in (HEADER.size + sub_frame, HEADER.size + 4 - sub_frame):
         found = _tlvs(data, at + header, end, tlvs)
         points = None if found is None else _points(found, objects)
-        if found is not None and points is not None:
-            return number, points, _targets(found.get(TARGETS, b"")), end
+        if points is not None:
+            return Packet(number, points, end)
     if at + COUNTING_HEADER.size <= end:
         tlvs = COUNTING_HEADER.unpack_from(data, at)[-2]
         found = _tlvs(data, at + COUNTING_HEADER.size, end, tlvs, own_bytes=TLV.size)
-        points = (
-            None if found is None else _spherical(found.get(COUNTED, b"")) if COUNTED in found else np.zeros((0, 6))
-        )
+        points = None if found is None else _points({SPHERICAL: found[COUNTED]} if COUNTED in found else {}, 0)
         if points is not None:
-            return number, points, _targets(b""), end
+            return Packet(number, points, end)
     return None
 
 
@@ -148,11 +143,11 @@ def _tlvs(data: bytes, at: int, end: int, count: int, own_bytes: int = 0) -> dic
             return None
         kind, size = TLV.unpack_from(data, at)
         at, size = at + TLV.size, size - own_bytes
-        if not 0 < kind <= LARGEST_KIND or not 0 <= size <= end - at:
+        if not 0 < kind <= MAX_KIND or not 0 <= size <= end - at:
             return None
         found[kind] = data[at : at + size]
         at += size
-    return found if end - at < MOST_PADDING else None
+    return found if end - at < MAX_PADDING else None
 
 
 def _points(found: dict[int, bytes], objects: int) -> np.ndarray | None:
@@ -217,12 +212,3 @@ def _spherical(raw: bytes) -> np.ndarray | None:
         [flat_m * np.sin(azimuth), flat_m * np.cos(azimuth), range_m * np.sin(elevation),
          table["doppler"] * velocity_unit, snr_db, snr]
     )  # fmt: skip
-
-
-def _targets(raw: bytes) -> np.ndarray:
-    """Columns id, x, y, z, velocity x, y, z of each target of 112 bytes."""
-    rows = [
-        [struct.unpack_from("<I", raw, at)[0], *struct.unpack_from("<6f", raw, at + 4)]
-        for at in range(0, len(raw) - TARGET_BYTES + 1, TARGET_BYTES)
-    ]
-    return np.array(rows, float).reshape(-1, 7)

@@ -1,4 +1,4 @@
-"""Distances between point clouds, frame by frame."""
+"""Distances between point clouds of frames."""
 
 import numpy as np
 from jaxtyping import Float
@@ -9,16 +9,6 @@ One = Float[np.ndarray, "one 3"]
 Other = Float[np.ndarray, "other 3"]
 
 
-def hausdorff_m(one: One, other: Other) -> float:
-    """Largest distance in metres from a point of either set to the nearest of the other. Both sets must have points.
-
-    >>> hausdorff_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
-    5.0
-    """
-    there, back = _nearest(one, other)
-    return float(max(there.max(), back.max()))
-
-
 def chamfer_m(one: One, other: Other) -> float:
     """Mean distance in metres from a point to the nearest of the other set, averaged over both directions.
 
@@ -27,8 +17,27 @@ def chamfer_m(one: One, other: Other) -> float:
     >>> chamfer_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
     1.25
     """
-    there, back = _nearest(one, other)
+    there, back = nearest_m(one, other)
     return float((there.mean() + back.mean()) / 2)
+
+
+def nearest_m(one: One, other: Other) -> tuple[Float[np.ndarray, " one"], Float[np.ndarray, " other"]]:
+    """Distance in metres of each point of either set from the nearest of the other, (one,) and (other,)."""
+    from scipy.spatial import KDTree
+
+    there, _ = KDTree(other).query(one)
+    back, _ = KDTree(one).query(other)
+    return np.asarray(there), np.asarray(back)
+
+
+def hausdorff_m(one: One, other: Other) -> float:
+    """Largest distance in metres from a point of either set to the nearest of the other. Both sets must have points.
+
+    >>> hausdorff_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
+    5.0
+    """
+    there, back = nearest_m(one, other)
+    return float(max(there.max(), back.max()))
 
 
 def cloud_distances_m(
@@ -53,11 +62,3 @@ def cloud_distances_m(
 def _points(cloud: PointCloud, frame: int) -> One:
     chosen = cloud.frame == frame
     return np.stack([cloud.x_m[chosen], cloud.y_m[chosen], cloud.z_m[chosen]], axis=1)
-
-
-def _nearest(one: One, other: Other) -> tuple[Float[np.ndarray, " one"], Float[np.ndarray, " other"]]:
-    from scipy.spatial import KDTree
-
-    there, _ = KDTree(other).query(one)
-    back, _ = KDTree(one).query(other)
-    return np.asarray(there), np.asarray(back)

@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.scorecard import METRICS, Scorecard, scorecard
+from studies.scores.scorecard import METRICS, Scorecard, scorecard
 from tests.cubes import point_cube
 
 HEADLINES = [name for name, metric in METRICS.items() if metric.is_headline]

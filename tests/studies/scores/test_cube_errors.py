@@ -3,8 +3,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.cube_errors import complex_ssim, nmse_db, peak_of, psnr_db, span_of
+from studies.scores.cube_scores import cells_of, complex_ssim, nmse_db, peak_of, psnr_db, span_of
 from tests.cubes import point_cube
 
 TRUTH = point_cube().values

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.antennas import antenna_phase_error_rad
+from studies.scores.cube_scores import antenna_phase_error_rad
 
 RNG = stream(0, "antennas")
 SHAPE = (2, 6, 5, 4)

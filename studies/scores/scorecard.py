@@ -13,12 +13,20 @@ from mmweaver.core.shapes import RangeAngleMap, RangeDopplerMap, RangeDopplerMas
 from mmweaver.dsp.cfar import ca_cfar
 from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
-from mmweaver.metrics.antennas import antenna_phase_error_rad
-from mmweaver.metrics.baselines import BASELINES
-from mmweaver.metrics.cells import Cells, cells_of
-from mmweaver.metrics.cube_errors import complex_ssim, nmse_db, peak_of, psnr_db, span_of
-from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
-from mmweaver.metrics.point_clouds import cloud_distances_m
+from mmweaver.metrics.map_scores import log_map_difference_db
+from studies.scores.cloud_distances import cloud_distances_m
+from studies.scores.cube_scores import (
+    BASELINES,
+    Cells,
+    antenna_phase_error_rad,
+    cells_of,
+    complex_ssim,
+    nmse_db,
+    peak_of,
+    psnr_db,
+    span_of,
+)
+from studies.scores.map_similarity import log_map_ssim
 
 
 class Representations:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from mmweaver.metrics.baselines import all_zeros, static_mean
+from studies.scores.cube_scores import all_zeros, static_mean
 from tests.cubes import point_cube
 
 

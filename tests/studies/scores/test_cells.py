@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.metrics.cells import cells_of, noise_floor
+from studies.scores.cube_scores import cells_of, noise_floor
 from tests.cubes import SMALL, point_cube
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.ssim import ssim_map
+from studies.scores.map_similarity import ssim_map
 
 
 @pytest.mark.parametrize("data_range", [1.0, 50.0])

@@ -3,7 +3,7 @@ import pytest
 
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.metrics.point_clouds import chamfer_m, cloud_distances_m, hausdorff_m
+from studies.scores.cloud_distances import chamfer_m, cloud_distances_m, hausdorff_m
 
 RNG = stream(0, "clouds")
 

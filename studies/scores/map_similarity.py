@@ -1,4 +1,4 @@
-"""Structural similarity of maps, with an 11 x 11 Gaussian window.
+"""Structural similarity of maps, and of power maps as displayed, with an 11 x 11 Gaussian window.
 
 Reference: Wang, Bovik, Sheikh, Simoncelli 2004, "Image Quality Assessment: From Error Visibility to Structural
 Similarity".
@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.metrics.map_scores import SHOWN_DB, PowerMaps, displays
 
 WINDOW_SIGMA = 1.5
 WINDOW_RADIUS = 5
@@ -47,3 +48,14 @@ def _smoothed(maps: np.ndarray) -> np.ndarray:
     taps = np.exp(-0.5 * (np.arange(-WINDOW_RADIUS, WINDOW_RADIUS + 1) / WINDOW_SIGMA) ** 2)
     taps /= taps.sum()
     return correlate1d(correlate1d(maps, taps, axis=-1), taps, axis=-2)
+
+
+def log_map_ssim(prediction: PowerMaps, truth: PowerMaps, *, all_cells: bool = False) -> float:
+    """Mean SSIM of the 50 dB displays over the cells that are non-zero in either; 1 is perfect.
+
+    The top of both displays is the peak of the ground truth over all frames, the data range is 50 dB. Cells empty in
+    both are excluded, for they would flatter all zeros; `all_cells` includes them.
+    """
+    p, t = displays(prediction, truth)
+    similar = ssim_map(p, t, data_range=SHOWN_DB)
+    return float((similar if all_cells else similar[(p > 0) | (t > 0)]).mean())

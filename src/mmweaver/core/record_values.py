@@ -1,0 +1,59 @@
+"""Frozen records of numbers, texts and tables from JSON; what does not fit is one line."""
+
+import dataclasses
+from types import UnionType
+from typing import Any, get_args, get_origin
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+
+
+def record_fields(cls: type, values: dict[str, Any], place: str) -> dict[str, Any]:
+    """The arguments of a dataclass, from the content of a JSON.
+
+    Args:
+        cls: The dataclass; its fields are int, bool, str, float, tuples of these, tables (np.ndarray), or these | None.
+        values: Names and values; JSON has lists and whole floats where the record has tuples and floats.
+        place: The file, for errors.
+
+    Returns:
+        The values in the types of the fields.
+
+    Raises:
+        InputError: for an unknown or missing key, and for a value of another type.
+    """
+    fields = {field.name: field for field in dataclasses.fields(cls)}
+    if unknown := sorted(set(values) - set(fields)):
+        raise InputError(f"{place}: unknown key {', '.join(unknown)[:100]}")
+    no_default = dataclasses.MISSING
+    required = {name for name, one in fields.items() if one.default is no_default and one.default_factory is no_default}
+    if missing := sorted(required - set(values)):
+        raise InputError(f"{place}: missing key {', '.join(missing)}")
+    found = {}
+    for name, value in values.items():
+        try:
+            found[name] = _coerced(fields[name].type, value)
+        except (ValueError, OverflowError):
+            raise InputError(f"{place}: {name} cannot be {str(value)[:100]!r}") from None
+    return found
+
+
+def _coerced(kind: Any, value: Any) -> Any:
+    arguments = get_args(kind)
+    if isinstance(kind, UnionType):
+        return _coerced(arguments[0], value)
+    if kind is float and type(value) in (int, float):
+        return float(value)
+    if kind in (int, bool, str) and type(value) is kind:
+        return value
+    if kind is np.ndarray and isinstance(value, list) and _is_numbers(value):
+        return np.asarray(value, float)
+    if get_origin(kind) is tuple and isinstance(value, list):
+        kinds = arguments[:1] * len(value) if arguments[-1] is Ellipsis else arguments
+        return tuple(_coerced(one, part) for one, part in zip(kinds, value, strict=True))
+    raise ValueError
+
+
+def _is_numbers(value: Any) -> bool:
+    return all(map(_is_numbers, value)) if isinstance(value, list) else type(value) in (int, float)

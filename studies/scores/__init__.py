@@ -1,0 +1,1 @@
+"""Scores of a radar cube against the ground truth, each with its baselines."""
