@@ -49,8 +49,10 @@ def pytest_configure(config: pytest.Config) -> None:
         shape_checks.check_every_call()
 
 
-def pytest_runtest_setup() -> None:
-    shape_checks.next_test()
+@pytest.fixture(scope="module", autouse=True)
+def shapes_checked_anew() -> None:
+    """The first calls of every function are checked in every file of tests."""
+    shape_checks.next_file()
 
 
 @pytest.fixture(scope="session")

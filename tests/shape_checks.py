@@ -1,4 +1,4 @@
-"""Checks of shapes and types that cost little: the first calls of every function in every test.
+"""Checks of shapes and types that cost little: the first calls of every function in every file of tests.
 
 The import hook of jaxtyping wraps every function of the package. One check costs some 50 microseconds, and functions of
 inner loops are called a million times: with all calls checked, tests of motion took three times as long.
@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 
 import jaxtyping
 
-FIRST_CALLS = 10  # of each function in each test
+FIRST_CALLS = 30  # of each function in each file of tests
 
 
 class _Current:
-    test = 0  # number of the running test: a new one checks anew
+    file = 0  # number of the running file of tests: a new one checks anew
     most_calls = FIRST_CALLS
 
 
@@ -26,18 +26,18 @@ class _Calls:
     of: ClassVar[dict[CodeType, "_Calls"]] = {}
 
     def __init__(self) -> None:
-        self.test, self.left = -1, 0
+        self.file, self.left = -1, 0
 
     def is_checked(self) -> bool:
-        if self.test != _Current.test:
-            self.test, self.left = _Current.test, _Current.most_calls
+        if self.file != _Current.file:
+            self.file, self.left = _Current.file, _Current.most_calls
         self.left -= 1
         return self.left >= 0
 
 
-def next_test() -> None:
+def next_file() -> None:
     """From here on the first calls of every function are checked again."""
-    _Current.test += 1
+    _Current.file += 1
 
 
 def check_every_call() -> None:

@@ -52,12 +52,12 @@ def test_an_empty_room_has_no_people_and_two_seconds():
     assert (request.people, request.text, request.frames) == ((), "nobody", 20)
     assert (request.at, request.height_m, request.subject) == (None, None, None)
     assert parse_request(AWR1843, text=["nobody"], seconds=1.0).frames == 10
-    with pytest.raises(InputError, match="a sequence of its own"):
+    with pytest.raises(InputError, match="generate --text nobody"):
         module.parsed_text("nobody")
 
 
 def test_memory_is_asked_for_before_it_is_used():
-    with pytest.raises(InputError, match="GB of memory"):
+    with pytest.raises(InputError, match=r"mmmesh.* 635 "):
         parse_request(MMMESH, text=TEXT, frames=MAX_FRAMES, keep_adc=True)
     parse_request(AWR1843, text=TEXT, frames=MAX_FRAMES, keep_adc=False)
 
@@ -88,9 +88,9 @@ def test_one_person_and_several():
     assert one.people[0].plan.steps[-1].end_s == pytest.approx(2.0)
     two = parse_request(AWR1843, [TEXT, "a person waves"], at=[None, (0.5, 2.0)])
     assert (two.text, two.at, two.height_m) == ([TEXT, "a person waves"], [None, (0.5, 2.0)], None)
-    with pytest.raises(InputError, match="list of heights"):
+    with pytest.raises(InputError, match="--height"):
         parse_request(AWR1843, [TEXT, TEXT], height_m=1.8)
-    with pytest.raises(InputError, match="at most 1 heights"):
+    with pytest.raises(InputError, match="1 heights, not 2"):
         parse_request(AWR1843, TEXT, height_m=[1.8, 1.7])
 
 
@@ -122,11 +122,11 @@ def test_a_path_is_for_somebody_who_walks():
     plan = asked.people[0].plan
     assert plan is not None
     assert plan.steps[0].route_m == ((0.0, 3.0), (0.0, 1.5))
-    with pytest.raises(InputError, match="walks or runs"):
+    with pytest.raises(InputError, match="--path"):
         parse_request(AWR1843, "a person waves", path_m=[(0.0, 3.0), (0.0, 1.5)])
-    with pytest.raises(InputError, match="at least two points"):
+    with pytest.raises(InputError, match=r"two points.*0,3 0,1\.5"):
         parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0)])
-    with pytest.raises(InputError, match="a walk takes"):
+    with pytest.raises(InputError, match=r"0\.10 m.*0\.35 m"):
         parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0), (0.0, 2.9)])
 
 

@@ -55,7 +55,7 @@ def test_a_bad_method_is_named(values: Any, says: str, room: Room):
 
 def test_radars():
     testing.check_radar(SMALL)
-    with pytest.raises(AssertionError, match="nobody finds a place"):
+    with pytest.raises(AssertionError, match="'far'"):
         testing.check_radar(replace(SMALL, name="far", first_range_bin=190))
 
 
@@ -72,7 +72,7 @@ def test_detectors():
 
 def test_activities():
     testing.check_activity("bow")
-    with pytest.raises(AssertionError, match="register it first"):
+    with pytest.raises(AssertionError, match="'levitate'"):
         testing.check_activity("levitate")
 
 
@@ -88,5 +88,5 @@ def test_encoders():
             return self.project(places.mean(dim=(2, 3))), places
 
     testing.check_encoder(Encoder)
-    with pytest.raises(AssertionError, match="z_env must be"):
+    with pytest.raises(AssertionError, match=r"z_env.*512.*256"):
         testing.check_encoder(lambda: Encoder(256))

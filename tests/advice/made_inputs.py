@@ -21,6 +21,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.generate import Weaver, compose_request
 from mmweaver.generation import Generation, Room
+from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
@@ -196,8 +197,18 @@ def _trained(arguments: argparse.Namespace, *_: Any) -> dict[str, Any]:
     return {"weights": "out", "steps": 0, "validation_loss": 0.0}
 
 
+def _composed(request: Request, of_room: Room) -> tuple[Motion, ...]:
+    """Motions of equal requests in equal rooms are composed once."""
+    if request.motion is not None:
+        return compose_request(request, of_room.scene)
+    key = repr((request, of_room.scene.landmarks, len(of_room.scene.planes)))
+    if key not in _made:
+        _made[key] = compose_request(request, of_room.scene)
+    return _made[key]
+
+
 def _signal(weaver: Weaver, request: Request, of_room: Room, people: Any = None) -> Generation:
-    people = compose_request(request, of_room.scene) if people is None else people
+    people = _composed(request, of_room) if people is None else people
     made = request.config.name, len(request.radar_poses)
     made = made if made in _RADARS else ("awr1843", 0)
     if made not in _made:

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_info
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
-from tests.shape_checks import FIRST_CALLS, next_test
+from tests.shape_checks import FIRST_CALLS, next_file
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = sorted((ROOT / "src" / "mmweaver").rglob("*.py"))
@@ -38,7 +38,7 @@ def test_shapes_are_checked_in_tests():
         AdcCube(samples=np.zeros((2, 3), np.complex64), config=AWR1843, scale=1.0)
 
 
-def test_shapes_are_checked_in_the_first_calls_of_every_test():
+def test_shapes_are_checked_in_the_first_calls_of_every_file():
     """In inner loops only those: see tests/shape_checks.py."""
     calls: list[object] = []
 
@@ -47,7 +47,7 @@ def test_shapes_are_checked_in_the_first_calls_of_every_test():
 
     check = jaxtyping.jaxtyped(kept, typechecker=beartype)
     for _ in range(2):
-        next_test()
+        next_file()
         with pytest.raises(TypeCheckError):
             check(np.zeros((3, 2), np.float32))
         for _ in range(2 * FIRST_CALLS):

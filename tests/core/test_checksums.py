@@ -23,10 +23,10 @@ def test_a_flipped_bit_and_a_missing_file_are_noticed(folder: Path):
     file = folder / "a.npz"
     check_file(file)
     file.write_bytes(bytes(999) + b"\x10")
-    with pytest.raises(InputError, match=r"a\.npz is not as it was written.*mmweaver verify"):
+    with pytest.raises(InputError, match=r"a\.npz .*mmweaver verify"):
         check_file(file)
     file.unlink()
-    with pytest.raises(InputError, match="is missing"):
+    with pytest.raises(InputError, match=r"a\.npz is missing"):
         check_file(file)
     (folder / "below" / "b.txt").write_text("c")
     assert [damage.file.name for damage in damages(folder)] == ["a.npz", "b.txt"]

@@ -14,9 +14,9 @@ def test_an_input_is_never_replaced(tmp_path: Path):
     recording.write_text("")
     (tmp_path / "link.npz").symlink_to("radar.npz")
     for out, given in ((recording, recording), (tmp_path / "link.npz", recording), (recording, tmp_path)):
-        with pytest.raises(InputError, match="which it would replace"):
+        with pytest.raises(InputError, match=r"radar\.npz"):
             check_output_file(out, overwrite=True, inputs=[None, given])
-    with pytest.raises(InputError, match="belongs to the input"):
+    with pytest.raises(InputError, match=r"radar\.npz.*--out"):
         check_output_folder(tmp_path, overwrite=True, files=("radar.npz",), inputs=[recording])
     check_output_file(tmp_path / "small.mmw", overwrite=True, inputs=[tmp_path])
     check_output_folder(tmp_path, overwrite=True, files=("points.npz",), inputs=[recording])

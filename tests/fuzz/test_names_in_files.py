@@ -52,7 +52,7 @@ def test_verify_names_only_commands_that_there_are(tmp_path: Path, command: Any)
 @pytest.mark.parametrize("name", ["../a", "b/../../a", "/etc/passwd", ".."])
 def test_sums_stay_inside_their_folder(tmp_path: Path, name: str):
     (tmp_path / SUMS_FILE).write_text(f"{FIRST_LINE}\n{SUM}  {name}\n")
-    with pytest.raises(InputError, match="is damaged"):
+    with pytest.raises(InputError, match="SHA256SUMS"):
         read_sums(tmp_path)
 
 
@@ -67,7 +67,7 @@ PLAN = json.loads(DatasetPlan(kinds=("office",), lightings=("day",)).to_json())
 def test_a_plan_lists_rooms_of_its_own_folder_alone(tmp_path: Path, change: dict[str, Any]):
     assert check_plan(PLAN, tmp_path) == PLAN
     (tmp_path / "plan.json").write_text(json.dumps({**PLAN, **change}))
-    with pytest.raises(InputError, match="is damaged"):
+    with pytest.raises(InputError, match=r"plan\.json"):
         read_rooms(tmp_path)
     assert not verify(tmp_path).is_sound or verify(tmp_path).unchecked
 

@@ -57,7 +57,7 @@ def test_the_hash_of_a_folder_is_of_names_and_contents(tmp_path: Path):
 
 def test_rows_that_do_not_follow_the_schema_are_not_written(tmp_path: Path):
     run = StudyRun("one", tmp_path)
-    with pytest.raises(InputError, match="seeds is missing"):
+    with pytest.raises(InputError, match=r"two\.json.*rows\[0\]: seeds"):
         run.write("one", "two", config={}, rows=[{name: value for name, value in ROW.items() if name != "seeds"}])
     with pytest.raises(ValueError, match="JSON"):
         run.write("one", "two", config={}, rows=[{**ROW, "more": float("nan")}])

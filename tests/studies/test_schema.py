@@ -45,7 +45,7 @@ def test_every_field_of_a_row_is_required_and_null_needs_a_reason(path: str):
     assert any("gives no reason" in line for line in violations(null))
     null["rows"][0]["unknown"] = {path: "nobody wrote it down"}
     assert violations(null) == []
-    with pytest.raises(InputError, match="does not follow the schema"):
+    with pytest.raises(InputError, match=r"rows\[0\]"):
         check_record(absent, "one")
 
 
@@ -78,8 +78,8 @@ def test_every_result_of_the_project_follows_it():
 
 
 def test_what_is_no_result_is_said_in_one_line(tmp_path: Path):
-    with pytest.raises(InputError, match="python -m studies list"):
+    with pytest.raises(InputError, match=r"none\.json"):
         read_record(tmp_path / "none.json")
     (tmp_path / "list.json").write_text(json.dumps([1]))
-    with pytest.raises(InputError, match="no rows"):
+    with pytest.raises(InputError, match=r"list\.json.*rows"):
         read_record(tmp_path / "list.json")

@@ -47,7 +47,7 @@ def test_results_are_made_by_studies_that_exist():
 
 
 def test_unknown_studies_are_one_line():
-    with pytest.raises(InputError, match="python -m studies list"):
+    with pytest.raises(InputError, match="no_such_study"):
         load_study("no_such_study")
 
 

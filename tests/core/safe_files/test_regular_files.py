@@ -14,7 +14,7 @@ def test_a_file_is_read_whole_or_refused(tmp_path: Path):
     (tmp_path / "a").write_bytes(b"x" * 3_000_000)
     assert check_regular(tmp_path / "a") == 3_000_000
     assert read_bytes(tmp_path / "a", max_bytes=3_000_000) == b"x" * 3_000_000
-    with pytest.raises(InputError, match="is larger than"):
+    with pytest.raises(InputError, match=r"a .*2\.86"):
         read_bytes(tmp_path / "a", max_bytes=2_999_999)
 
 
@@ -43,7 +43,7 @@ def test_what_is_no_regular_file_is_named(tmp_path: Path, monkeypatch: pytest.Mo
             with pytest.raises(InputError, match=kind):
                 open_regular(tmp_path / name)
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match="loop"):
         open_regular(tmp_path / "loop")
 
 

@@ -82,7 +82,7 @@ def test_archives_that_grow_out_of_proportion_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="16 of 72"):
         read_npz(file)
     file.write_bytes(npz_bytes({"a": npy_bytes(np.zeros(2)) + b"more"}))
-    with pytest.raises(InputError, match="longer than its header says"):
+    with pytest.raises(InputError, match=r"a\.npy.*longer"):
         read_npz(file)
 
 

@@ -26,7 +26,7 @@ def test_lossless_kinds_come_back_whatever_the_file_is_called(tmp_path: Path, ki
 @pytest.mark.parametrize("kind", ["EPS", "GIF", "DDS", "TGA", "ICO", "PDF"])
 def test_other_decoders_are_out_of_reach(tmp_path: Path, kind: str):
     Image.fromarray(PIXELS).save(tmp_path / "a.png", kind)
-    with pytest.raises(InputError, match="is not a picture that can be read"):
+    with pytest.raises(InputError, match=r"a\.png"):
         open_picture(tmp_path / "a.png")
 
 

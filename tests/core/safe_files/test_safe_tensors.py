@@ -44,7 +44,7 @@ def test_tensors_and_metadata_come_back(tmp_path: Path):
     assert torch.equal(tensors["a"], TENSORS["a"])
     assert metadata == {"card": "{}"} == read_tensor_metadata(file)
     assert list(read_tensors(file, only=("b",))[0]) == ["b"]
-    with pytest.raises(InputError, match="holds no c"):
+    with pytest.raises(InputError, match=r"a\.safetensors.* c\b"):
         read_tensors(file, only=("c",))
 
 
@@ -71,7 +71,7 @@ def test_what_is_no_sound_file_is_refused(tmp_path: Path, data: bytes):
 def test_values_that_are_not_finite_are_refused_unless_asked_for(tmp_path: Path):
     file = tmp_path / "a.safetensors"
     save_file({"a": torch.tensor([1.0, float("nan")])}, file)
-    with pytest.raises(InputError, match="a holds values that are not finite"):
+    with pytest.raises(InputError, match=r"a\.safetensors: a .*finite"):
         read_tensors(file)
     assert read_tensors(file, finite=False)[0]["a"].isnan().any()
 
@@ -81,9 +81,9 @@ def test_a_checkpoint_is_read_without_running_its_code(tmp_path: Path):
     torch.save({"state": TENSORS, "step": 3}, file)
     assert read_checkpoint(file, what=WHAT)["step"] == 3
     torch.save({"state": Attack(tmp_path / "attacked")}, file)
-    with pytest.raises(InputError, match="could run code"):
+    with pytest.raises(InputError, match=r"a\.pt.*pickled"):
         read_checkpoint(file, what=WHAT)
     assert not (tmp_path / "attacked").exists()
     torch.save({"a": torch.zeros(1).expand(10**9)}, file)  # four gigabytes of one number
-    with pytest.raises(InputError, match="larger than the file"):
+    with pytest.raises(InputError, match=r"a\.pt.*larger"):
         read_checkpoint(file, what=WHAT)

@@ -29,7 +29,7 @@ def test_json_is_read(text: str, value: object):
      '"\\ud800"', '{"\\ud800": 1}', "9" * 5000, "1" + "0" * 400 + ".0"],
 )  # fmt: skip
 def test_json_that_could_not_be_used_or_written_again_is_refused(text: str):
-    with pytest.raises(InputError, match=r"a\.json is no JSON"):
+    with pytest.raises(InputError, match=r"a\.json .*JSON"):
         parse_json(text, "a.json")
 
 
@@ -37,7 +37,7 @@ def test_files_have_a_largest_size_and_an_encoding(tmp_path: Path):
     file = tmp_path / "a.json"
     file.write_bytes(b"[1]" + b" " * 100)
     assert read_json(file) == [1]
-    with pytest.raises(InputError, match="is larger than"):
+    with pytest.raises(InputError, match=r"a\.json .*MB"):
         read_json(file, max_bytes=50)
     file.write_bytes(b"caf\xe9")
     with pytest.raises(InputError, match=r"UTF-8.*byte 3"):
@@ -53,5 +53,5 @@ def test_toml_has_the_same_limits(tmp_path: Path):
     assert read_toml(file) == {"frames": 20, "a": {"b": ["c", 1.5]}}
     for text in ("a = inf", "a = nan", "a = 1e400", "a = " + "[" * 5000, "a = 1\na = 2", "a = " + "9" * 300, "a"):
         file.write_text(text)
-        with pytest.raises(InputError, match="is no TOML"):
+        with pytest.raises(InputError, match=r"a\.toml.*TOML"):
             read_toml(file)

@@ -101,7 +101,7 @@ def test_metadata_that_promises_what_no_file_holds_is_refused(store: Path, value
 )  # fmt: skip
 def test_an_array_of_another_kind_is_refused_before_any_array_is_read(store: Path, values: dict[str, Any]):
     changed(store, "place_m", **values)
-    with pytest.raises(InputError, match="place_m is no array that is read here"):
+    with pytest.raises(InputError, match="place_m"):
         open_zarr(store)
 
 
@@ -121,7 +121,7 @@ def test_few_bytes_may_become_some_megabytes_but_not_a_hundred(tmp_path: Path, m
 def test_a_chunk_that_is_missing_and_filled_with_nan_is_refused(store: Path):
     changed(store, "place_m", fill_value="NaN")
     (store / "place_m" / "c" / "0" / "0" / "0").unlink()
-    with pytest.raises(InputError, match="not finite"):
+    with pytest.raises(InputError, match=r"place_m.*finite"):
         open_zarr(store).numbers("place_m", ("sequence", "frame", 3))
 
 
@@ -135,5 +135,5 @@ def test_a_chunk_that_is_a_fifo_is_refused_at_once(store: Path):
 
 
 def test_a_folder_that_is_no_group_is_refused(tmp_path: Path):
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match=r"zarr\.json"):
         open_zarr(tmp_path)
