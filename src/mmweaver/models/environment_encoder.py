@@ -11,11 +11,11 @@ from collections.abc import Callable
 from torch import Tensor, nn
 
 from mmweaver.core.registry import Registry
-from mmweaver.models.efficientnet import Block, Stem, shapes
+from mmweaver.models.efficientnet import Stem, make_blocks
 from mmweaver.models.scene_tensors import IMAGE_CHANNELS
 
 Z_ENV = 512
-BLOCKS = 13  # of EfficientNet-B0's 16: with the projection 2.1 M parameters, as the paper counts
+BLOCKS, ENCODED_CHANNELS = 13, 192  # of EfficientNet-B0's 16: with the projection 2.1 M parameters, as the paper counts
 MAP_BLOCK, MAP_CHANNELS = 5, 40  # after it the map has an eighth of the picture's rows and columns
 
 
@@ -24,12 +24,11 @@ class EnvironmentEncoder(nn.Module):
 
     def __init__(self, *, batch_norm: bool = False) -> None:
         super().__init__()
-        chosen = shapes()[:BLOCKS]
         self.stem = Stem(IMAGE_CHANNELS)
-        self.blocks = nn.ModuleList(Block(shape) for shape in chosen)
+        self.blocks = nn.ModuleList(make_blocks(BLOCKS))
         if not batch_norm:
             _group_norms(self)
-        self.project = nn.Sequential(nn.Linear(chosen[-1].channels_out, Z_ENV), nn.SiLU(), nn.Linear(Z_ENV, Z_ENV))
+        self.project = nn.Sequential(nn.Linear(ENCODED_CHANNELS, Z_ENV), nn.SiLU(), nn.Linear(Z_ENV, Z_ENV))
 
     def forward(self, image: Tensor) -> tuple[Tensor, Tensor]:
         x = self.stem(image)
