@@ -26,7 +26,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.models.learned_paths import LearnedRoom
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto

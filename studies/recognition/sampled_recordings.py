@@ -29,8 +29,7 @@ from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.activity_network import ACTIVITY_NAMES
-from mmweaver.training.activity_examples import augmented, compute_log_maps
-from mmweaver.training.activity_training import TRAIN_SPLITS
+from mmweaver.training.activity_training import TRAIN_SPLITS, augmented, compute_log_maps
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.finer_radar import interpolated, spectrum_on
 from studies.manifest import StudyRun

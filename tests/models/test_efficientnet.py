@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from mmweaver.models.efficientnet import Stem, make_blocks
+from mmweaver.models.environment_encoder import Stem, make_blocks
 
 transformers = pytest.importorskip("transformers")
 

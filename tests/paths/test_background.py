@@ -12,7 +12,7 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_paths import LearnedRoom
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.background import BackgroundRecording, agreeing_gain
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.paths import Interaction, StaticPaths
