@@ -13,7 +13,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from measuring import least_cpu_seconds, report, results_folder
 
-from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.radar_dataset import FEATURES, RadarDataset
@@ -34,7 +33,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         weaver = Weaver()
         SetBuilder(
-            Path(folder) / "set", ActivityList(sentences=ACTIVITIES), [weaver.sample_room()], weaver,
+            Path(folder) / "set", ACTIVITIES, [weaver.sample_room()], weaver,
             SetOptions(each=EACH, seconds=SECONDS), command="make bench", activities_text="",
         ).make()  # fmt: skip
         stored = read_activity_set(Path(folder) / "set")

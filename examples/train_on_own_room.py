@@ -10,7 +10,6 @@ import torch
 from torch.utils.data import DataLoader
 
 from mmweaver import Weaver
-from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.radar_dataset import RadarDataset, collate
 
@@ -26,7 +25,7 @@ def main(out: Path, each: int) -> float:
     """Makes the set, trains, and returns the accuracy on held-out people."""
     weaver = Weaver()
     builder = SetBuilder(
-        out, ActivityList(sentences=ACTIVITIES), [weaver.sample_room()], weaver, SetOptions(each=each),
+        out, ACTIVITIES, [weaver.sample_room()], weaver, SetOptions(each=each),
         command="python examples/train_on_own_room.py", activities_text="",
     )  # fmt: skip
     print(builder.make()["verdict"])

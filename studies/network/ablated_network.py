@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.body_anchors import ANCHORS, Anchors
 from mmweaver.models.body_prior import BodyPrior
-from mmweaver.models.network import MAX_STEP, SceneEncoding, WeaverNetwork
+from mmweaver.models.scatterer_network import MAX_STEP, SceneEncoding, WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_scatterers import MeanEchoes
 

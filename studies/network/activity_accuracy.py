@@ -16,8 +16,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets.dataset_store import read_plan, read_radar
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.models.weights import load_into
-from mmweaver.training.activity_examples import ActivityExamples, activity_examples
-from mmweaver.training.activity_training import scores_of
+from mmweaver.training.activity_training import ActivityExamples, activity_examples, scores_of
 from studies.manifest import StudyRun
 from studies.network.learned_scores import interval
 from studies.result_rows import complete_rows, dataset_of

@@ -39,16 +39,17 @@ from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.diffuse_clutter import seed_of_room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.activity_examples import activity_examples, compute_log_maps
-from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
+from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS, activity_examples, compute_log_maps
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, board_seen_in, empty_room, interval
 from studies.network.room_cache import RoomCache, digest

@@ -27,8 +27,7 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.recognition.generated_sequences import joints_at
 from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
-from mmweaver.training.pose_examples import PosedFrames, PoseWindows
-from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
+from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from studies.manifest import StudyRun
 from studies.network.activity_gain import UnseenRoom, motions_in, with_generated
 from studies.result_rows import dataset_of

@@ -14,9 +14,8 @@ from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import Page
-from mmweaver.training.network_examples import RoomExamples, examples, sample_batch
+from mmweaver.training.network_examples import RoomExamples, examples, reflected_joints, reflected_scene, sample_batch
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, compare_with_start
-from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene
 from mmweaver.training.trained_weights import write_recipe_weights
 from mmweaver.training.trainer import BatchSampler, Listener, LoopRecipe, Trainer
 from studies.paper.power_network import RECIPE, PowerNetwork

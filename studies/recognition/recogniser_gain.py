@@ -33,8 +33,13 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.procedural_room import make_room
-from mmweaver.training.activity_examples import ActivityExamples, activity_examples, augmented
-from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe
+from mmweaver.training.activity_training import (
+    TRAIN_SPLITS,
+    ActivityExamples,
+    ActivityRecipe,
+    activity_examples,
+    augmented,
+)
 from studies.manifest import StudyRun
 from studies.network.activity_gain import few_of, seen
 from studies.network.clutter import CLUTTER, clutter_of, third_of

@@ -29,6 +29,7 @@ from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.training.activity_examples import augmented, compute_log_maps
 from mmweaver.training.activity_training import TRAIN_SPLITS
 from studies.fields.budgeted_fit import BudgetedRecipe
+from mmweaver.training.activity_training import TRAIN_SPLITS, augmented, compute_log_maps
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.finer_radar import interpolated, spectrum_on
 from studies.fields.sampling import finer_grid, sampled_grid

@@ -27,8 +27,7 @@ from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_pose import generated_frames, posed_frames, split_people
-from mmweaver.training.pose_examples import PosedFrames, PoseWindows
-from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
+from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from mmweaver.training.trainer import Trainer
 from studies.manifest import StudyRun, content_of
 from studies.recognition.score_poses import (

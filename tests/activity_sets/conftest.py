@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
-from mmweaver.activity_sets.activity_list import read_activities
-from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
+from mmweaver.activity_sets.build_set import SetBuilder, SetOptions, read_activities
 from mmweaver.generate import Weaver
 
 ACTIVITIES = """[activities]

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from mmweaver.activity_sets.build_set import PARTS, SetOptions, split_of
-from mmweaver.activity_sets.set_cost import estimate_set_cost
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.datasets.activity_store import bytes_of_signals, read_activity_set
@@ -128,12 +127,12 @@ def test_whoever_is_drawn_does_all_activities_where_sentences_describe_different
 
 def test_the_cost_counts_what_is_missing(tmp_path: Path):
     one = builder(tmp_path / "set", OPTIONS)
-    cost = estimate_set_cost(one)
+    cost = one.cost()
     assert cost.sequences == len(one.plan) == sum(cost.splits.values())
     one.make()
     stored = sum(file.stat().st_size for file in (tmp_path / "set").rglob("*") if file.is_file())
     assert cost.disk_bytes == pytest.approx(stored, rel=0.3)
-    assert estimate_set_cost(one).sequences == 0
+    assert one.cost().sequences == 0
 
 
 @pytest.mark.parametrize("wrong", [{"each": 0}, {"subjects": 0}, {"split_by": "frame"}, {"seed": -1}, {"iq": "int8"}])

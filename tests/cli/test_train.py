@@ -15,7 +15,7 @@ import torch
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
 from mmweaver.generate import Weaver
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 
 pytest.importorskip("zarr")

@@ -11,8 +11,7 @@ import pytest
 import torch
 from torch.utils.data import DataLoader
 
-from mmweaver.activity_sets.activity_list import read_activities
-from mmweaver.activity_sets.build_set import SetBuilder
+from mmweaver.activity_sets.build_set import SetBuilder, read_activities
 from mmweaver.core.errors import InputError
 from mmweaver.datasets import RadarDataset, collate
 from mmweaver.datasets.activity_store import ActivitySet, read_activity_set

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from mmweaver.activity_sets.activity_list import read_activities
+from mmweaver.activity_sets.build_set import read_activities
 from mmweaver.cli.config_file import with_config
 from mmweaver.cli.main import _parser_and_commands
 from mmweaver.compression.lossless_file import CHECK, LosslessFile, compress_bin

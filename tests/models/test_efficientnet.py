@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from mmweaver.models.efficientnet import Block, Stem, shapes
+from mmweaver.models.environment_encoder import Stem, make_blocks
 
 transformers = pytest.importorskip("transformers")
 
@@ -21,7 +21,7 @@ def test_it_computes_what_transformers_computes(training: bool) -> None:
         elif isinstance(module, torch.nn.BatchNorm2d):
             torch.nn.init.uniform_(module.weight, 0.5, 1.5)
             torch.nn.init.uniform_(module.running_var, 0.5, 1.5)
-    ours = torch.nn.ModuleDict({"stem": Stem(5), "blocks": torch.nn.ModuleList(Block(shape) for shape in shapes())})
+    ours = torch.nn.ModuleDict({"stem": Stem(5), "blocks": torch.nn.ModuleList(make_blocks(16))})
     state = {name: values for name, values in theirs.state_dict().items() if not name.startswith("encoder.top")}
     state = {
         name.replace("embeddings.", "stem.").replace("encoder.blocks", "blocks"): values
@@ -45,8 +45,9 @@ def test_it_computes_what_transformers_computes(training: bool) -> None:
 
 
 def test_later_blocks_drop_more_and_only_where_they_add() -> None:
-    rates = [Block(shape).dropout.p for shape in shapes()]
+    blocks = make_blocks(16)
+    rates = [block.dropout.p for block in blocks]
     assert rates[0] == 0.0
     assert rates == sorted(rates)
     assert rates[-1] == pytest.approx(0.2 * 15 / 16)
-    assert [block.adds for block in map(Block, shapes())].count(True) == 9
+    assert [block.is_residual for block in blocks].count(True) == 9

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from mmweaver.core.errors import InputError
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, load_into, load_weights, read_card, save_weights
 
 CARD = WeightsCard(

@@ -12,13 +12,13 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.training.activity_examples import activity_examples
 from mmweaver.training.activity_training import (
     TRAIN_MAPS,
     TRAIN_SPLITS,
     VALIDATION_MAPS,
     ActivityLearner,
     ActivityRecipe,
+    activity_examples,
     train_activity,
 )
 from mmweaver.training.device import ComputeDevice, moved
@@ -74,7 +74,7 @@ def test_maps_are_computed_once_per_data_set(
     def none_more(*words: object) -> None:
         raise AssertionError("made again")
 
-    monkeypatch.setattr("mmweaver.training.activity_examples.compute_log_maps", none_more)
+    monkeypatch.setattr("mmweaver.training.activity_training.compute_log_maps", none_more)
     again = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
     assert again.step == 1
     with pytest.raises(InputError, match="other settings"):

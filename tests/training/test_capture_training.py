@@ -9,7 +9,7 @@ import torch
 
 from mmweaver.core.tensor_files import sha256_of
 from mmweaver.generate import Weaver
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.recordings.captures import Capture, read_capture, rooms_of
 from mmweaver.training.capture_training import (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.training.confusion_sheet import confusion, draw_confusion
+from mmweaver.training.validation_sheet import confusion, draw_confusion
 
 
 def test_each_row_is_normalised_by_its_class():

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from mmweaver.core.errors import InputError
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.network_examples import RoomExamples, examples, sample_batch

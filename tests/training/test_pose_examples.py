@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.skeleton import joint
 from mmweaver.models.point_frames import MOST_POINTS, middle_m, near, point_frames
 from mmweaver.recognition.train_pose import posed_frames
-from mmweaver.training.pose_examples import Disturbance, PoseWindows, disturbed
+from mmweaver.training.pose_training import Disturbance, PoseWindows, disturbed
 from tests.training.moving_arm import moving_arm
 
 STILL = Disturbance(

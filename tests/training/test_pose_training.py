@@ -10,8 +10,7 @@ from mmweaver.metrics.pose_errors import joint_errors_cm
 from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.train_pose import posed_frames
-from mmweaver.training.pose_examples import Disturbance, PoseWindows
-from mmweaver.training.pose_training import PoseRecipe, mean_pose_m, train_pose
+from mmweaver.training.pose_training import Disturbance, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from tests.training.moving_arm import moving_arm
 
 RECIPE = PoseRecipe(

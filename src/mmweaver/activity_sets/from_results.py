@@ -11,20 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.activity_sets.activity_list import ActivityList
-from mmweaver.activity_sets.build_set import split_of
-from mmweaver.activity_sets.leak_report import circumstances, leak_report
+from mmweaver.activity_sets.build_set import Activities, split_columns, write_labelled, write_leaks
+from mmweaver.activity_sets.confounders import circumstances
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PoseSequence
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.skeleton import joint
 from mmweaver.datasets.activity_store import (
     ACTIVITIES_FILE,
-    LEAKS_FILE,
     SCHEMA_VERSION,
     SET_FILE,
-    SPLIT_KEYS,
-    write_set,
 )
 from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.zarr_arrays import packed_iq
@@ -44,76 +42,85 @@ def result_folders(folder: Path) -> list[Path]:
 
 
 def set_of_results(
-    source: Path, out: Path, *, activities: ActivityList | None = None, split_by: str | None = None, seed: int = 0,
+    source: Path,
+    out: Path,
+    *,
+    activities: Activities | None = None,
+    split_by: str | None = None,
+    seed: int = 0,
     command: str,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Writes the set into `out` and returns its leak report.
 
-    `activities`: labels with their sentences (default: each sentence is a label). `split_by`: what is held out; by
-    default the splits of the set that the folders were exported from are kept, else people are held out. Raises
-    InputError for folders of several radars, lengths or people, without joints, or with a sentence that is no
-    activity's.
+    Args:
+        source: Folder of result folders.
+        out: Folder of the set.
+        activities: Labels with their sentences; None: each sentence is a label.
+        split_by: What is held out; None: the splits of the set that the folders were exported from, else people.
+        seed: Of the splits.
+        command: The command line, for set.json.
+
+    Raises:
+        InputError: For folders of several radars, lengths or people, without joints, or with a sentence that is no
+            activity's.
     """
     folders = result_folders(source)
     first = read_result(folders[0])
-    config, shape = first.cube.config, first.cube.values.shape
     label_of = _labels(folders, activities)
-    names = tuple(activities.labels) if activities is not None else tuple(dict.fromkeys(label_of))
-    columns: dict[str, list[Any]] = {name: [] for name in (*OWN, "text", "subject", "draw", "heading", "height")}
-    joints, points, point_frame, counts, scales = [], [], [], [], []
+    names = tuple(activities or dict.fromkeys(label_of))
+    rows: list[dict[str, Any]] = []
+    for number, folder in enumerate(folders):
+        result = read_result(folder)
+        pose = _checked(result, folder, first)
+        placed, own = _table(result.meta.get("placed")), _table(result.meta.get("sequence"))
+        rows.append(
+            {
+                **{name: own.get(name) for name in OWN},
+                "text": result.text,
+                "height": pose.height_m,
+                "subject": placed.get("subject", pose.subject),
+                "draw": own.get("draw", result.meta.get("seed", number)),
+                "heading": placed.get("heading_rad") or _heading(pose.joints_m),
+                "iq_scale": packed_iq(result.cube)[1],
+                "joints_m": pose.joints_m.astype(np.float32),
+                "points": point_table(result.points),
+                "point_frame": result.points.frame.astype(np.int32),
+            }
+        )
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    arrays = {name: columns.pop(name) for name in ("joints_m", "points", "point_frame", "iq_scale")}
+    for name in ("subject", "draw", "heading", "height"):
+        columns[name] = _numbers(columns[name], name, source).tolist()
+    columns["label"] = [names.index(label) for label in label_of]
+    columns["room"] = _numbered(columns["room"])
+    columns["place"] = _places(arrays["joints_m"]) if None in columns["place"] else _numbered(columns["place"])
+    splits = split_columns(
+        seed,
+        subject=columns["subject"],
+        room=columns["room"],
+        sentence=columns["text"],
+        place=list(zip(columns["room"], columns["place"], strict=True)),
+    )
+    is_split = split_by is None and all(isinstance(one, str) and one for one in columns["split"])
+    columns |= splits if is_split else splits | {"split": splits[f"split_{split_by or 'subject'}"]}
     with staged_folder(out) as stage:
-        for number, folder in enumerate(folders):
-            result = read_result(folder)
-            pose = _checked(result, folder, shape, config)
-            placed, own = _table(result.meta.get("placed")), _table(result.meta.get("sequence"))
-            columns["text"].append(result.text)
-            columns["subject"].append(placed.get("subject", pose.subject))
-            columns["draw"].append(own.get("draw", result.meta.get("seed", number)))
-            columns["heading"].append(placed.get("heading_rad") or _heading(pose.joints_m))
-            columns["height"].append(pose.height_m)
-            for name in OWN:
-                columns[name].append(own.get(name))
-            joints.append(pose.joints_m.astype(np.float32))
-            points.append(point_table(result.points))
-            point_frame.append(result.points.frame.astype(np.int32))
-            counts.append(len(result.points.frame))
-            scales.append(packed_iq(result.cube)[1])
-        numbers = {name: _numbers(columns[name], name, source) for name in ("subject", "draw", "heading", "height")}
-        start_m = np.stack([one[0, joint("pelvis"), :2] for one in joints]).astype(np.float64)
-        every = {
-            **numbers, "text": columns["text"], "label": [names.index(label) for label in label_of],
-            "label_name": label_of, "room": _numbered(columns["room"]),
-            "place": _places(start_m) if None in columns["place"] else _numbered(columns["place"]),
-        }  # fmt: skip
-        groups = {
-            "subject": numbers["subject"].tolist(), "room": every["room"],
-            "place": list(zip(every["room"], every["place"], strict=True)),
-            "sentence": every["text"],
-        }  # fmt: skip
-        splits = {f"split_{key}": split_of(groups[key], key, seed) for key in SPLIT_KEYS}
-        is_split = split_by is None and all(isinstance(one, str) and one for one in columns["split"])
-        every |= splits | {"split": columns["split"] if is_split else splits[f"split_{split_by or 'subject'}"]}
         signals = (packed_iq(read_result(folder).cube)[0] for folder in folders)  # one cube at a time in memory
-        write_set(stage, config, names, every, {
-            "joints_m": np.stack(joints), "points": np.concatenate(points).astype(np.float32),
-            "point_frame": np.concatenate(point_frame), "iq_scale": np.array(scales),
-            "point_sequence": np.repeat(np.arange(len(folders)), counts).astype(np.int32),
-        }, signals, "float16")  # fmt: skip
-        label = np.asarray(every["label"])
-        more = {"person": numbers["subject"].tolist(), "height": numbers["height"].tolist()}
-        report = leak_report(circumstances(joints, label, **more), label, numbers["draw"], names)
-        (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
-        _describe(stage, names, every, config, command)
+        write_labelled(stage, first.cube.config, names, columns, arrays, signals, "float16")
+        found = circumstances(
+            arrays["joints_m"], np.asarray(columns["label"]), person=columns["subject"], height=columns["height"]
+        )
+        report = write_leaks(stage, found, columns, names)
+        _describe(stage, names, columns, first.cube.config, command)
     write_set_card(out)
     return report
 
 
-def _labels(folders: Sequence[Path], activities: ActivityList | None) -> list[str]:
+def _labels(folders: Sequence[Path], activities: Activities | None) -> list[str]:
     """The label of each folder."""
     texts = [_text(folder) for folder in folders]
     if activities is None:
         return texts
-    of = {text: label for label, sentences in activities.sentences.items() for text in sentences}
+    of = {text: label for label, sentences in activities.items() for text in sentences}
     for folder, text in zip(folders, texts, strict=True):
         if text not in of:
             raise InputError(
@@ -129,11 +136,11 @@ def _text(folder: Path) -> str:
     return text
 
 
-def _checked(result: StoredResult, folder: Path, shape: tuple[int, ...], config: Any) -> Any:
-    """The person's joints. Raises InputError where the result does not fit the others."""
+def _checked(result: StoredResult, folder: Path, first: StoredResult) -> PoseSequence:
+    """The person's joints. Raises InputError where the result does not fit the first one."""
     if len(result.poses) != 1:
         raise InputError(f"{folder} has {len(result.poses)} people with joints; a labelled set is of one person each")
-    if result.cube.values.shape != shape or result.cube.config != config:
+    if result.cube.values.shape != first.cube.values.shape or result.cube.config != first.cube.config:
         raise InputError(f"{folder} has another radar or length than the first result; a set has one of each")
     return result.poses[0]
 
@@ -157,14 +164,14 @@ def _numbered(values: list[Any]) -> list[int]:
     return [known.index(str(value)) for value in values]
 
 
-def _places(start_m: np.ndarray) -> list[int]:
+def _places(joints_m: Sequence[np.ndarray]) -> list[int]:
     """A number for each place, shared by starts within 5 cm."""
     found: list[np.ndarray] = []
     numbers = []
-    for place in start_m:
-        near = [index for index, other in enumerate(found) if np.linalg.norm(place - other) < SAME_PLACE_M]
+    for start_m in (one[0, joint("pelvis"), :2].astype(np.float64) for one in joints_m):
+        near = [index for index, other in enumerate(found) if np.linalg.norm(start_m - other) < SAME_PLACE_M]
         if not near:
-            found.append(place)
+            found.append(start_m)
         numbers.append(near[0] if near else len(found) - 1)
     return numbers
 
@@ -175,17 +182,20 @@ def _heading(joints_m: np.ndarray) -> float:
     return float(np.arctan2(across[0], -across[1]))
 
 
-def _describe(stage: Path, names: tuple[str, ...], every: dict[str, Any], config: Any, command: str) -> None:
+def _describe(stage: Path, names: tuple[str, ...], columns: dict[str, Any], config: RadarConfig, command: str) -> None:
     """set.json and activities.toml."""
     import tomli_w
 
     sentences = {name: [] for name in names}
-    for label, text in zip(every["label_name"], every["text"], strict=True):
-        if text not in sentences[label]:
-            sentences[label].append(text)
+    for label, text in zip(columns["label"], columns["text"], strict=True):
+        if text not in sentences[names[label]]:
+            sentences[names[label]].append(text)
     description = {
-        "schema_version": SCHEMA_VERSION, "command": command, "activities": sentences, "from_results": True,
+        "schema_version": SCHEMA_VERSION,
+        "command": command,
+        "activities": sentences,
+        "from_results": True,
         "radar": parse_json(config.to_json(), "the radar"),
-    }  # fmt: skip
+    }
     (stage / SET_FILE).write_text(json.dumps(description, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     (stage / ACTIVITIES_FILE).write_text(tomli_w.dumps({"activities": sentences}), encoding="utf-8")

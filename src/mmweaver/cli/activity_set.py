@@ -81,10 +81,8 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
     """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
     if arguments.from_results is not None:
         return _run_from_results(arguments)
-    from mmweaver.activity_sets.activity_list import read_activities
-    from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
-    from mmweaver.activity_sets.leak_report import said
-    from mmweaver.activity_sets.set_cost import estimate_set_cost
+    from mmweaver.activity_sets.build_set import SetBuilder, SetOptions, read_activities
+    from mmweaver.activity_sets.confounders import verdict_of
     from mmweaver.core.range_window import chosen_range
     from mmweaver.core.safe_files.safe_text import read_text
     from mmweaver.formats.radar_file import load_radar
@@ -103,22 +101,22 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
         activities_text=read_text(arguments.activities),
     )  # fmt: skip
     if arguments.dry_run:
-        cost = estimate_set_cost(builder)
+        cost = builder.cost()
         print(json.dumps(asdict(cost)) if arguments.json else cost.summary(1))
         return 0
     report = make_with_bar(builder, quiet=arguments.quiet)
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:
-        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {said(report)}")
+        print(f"{len(activities)} labels x {options.each} sequences in {arguments.out}; {verdict_of(report)}")
     return 0
 
 
 def _run_from_results(arguments: argparse.Namespace) -> int:
     """Result folders as one set."""
-    from mmweaver.activity_sets.activity_list import read_activities
+    from mmweaver.activity_sets.build_set import read_activities
+    from mmweaver.activity_sets.confounders import verdict_of
     from mmweaver.activity_sets.from_results import set_of_results
-    from mmweaver.activity_sets.leak_report import said
     from mmweaver.core.output_checks import check_output_folder
 
     given = [name for name in NEEDS_ACTIVITIES if name != "split_by" and getattr(arguments, name) is not None]
@@ -133,7 +131,7 @@ def _run_from_results(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:
-        print(f"{report['of']['order']['sequences']} sequences in {arguments.out}; {said(report)}")
+        print(f"{report['of']['order']['sequences']} sequences in {arguments.out}; {verdict_of(report)}")
     return 0
 
 
@@ -141,7 +139,6 @@ def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
     """The leak report of the set, once what was missing of it is made; a bar shows how far it is."""
     from tqdm import tqdm
 
-    from mmweaver.activity_sets.set_cost import estimate_set_cost
     from mmweaver.datasets.dataset_cost import check_for_space
 
     if (words := builder.ignored_descriptions) and not quiet:
@@ -150,7 +147,7 @@ def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
         print(note, file=sys.stderr)
     builder.check_folder()
     if not builder.is_made:
-        cost = estimate_set_cost(builder)
+        cost = builder.cost()
         # while the store is put together, its parts are there, too
         check_for_space(replace(cost, disk_bytes=2 * cost.disk_bytes), builder.out)
     with tqdm(unit="sequence", disable=quiet or None) as bar:

@@ -15,8 +15,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
-    from mmweaver.activity_sets.matched_draws import Draw
-    from mmweaver.activity_sets.sentence_draws import GivenPlacing
+    from mmweaver.activity_sets.paired_sampling import Draw, GivenPlacing
     from mmweaver.generate import Weaver
     from mmweaver.generation import Room
     from mmweaver.request import Request
@@ -50,7 +49,7 @@ class BatchSequence:
     @property
     def heading_deg(self) -> float | None:
         """The heading as --heading takes it."""
-        from mmweaver.activity_sets.sentence_draws import heading_deg
+        from mmweaver.activity_sets.paired_sampling import heading_deg
 
         return None if self.draw is None else heading_deg(self.draw)
 
@@ -111,7 +110,7 @@ class Batch:
         texts = sorted({one.text for one in sequences})
         if len(draws) < len(sequences) or len(texts) < 2 or len({draw.index for draw in draws}) < 2:
             return None
-        from mmweaver.activity_sets.sentence_draws import folder_leaks
+        from mmweaver.activity_sets.paired_sampling import folder_leaks
 
         folders, requests = [one.folder for one in sequences], [self.requests[text] for text in texts]
         return folder_leaks(folders, [one.text for one in sequences], draws, requests)
@@ -121,7 +120,7 @@ class Batch:
         own = self.requests[one.text]
         if one.draw is None:
             return replace(own, seed=one.seed)
-        from mmweaver.activity_sets.sentence_draws import placed
+        from mmweaver.activity_sets.paired_sampling import placed
 
         return placed(own, one.draw, one.height_m)
 
@@ -224,7 +223,7 @@ def checked_texts(arguments: argparse.Namespace) -> list[str]:
 
 def given_placing(arguments: argparse.Namespace) -> "GivenPlacing":
     """What the user fixes for all sequences."""
-    from mmweaver.activity_sets.sentence_draws import GivenPlacing
+    from mmweaver.activity_sets.paired_sampling import GivenPlacing
 
     at, height, subject = ((getattr(arguments, name) or [None])[0] for name in ("at", "height", "subject"))
     return GivenPlacing(start_m=at, heading_deg=arguments.heading, height_m=height, subject=subject)
@@ -268,7 +267,7 @@ def matched_sequences(
 
     Raises InputError where no place serves one of them.
     """
-    from mmweaver.activity_sets.sentence_draws import order_of, sentence_draws
+    from mmweaver.activity_sets.paired_sampling import sentence_draws, sentence_order
 
     given = given_placing(arguments)
     try:
@@ -282,7 +281,7 @@ def matched_sequences(
     count = len(texts) * arguments.repeat
     for number in range(count):
         round_of, within = divmod(number, len(texts))
-        text = order_of(texts, round_of, arguments.seed)[within]
+        text = sentence_order(texts, round_of, arguments.seed)[within]
         if text in why:
             folder = out / _name(number, count)
             refused.append({"folder": folder.name, "text": text, "seed": arguments.seed + round_of, "why": why[text]})

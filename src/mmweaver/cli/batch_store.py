@@ -47,10 +47,9 @@ def run_store(
     """Makes what is missing of the set and says its verdict. Raises InputError."""
     import tomli_w
 
-    from mmweaver.activity_sets.activity_list import ActivityList
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
-    from mmweaver.activity_sets.leak_report import said
-    from mmweaver.activity_sets.sentence_draws import without_place
+    from mmweaver.activity_sets.confounders import verdict_of
+    from mmweaver.activity_sets.paired_sampling import without_place
     from mmweaver.cli.activity_set import make_with_bar
 
     refused = without_place(requests, room.scene, arguments.seed)
@@ -65,7 +64,7 @@ def run_store(
         options = replace(options, board=str(arguments.board))
     command = shlex.join(["mmweaver", *sys.argv[1:]]) if sys.argv[1:2] == ["generate"] else "mmweaver generate"
     builder = SetBuilder(
-        out, ActivityList(sentences={text: (text,) for text in kept}), [room], weaver, options, command=command,
+        out, {text: (text,) for text in kept}, [room], weaver, options, command=command,
         activities_text=tomli_w.dumps({"activities": {text: [text] for text in kept}}), given=given_placing(arguments),
     )  # fmt: skip
     report = make_with_bar(builder, quiet=arguments.quiet)
@@ -73,7 +72,7 @@ def run_store(
     if arguments.json:
         print(json.dumps({"out": str(out), "leaks": report, "refused": left_out}, ensure_ascii=False))
     elif not arguments.quiet:
-        print(f"{len(kept)} sentences x {arguments.repeat} sequences in {out}; {said(report)}")
+        print(f"{len(kept)} sentences x {arguments.repeat} sequences in {out}; {verdict_of(report)}")
         for one in left_out:
             print(f"left out {one['text']!r}: {one['why']}")
     return 0

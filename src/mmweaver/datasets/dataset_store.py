@@ -33,7 +33,7 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
-from mmweaver.datasets.photo_arrays import stored_photo
+from mmweaver.datasets.zarr_arrays import stored_photo
 
 PLAN_FILE = "plan.json"
 FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # of joints and depths; what is beyond is damage

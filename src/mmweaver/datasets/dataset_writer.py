@@ -5,27 +5,28 @@ follows from plan.json, which the first process creates; each completes what is 
 """
 
 import hashlib
+import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
-from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, write_sums
+from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder
+from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write, is_empty, resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
-from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tree
 from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.datasets.geometry_store import write_geometry
-from mmweaver.datasets.photo_arrays import put_photo
 from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
-from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_texts, write_iq, zarr_module
+from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_photo, put_texts, write_iq, zarr_module
 
 LARGEST_ROOT_FILE = 64 * MEGABYTE
 # dimensions and coordinates of one name: xarray.open_datatree hands those of the root down to the rooms
@@ -190,3 +191,26 @@ def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
         "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
         "refused": [list(entry) for entry in generated.refused],
     }  # fmt: skip
+
+
+METADATA = "zarr.json"
+KEY = "consolidated_metadata"
+
+
+def consolidate_rooms(folder: Path, rooms: Sequence[str], axes: Sequence[str]) -> None:
+    """Writes the root's zarr.json anew where it lacks something of these rooms and axes, and its checksum.
+
+    Raises InputError where metadata of a room is damaged.
+    """
+    root = read_json(folder / METADATA)
+    files = [file for name in (*axes, *sorted(rooms)) for file in sorted((folder / name).rglob(METADATA))]
+    members: dict[str, Any] = {file.parent.relative_to(folder).as_posix(): read_json(file) for file in files}
+    gathered = {"kind": "inline", "must_understand": False, "metadata": members}
+    text = json.dumps(root | {KEY: gathered})
+    held = read_sums(folder) or {}
+    sums = held | {METADATA: hashlib.sha256(text.encode()).hexdigest()}
+    if root.get(KEY) == gathered and sums == held:  # a kill may have come between the two files
+        return
+    with atomic_files(folder / METADATA, folder / SUMS_FILE) as (metadata, listed):
+        metadata.write_text(text, encoding="utf-8")
+        listed.write_text(sums_text(sums), encoding="utf-8")

@@ -12,11 +12,10 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.staging import sweep
-from mmweaver.datasets.consolidated_rooms import consolidate_rooms
 from mmweaver.datasets.data_card import write_rooms_card
 from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec
 from mmweaver.datasets.dataset_store import is_done
-from mmweaver.datasets.dataset_writer import AXES, open_dataset, remove_damaged, write_room
+from mmweaver.datasets.dataset_writer import AXES, consolidate_rooms, open_dataset, remove_damaged, write_room
 
 
 @dataclass(frozen=True, kw_only=True)

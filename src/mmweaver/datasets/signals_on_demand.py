@@ -30,8 +30,7 @@ from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_sequence
-from mmweaver.datasets.photo_arrays import put_photo, stored_photo
-from mmweaver.datasets.zarr_arrays import put_array, put_sequences
+from mmweaver.datasets.zarr_arrays import put_array, put_photo, put_sequences, stored_photo
 from mmweaver.methods import METHODS, Method
 from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto

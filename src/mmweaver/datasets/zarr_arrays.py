@@ -1,13 +1,16 @@
 """Arrays of a data set's Zarr groups: every chunk is written, with a CRC-32C."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.optional_packages import need
-from mmweaver.core.records import RadarCube
+from mmweaver.core.records import CameraIntrinsics, ClassMask, RadarCube, RgbdPhoto
+from mmweaver.core.safe_files.safe_zarr import ZarrFolder
+from mmweaver.scene.photo.camera_file import camera_numbers
 
 UNITS = {
     "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joint_velocity_mps": "m/s", "range": "m",
@@ -113,3 +116,34 @@ def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
     """Writes one text for each sequence."""
     array = group.create_array(name, shape=(len(texts),), dtype="string", dimension_names=("sequence",))
     array[...] = np.asarray(texts, dtype=object)
+
+
+FARTHEST_M = 1000.0  # of depths; what is beyond is damage
+
+
+def put_photo(group: Any, photo: RgbdPhoto, depth_type: str = "float32") -> None:
+    """Writes a photo with its camera; `depth_type`: that of the stored depth in metres."""
+    put_array(group, "photo_rgb", photo.rgb, ("row", "column", "colour"))
+    put_array(group, "photo_depth_m", photo.depth_m.astype(depth_type), ("row", "column"))
+    if photo.classes is not None:
+        put_array(group, "photo_class", photo.classes.index, ("row", "column"))
+    group.attrs.update(
+        {"camera": asdict(photo.intrinsics), "class_names": list(photo.classes.names) if photo.classes else []}
+    )
+
+
+def stored_photo(group: ZarrFolder) -> RgbdPhoto:
+    """The photo of a group. Raises InputError where it is damaged."""
+    rgb = group.numbers("photo_rgb", ("row", "column", 3), kinds="u", high=255).astype(np.uint8)
+    depth_m = group.numbers("photo_depth_m", ("row", "column"), kinds="f", low=0, high=FARTHEST_M, nan=True)
+    names, classes = group.words("class_names"), None
+    if names:
+        index = group.numbers("photo_class", ("row", "column"), kinds="u", high=len(names) - 1)
+        classes = ClassMask(index=index.astype(np.uint8), names=names)
+    height, width = depth_m.shape
+    numbers = camera_numbers(group.attr("camera", dict), group.path)
+    camera = CameraIntrinsics(
+        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
+        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
+    )  # fmt: skip
+    return RgbdPhoto(rgb=rgb, depth_m=depth_m.astype(np.float64), intrinsics=camera, classes=classes)

@@ -23,7 +23,7 @@ from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.models.scene_tensors import GivenRoom, SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects

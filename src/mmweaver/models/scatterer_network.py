@@ -1,7 +1,19 @@
-"""What every network that solves for paths is: rooms and motions in, mean echoes out."""
+"""The weaver: a network that writes the scatterer field of a person moving in a room.
 
+    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 static points and faces
+                                                           |
+    joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
+                                                                (anchored to the body and its images)
+
+The network says how strong each echo is on average and where it lies; phases are sampled when a signal is made, for
+nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
+Reference: paper, section "Generalization via Hypernetworks".
+"""
+
+from dataclasses import dataclass
 from typing import Any
 
+import torch
 from torch import Tensor, nn
 
 from mmweaver.models.scene_tensors import SceneTensors
@@ -21,3 +33,148 @@ class ScattererNetwork(nn.Module):
     def moving(self, code: Any, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None) -> MeanEchoes:
         """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo)."""
         raise NotImplementedError
+
+
+WIDTH, HEADS, LAYERS = 128, 4, 2
+MAX_STEP = 12.0  # of a logarithm of power
+FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
+MAX_CORRECTION = 2.0  # the same, of the strength that physics predicts for the photographed room
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneEncoding(TensorRecord):
+    """What is known of a room once its photo has been encoded; kept and used for any number of motions."""
+
+    view: SceneTensors
+    z_env: Tensor
+    static: MeanEchoes
+
+
+class WeaverNetwork(ScattererNetwork):
+    """Rooms and motions -> mean echoes. `encode_room` once per room, then `moving` for each motion.
+
+    Args:
+        corrects_surfaces: Whether the network changes the strength that physics predicts for photographed surfaces.
+        encoder: Name of the environment encoder.
+    """
+
+    max_correction = MAX_CORRECTION
+
+    def __init__(self, *, corrects_surfaces: bool = True, encoder: str = DEFAULT_ENCODER) -> None:
+        super().__init__()
+        self.corrects_surfaces = corrects_surfaces
+        self.environment = ENCODERS[encoder]()
+        self.pose = PoseEncoder()
+        self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
+        self.face = _mlp(PLANE_FEATURES, 64, 1)
+        self.body_in, self.ghost_in = nn.Linear(BODY_FEATURES + 2, WIDTH), nn.Linear(GHOST_FEATURES, WIDTH)
+        self.part = nn.Parameter(0.02 * torch.randn(NUM_ANCHORS + NUM_GHOSTS, WIDTH))
+        self.from_env, self.from_pose = nn.Linear(Z_ENV, WIDTH), nn.Linear(Z_POSE, WIDTH)
+        layer = nn.TransformerEncoderLayer(
+            WIDTH, HEADS, 2 * WIDTH, dropout=0.0, activation="gelu", batch_first=True, norm_first=True
+        )
+        self.mix = nn.TransformerEncoder(layer, LAYERS, enable_nested_tensor=False)
+        self.out = nn.Sequential(nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 5))
+        for network in (self.point, self.face, self.out):
+            head = network[-1]
+            assert isinstance(head, nn.Linear)
+            nn.init.normal_(head.weight, std=0.0 if network is self.point else 1e-3)
+            nn.init.zeros_(head.bias)
+
+    def encode_room(self, view: SceneTensors) -> SceneEncoding:
+        """Rooms (room, ...) -> their code; static echoes (room, echo)."""
+        z_env, places = self.environment(view.image)
+        parts = [self._points(view, places), self._faces(view)]
+        return SceneEncoding(view=view, z_env=z_env, static=MeanEchoes.cat(parts, 1))
+
+    def moving(
+        self, code: SceneEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None
+    ) -> MeanEchoes:
+        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo).
+
+        `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
+        """
+        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
+        if frames is not None:
+            z_pose, joints_m, velocity_mps = (_picked(part, frames) for part in (z_pose, joints_m, velocity_mps))
+        body, ghosts, prior = self.anchors(joints_m, velocity_mps, code.view)
+        physics = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
+        of_body = self.body_in(torch.cat([body.features, physics], dim=-1))
+        token = torch.cat([of_body, self.ghost_in(ghosts.features)], dim=-2) + self.part
+        token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
+        mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
+        return _placed(self.steps(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
+
+    def anchors(self, joints_m: Tensor, velocity_mps: Tensor, view: SceneTensors) -> tuple[Anchors, Anchors, BodyPrior]:
+        """Anchors of direct echoes and of ghosts, and the strength of the body by physics."""
+        body, ghosts = body_anchors(joints_m, velocity_mps, view), ghost_anchors(joints_m, velocity_mps, view)
+        return body, ghosts, body_prior(joints_m)
+
+    def steps(self, mixed: Tensor) -> Tensor:
+        """Features (..., echo, WIDTH) -> level, and steps in range, velocity and direction (..., echo, 5)."""
+        return self.out(mixed)
+
+    def _points(self, view: SceneTensors, places: Tensor) -> MeanEchoes:
+        local = _looked_up(places, view.point_m, view)
+        level = self.point(torch.cat([view.point_features, local], dim=-1))[..., 0]
+        distance = view.point_m.norm(dim=-1).clamp(min=0.1)
+        level = level if self.corrects_surfaces else 0 * level
+        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, self.max_correction))
+        return _static(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
+
+    def _faces(self, view: SceneTensors) -> MeanEchoes:
+        """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
+        level = self.face(view.plane_features)[..., 0]
+        normal = view.plane_axes[..., 2, :]
+        distance = -(view.plane_centre_m * normal).sum(-1)
+        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0)
+        cross_section = there * torch.exp(_bounded(level) - 8.0)
+        return _static(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
+
+
+@in_full_precision
+def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
+    """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
+    camera = (point_m - view.camera_m[:, None]) @ view.camera_from_radar.transpose(-1, -2)
+    depth = camera[..., 2].clamp(min=0.05)
+    column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *view.camera[:, None].unbind(-1))
+    rows, columns = view.depth_m.shape[-2:]
+    grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
+    found = nn.functional.grid_sample(places, grid[:, None].clamp(-3, 3), align_corners=False)
+    return found[:, :, 0].transpose(1, 2)
+
+
+def _picked(values: Tensor, frames: Tensor) -> Tensor:
+    index = frames.reshape(*frames.shape, *[1] * (values.dim() - 2)).expand(-1, -1, *values.shape[2:])
+    return values.gather(1, index)
+
+
+def _static(distance: Tensor, direction: Tensor, cross_section: Tensor) -> MeanEchoes:
+    return MeanEchoes(
+        range_m=distance, velocity_mps=torch.zeros_like(distance), direction=direction, cross_section_m2=cross_section
+    )
+
+
+def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, of_ghosts_m2: Tensor) -> MeanEchoes:
+    """Network's words: level, and small steps in range, velocity and direction."""
+    level, step_r, step_v, step_x, step_z = out.unbind(-1)
+    share = torch.cat([body.share, ghosts.share], -1)
+    known = torch.cat([prior.cross_section_m2, of_ghosts_m2], -1) + FAINTEST_M2
+    range_m = torch.cat([body.range_m + prior.offset_m, ghosts.range_m - 0.06], -1)
+    return MeanEchoes(
+        range_m=range_m + 0.2 * torch.tanh(step_r),
+        velocity_mps=torch.cat([body.velocity_mps, ghosts.velocity_mps], -1) + 0.5 * torch.tanh(step_v),
+        direction=torch.cat([body.direction, ghosts.direction], -2)
+        + 0.1 * torch.tanh(torch.stack([step_x, step_z], -1)) / range_m[..., None],
+        cross_section_m2=share * known * torch.exp(_bounded(level)),
+    )
+
+
+def _bounded(level: Tensor, largest: float = MAX_STEP) -> Tensor:
+    return largest * torch.tanh(level / largest)
+
+
+def _mlp(wide_in: int, hidden: int, wide_out: int) -> nn.Sequential:
+    return nn.Sequential(
+        nn.Linear(wide_in, hidden), nn.GELU(), nn.Linear(hidden, hidden), nn.GELU(), nn.Linear(hidden, wide_out)
+    )

@@ -19,7 +19,7 @@ from mmweaver.core.safe_files.safe_tensors import read_tensor_metadata
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1

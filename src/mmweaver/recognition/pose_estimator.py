@@ -77,7 +77,7 @@ class PoseEstimator:
     def _windows(self, windows: Sequence[PointFrames]) -> Float[np.ndarray, "window frame 22 3"]:
         import torch
 
-        from mmweaver.training.pose_examples import MIRRORED, batch_of
+        from mmweaver.training.pose_training import MIRRORED, batch_of
 
         nothing = np.zeros((self.settings.window_frames, NUM_JOINTS, 3))
         found = []

@@ -15,8 +15,7 @@ from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_se
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask, read_task
-from mmweaver.training.pose_examples import PosedFrames, PoseWindows
-from mmweaver.training.pose_training import PoseLearner, PoseRecipe, train_pose
+from mmweaver.training.pose_training import PosedFrames, PoseLearner, PoseRecipe, PoseWindows, train_pose
 from mmweaver.training.trained_weights import weights_card
 from mmweaver.training.trainer import Listener, Trainer
 

@@ -17,7 +17,7 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import sha256_of
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.background import agreeing_gain
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.mean_scatterers import MeanEchoes

@@ -1,6 +1,6 @@
 """Training batches of the learned method, sampled from a data set; a step always gives the same batch."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
 from mmweaver.dsp.cube import static_cube
 from mmweaver.dsp.spectra import (
@@ -23,12 +24,102 @@ from mmweaver.dsp.spectra import (
     range_elevation_power,
 )
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.paths.apparent_paths import moving_points, static_points
+from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.mean_power import MeanPower, PowerMaps
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.device import Share
-from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_loss import Targets
-from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene, reflected_targets
+
+_OTHER_SIDE = {"left": "right", "right": "left"}
+_POINT_X = (1, 5)  # columns of a point's features: position and direction
+_PLANE_X = (6,)  # columns of a plane's features: normal
+
+
+def reflected_scene(scene: SceneTensors) -> SceneTensors:
+    """The scene reflected at the plane x = 0."""
+    flip = scene.point_m.new_tensor([-1.0, 1.0, 1.0])
+    camera = scene.camera.clone()
+    camera[..., 2] = scene.image.shape[-1] - 1 - camera[..., 2]
+    return replace(
+        scene,
+        image=scene.image.flip(-1),
+        depth_m=scene.depth_m.flip(-1),
+        point_m=scene.point_m * flip,
+        point_features=_negated(scene.point_features, _POINT_X),
+        camera_from_radar=scene.camera_from_radar * flip * flip[:, None],
+        camera_m=scene.camera_m * flip,
+        camera=camera,
+        plane_centre_m=scene.plane_centre_m * flip,
+        plane_axes=scene.plane_axes * flip,
+        plane_features=_negated(scene.plane_features, _PLANE_X),
+    )
+
+
+def reflected_joints(joints: Tensor) -> Tensor:
+    """Positions or velocities (..., 22, 3) of the reflected person, with left and right joints exchanged."""
+    order = [JOINT_NAMES.index(_other(name)) for name in JOINT_NAMES]
+    return joints[..., order, :] * joints.new_tensor([-1.0, 1.0, 1.0])
+
+
+def reflected_targets(targets: Targets) -> Targets:
+    """Targets with azimuth reversed; range, Doppler and elevation are unchanged."""
+    person = None if targets.person is None else _azimuth_flipped(targets.person)
+    return Targets(maps=_azimuth_flipped(targets.maps), static=_azimuth_flipped(targets.static), person=person)
+
+
+def _azimuth_flipped(maps: PowerMaps) -> PowerMaps:
+    return replace(maps, range_azimuth=maps.range_azimuth.flip(-1))
+
+
+def _negated(features: Tensor, columns: tuple[int, ...]) -> Tensor:
+    sign = torch.ones(features.shape[-1], device=features.device)
+    sign[list(columns)] = -1
+    return features * sign
+
+
+def _other(name: str) -> str:
+    side, _, part = name.partition("_")
+    return f"{_OTHER_SIDE[side]}_{part}" if side in _OTHER_SIDE else name
+
+
+class ExpectedMaps:
+    """Mean power maps of one room of a data set with geometry."""
+
+    def __init__(self, room: StoredRoom):
+        assert room.geometry is not None, "signals are stored, not geometry"
+        self.room, self.radar = room, _radar(room)
+        self.static = self.radar.maps(static_points(room.geometry.room.paths, self.radar.response))
+
+    def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
+        """Maps (frame, range, other) of frames of a sequence: room, person and noise together, and the person alone."""
+        person = self.room.body_paths(index, frames)
+        both = [self._frame(person, number) for number in range(len(frames))]
+        return PowerMaps.stack([whole for whole, _ in both]), PowerMaps.stack([alone for _, alone in both])
+
+    def _frame(self, person: BodyPaths, number: int) -> tuple[PowerMaps, PowerMaps]:
+        response = self.radar.response
+        segments = person.paths(number)
+        moving = self.radar.maps(moving_points(segments[len(segments) // 2], response))
+        occluded = self.radar.maps(static_points(person.occluded_paths(number), response))
+        names = [field.name for field in fields(PowerMaps)]
+        maps = {}
+        for name, noise in zip(names, self.radar.noise_maps(), strict=True):
+            static = getattr(self.static, name)
+            visible = (static - getattr(occluded, name)).clamp(min=0)
+            maps[name] = visible + getattr(moving, name) + noise
+        return PowerMaps(**maps), moving
+
+
+_RADARS: dict[str, MeanPower] = {}
+
+
+def _radar(room: StoredRoom) -> MeanPower:
+    """The radar, shared by all rooms of the same configuration."""
+    key = room.config.to_json()
+    if key not in _RADARS:
+        _RADARS[key] = MeanPower(room.config)
+    return _RADARS[key]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.training.network_training import TrainingRecipe
 from studies.network.ablated_network import PARTS
 from studies.network.ablation import (

@@ -4,7 +4,7 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
-from mmweaver.training.activity_examples import ActivityExamples
+from mmweaver.training.activity_training import ActivityExamples
 from studies.network.activity_accuracy import row_of
 
 

@@ -12,7 +12,7 @@ from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scatterer_network import WeaverNetwork
 from studies.network import activity_gain
 from studies.network.activity_gain import (
     ALONE,

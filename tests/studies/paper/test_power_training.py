@@ -12,9 +12,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.models.environment_encoder import Z_ENV
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.training.network_examples import examples
+from mmweaver.training.network_examples import examples, reflected_scene
 from mmweaver.training.network_training import NetworkLearner
-from mmweaver.training.reflection_augmentation import reflected_scene
 from studies.paper.power_method import PowerFields, load_power
 from studies.paper.power_network import RECIPE, PowerNetwork
 from studies.paper.power_training import PowerRecipe, train_power, write_power_weights

@@ -1,4 +1,4 @@
-"""What a classifier knows without looking at the radar signal: leaks.json.
+"""Confounders: how well the label is predicted without the radar signal; leaks.json.
 
 One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
 that they have not seen, over all labels and on each. With matched draws they are at chance. What cannot be equal
@@ -79,7 +79,7 @@ def leak_report(
     }  # fmt: skip
 
 
-def said(report: dict[str, Any]) -> str:
+def verdict_of(report: dict[str, Any]) -> str:
     """The verdict with what belongs to the activities, for people."""
     return "; ".join(filter(None, (report["verdict"], report["inherent"])))
 

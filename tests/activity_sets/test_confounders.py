@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.confounders import leak_report
 from mmweaver.core.seeding import stream
 
 LABEL = np.tile(np.arange(4), 30)

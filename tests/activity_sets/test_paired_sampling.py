@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from mmweaver.activity_sets.matched_draws import (
-    MOST_ATTEMPTS,
-    MOST_OWN_ATTEMPTS,
+from mmweaver.activity_sets.paired_sampling import (
+    MAX_ATTEMPTS,
+    MAX_OWN_ATTEMPTS,
     PlannedSequence,
     StartPlace,
-    matched_draws,
+    paired_draws,
     places_of,
     shuffled,
     why_placed_apart,
@@ -29,7 +29,7 @@ def serves_all(draw, label):
 
 
 def test_rooms_and_people_take_turns_and_labels_share_their_draw():
-    draws = list(matched_draws(PLACES, 24, 4, 0, 3, serves_all))
+    draws = list(paired_draws(PLACES, 24, 4, 0, 3, serves_all))
     assert all(one is each[0] and one.is_shared for each in draws for one in each)
     draws = [each[0] for each in draws]
     assert [draw.room for draw in draws[:4]] == [0, 1, 0, 1]
@@ -40,7 +40,7 @@ def test_rooms_and_people_take_turns_and_labels_share_their_draw():
 
 
 def test_what_cannot_be_done_is_drawn_anew_for_all_labels():
-    draws = list(matched_draws(PLACES, 8, 2, 0, 2, lambda draw, label: "no" if draw.heading_rad < 0 < label else ""))
+    draws = list(paired_draws(PLACES, 8, 2, 0, 2, lambda draw, label: "no" if draw.heading_rad < 0 < label else ""))
     assert all(draw.heading_rad >= 0 and draw.is_shared for each in draws for draw in each)
 
 
@@ -48,7 +48,7 @@ def test_a_label_that_needs_another_place_than_the_others_has_its_own_draw_of_th
     def obstacle(draw, label):
         return "" if (draw.place == 1) == (label == 2) else "no"
 
-    draws = list(matched_draws(PLACES[:1], 6, 2, 0, 3, obstacle))
+    draws = list(paired_draws(PLACES[:1], 6, 2, 0, 3, obstacle))
     for waves, walks, falls in draws:
         assert waves is walks
         assert (waves.is_shared, waves.place) == (True, 0)
@@ -63,14 +63,14 @@ def test_a_label_that_needs_another_place_than_the_others_has_its_own_draw_of_th
 def test_a_room_that_never_serves_is_refused():
     tried = []
     with pytest.raises(InputError, match="too small"):
-        list(matched_draws(PLACES, 1, 1, 0, 1, lambda draw, label: tried.append(draw) or "too small"))
-    assert len(tried) == MOST_ATTEMPTS + MOST_OWN_ATTEMPTS
+        list(paired_draws(PLACES, 1, 1, 0, 1, lambda draw, label: tried.append(draw) or "too small"))
+    assert len(tried) == MAX_ATTEMPTS + MAX_OWN_ATTEMPTS
 
 
 def test_draws_start_on_the_free_floor():
     free_m = np.array([[0.0, 2.0], [0.3, 2.1]])
     here = StartPlace(centre_m=(0.0, 2.0), free_m=free_m, cell_m=0.05)
-    starts = np.array([each[0].start_m for each in matched_draws([[here]], 40, 1, 0, 1, serves_all)])
+    starts = np.array([each[0].start_m for each in paired_draws([[here]], 40, 1, 0, 1, serves_all)])
     off_m = np.abs(starts[:, None] - free_m).max(axis=-1)
     assert (off_m.min(axis=1) <= 0.0255).all()
     assert set(off_m.argmin(axis=1)) == {0, 1}
@@ -85,7 +85,7 @@ def test_places_are_far_apart_and_free():
 
 
 def test_the_order_is_shuffled():
-    draw = next(matched_draws(PLACES, 1, 1, 0, 1, serves_all))[0]
+    draw = next(paired_draws(PLACES, 1, 1, 0, 1, serves_all))[0]
     sequences = [PlannedSequence(draw=draw, label=n % 3, sentence=0, text="") for n in range(60)]
     order = [one.label for one in shuffled(sequences, 0)]
     assert order != [one.label for one in sequences]

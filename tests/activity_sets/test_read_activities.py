@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.activity_sets.activity_list import read_activities
+from mmweaver.activity_sets.build_set import read_activities
 from mmweaver.core.errors import InputError
 
 
@@ -12,12 +12,12 @@ def test_labels_keep_their_order(tmp_path: Path):
     file = tmp_path / "a.toml"
     file.write_text('[activities]\nwave = "a person waves"\nsit = ["a person sits down", "someone sits down"]\n')
     found = read_activities(file)
-    assert found.labels == ("wave", "sit")
-    assert found.sentences["sit"] == ("a person sits down", "someone sits down")
+    assert tuple(found) == ("wave", "sit")
+    assert found["sit"] == ("a person sits down", "someone sits down")
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "needs a table"), ("activities = 3", "needs a table"),
         ('[activities]\nwave = "a person waves"', "two or more"),
@@ -25,7 +25,7 @@ def test_labels_keep_their_order(tmp_path: Path):
         ('[activities]\na = "a person waves"\nb = "a person flies"', "b: "), ("[activities", "no TOML"),
     ],
 )  # fmt: skip
-def test_mistakes_are_named(text: str, said: str, tmp_path: Path):
+def test_mistakes_are_named(text: str, message: str, tmp_path: Path):
     (tmp_path / "a.toml").write_text(text)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         read_activities(tmp_path / "a.toml")
