@@ -86,13 +86,8 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     loops = _inverse_fft(turned, 2)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
-    slow = loops.transpose(0, 2, 3, 1)
-    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    samples = (
-        slow @ inverse if config.complex_samples else np.concatenate([np.real(slow), np.imag(slow)], axis=-1) @ inverse
-    )
-    shape = (len(samples), config.num_loops, config.num_slots, config.num_rx, config.num_samples)
-    return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
+    samples = _samples_of_ranges(loops.transpose(0, 2, 3, 1), config)
+    return AdcCube(samples=samples, config=config, scale=cube.scale)
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
@@ -106,11 +101,16 @@ def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
 
 def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
     """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
-    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    spectrum = encoded(static.astype(np.complex128), config).T  # (slot * rx, range)
+    return _samples_of_ranges(encoded(static.astype(np.complex128), config).T, config)
+
+
+def _samples_of_ranges(spectrum: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Range bins (..., slot * rx, range) -> samples (..., slot, rx, sample) of least energy, complex64."""
     if not config.complex_samples:
         spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
-    return (spectrum @ inverse).reshape(config.num_slots, config.num_rx, -1).astype(np.complex64)
+    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
+    samples = (spectrum @ inverse).astype(np.complex64)
+    return samples.reshape(*spectrum.shape[:-2], config.num_slots, config.num_rx, config.num_samples)
 
 
 def remove_static_adc(adc: AdcCube) -> AdcCube:

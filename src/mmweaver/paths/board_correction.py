@@ -58,7 +58,9 @@ def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
         done.append("range bias")
     fixed = replace(adc, samples=samples)
     if board.element_spacing_m is not None:
-        fixed = replace(fixed, config=_with_antennas(adc.config, effects.radar))
+        built = effects.radar
+        antennas = {"tx_position_m": built.tx_position_m, "rx_position_m": built.rx_position_m}
+        fixed = replace(fixed, config=replace(adc.config, **antennas))
         done.append("element spacing")
     if board.drift_ppm:
         left.append("drift: it is another one in each recording")
@@ -131,7 +133,3 @@ def _nearer(samples: np.ndarray, config: RadarConfig, bias_m: float) -> np.ndarr
     from scipy.signal import hilbert
 
     return ((hilbert(samples.real, axis=-1) * turn).real + 0j).astype(np.complex64)
-
-
-def _with_antennas(config: RadarConfig, built: RadarConfig) -> RadarConfig:
-    return replace(config, tx_position_m=built.tx_position_m, rx_position_m=built.rx_position_m)
