@@ -22,9 +22,12 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     """Range FFT, Doppler FFT and TDM phase compensation, both FFTs under a Hann window.
 
     Normalised so that a tone of amplitude a peaks at a (for a radar with real samples: a cosine of amplitude a).
-    Keeps the configuration's range bins; Doppler bins rise with radial velocity. The antennas of one transmitter are
-    turned back by the phase that the cell's velocity gathers until that transmitter fires: left out
-    (`compensate_tdm=False`), a moving target shows at a wrong angle.
+    Keeps the configuration's range bins; Doppler bins rise with radial velocity.
+
+    Args:
+        adc: samples.
+        compensate_tdm: the antennas of one transmitter are turned back by the phase that the cell's velocity gathers
+            until that transmitter fires; without it a moving target shows at a wrong angle.
 
     Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
     """
@@ -58,9 +61,14 @@ def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = Tru
 
 
 def cropped(cube: RadarCube, config: RadarConfig) -> RadarCube:
-    """The range bins of a cube that `config`, the same radar with another range window, keeps.
+    """The range bins of a cube that another range window of its radar keeps.
 
-    Raises InputError where the cube does not hold all of them.
+    Args:
+        cube: of the radar.
+        config: the same radar with another range window.
+
+    Raises:
+        InputError: where the cube does not hold all of them.
     """
     own = cube.config
     first = config.first_range_bin - own.first_range_bin

@@ -53,7 +53,12 @@ def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler
 
 
 def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
-    """The range bins with the most movement over the frames, strongest first, each a local maximum along range."""
+    """The range bins with the most movement over the frames, strongest first, each a local maximum along range.
+
+    Args:
+        cube: of at least 8 frames; of fewer there are none.
+        count: at most so many.
+    """
     still = zero_doppler(cube)
     if len(still) < FEWEST_FRAMES:
         return []

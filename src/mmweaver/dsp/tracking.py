@@ -64,7 +64,12 @@ def cluster_points(points: PointCloud) -> Int[np.ndarray, " point"]:
 
 
 def track_people(points: PointCloud, frame_time_s: PerFrame) -> list[PersonTrack]:
-    """Tracks of people, the longest first, from moving points (`point_cloud(..., moving_only=True)`)."""
+    """Tracks of people, the longest first.
+
+    Args:
+        points: moving ones (`point_cloud(..., moving_only=True)`).
+        frame_time_s: of all frames.
+    """
     labels = cluster_points(points)
     tracks: list[_Track] = []
     done: list[_Track] = []

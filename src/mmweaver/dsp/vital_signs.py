@@ -32,7 +32,15 @@ class Rate:
 
 
 def breathing_rate(displacement_m: Float[np.ndarray, " frame"], period_s: float) -> Rate | None:
-    """The breathing rate; None for a recording shorter than two of the slowest breaths that would count."""
+    """The breathing rate.
+
+    Args:
+        displacement_m: (frame,), of a chest.
+        period_s: between frames.
+
+    Returns:
+        The rate; None for a recording shorter than two of the slowest breaths that would count.
+    """
     detrended = scipy_signal.detrend(displacement_m)
     found = _rate(detrended, period_s, BREATHING_HZ)
     if found is None:
@@ -47,7 +55,13 @@ def heart_rate(
 ) -> Rate | None:
     """The heart rate, from the velocity of the skin, away from the harmonics of the breathing.
 
-    None where frames are too far apart (fewer than 5 a second) or too few.
+    Args:
+        displacement_m: (frame,), of a chest.
+        period_s: between frames.
+        breathing: its rate, if known.
+
+    Returns:
+        The rate; None where frames are too far apart (fewer than 5 per second) or too few.
     """
     if 1 / period_s < 2 * HEART_HZ[1]:
         return None

@@ -31,9 +31,14 @@ class CorrectedSamples:
 
 
 def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
-    """Recorded samples (frame, loop, tx, rx, sample) as an ideal board would have recorded them.
+    """Recorded samples as an ideal board would have recorded them.
 
-    Raises InputError for the board of another radar, and for antennas whose coupling cannot be undone.
+    Args:
+        adc: samples (frame, loop, tx, rx, sample).
+        board: that recorded them.
+
+    Raises:
+        InputError: for the board of another radar, and for antennas whose coupling cannot be undone.
     """
     effects = BoardEffects(board, adc.config)
     done, left = [], []

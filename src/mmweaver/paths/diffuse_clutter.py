@@ -30,7 +30,15 @@ AZIMUTH_RAD, ASIDE_M, ELEVATION_RAD = np.radians(75.0), 5.0, np.radians(40.0)
 
 
 def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
-    """The patches of one room and radar, by the room's seed."""
+    """The patches of clutter of one room and radar.
+
+    Args:
+        config: the radar, for its range and antennas.
+        micro_seed: of the room.
+
+    Returns:
+        Static paths of kind CLUTTER, amplitudes in sqrt(mW).
+    """
     rng = stream(micro_seed, "room", "unresolved clutter")
     count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))
     range_m = np.sort(rng.uniform(NEAREST_M, max(config.max_range_m, NEAREST_M), count))

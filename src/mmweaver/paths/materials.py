@@ -76,10 +76,14 @@ def relative_permittivity(material: Material, frequency_hz: float) -> complex:
 
 
 def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
-    """Complex reflection coefficient of a slab at each angle of incidence (its cosine, in [0, 1]).
+    """Complex reflection coefficient of a slab.
 
-    `te`: the electric field is parallel to the face (a vertically polarised radar and a wall); `tm`: it lies in the
-    plane of incidence (the same radar and the floor).
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence, in [0, 1].
+        frequency_hz: of the wave.
+        polarisation: "te", the electric field parallel to the face (a vertically polarised radar and a wall), or "tm",
+            the field in the plane of incidence (the same radar and the floor).
 
     Reference: ITU-R P.2040-3, equations 31a, 31b and 37a, 37c.
     """
@@ -148,10 +152,17 @@ class SlabEchoes:
 def slab_echoes(
     material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te", most: int = 4
 ) -> SlabEchoes:
-    """At most so many echoes; the last stands for all later ones, so that the sum is exact at this frequency.
+    """A slab's reflection as a few echoes.
 
     Each echo is nearly flat over a radar's band, their sum is not: 12.5 mm of plasterboard reflect 0.19 to 0.28 of the
     amplitude within 3.4 GHz. Of slabs that nothing comes back through there is the front alone.
+
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence.
+        frequency_hz: at which the sum is exact.
+        polarisation: see `reflection`.
+        most: number of echoes; the last stands for all later ones.
     """
     face, through, root = (np.conj(part) for part in _slab(material, cos_incidence, frequency_hz, polarisation))
     longer_m = 2 * material.thickness_m * root.real

@@ -15,10 +15,16 @@ CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer'
 
 
 def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
-    """Whether the body of joints (frame, 22, 3) blocks the line from the radar to places (path, 3) or (frame, path, 3).
+    """Whether a body blocks the line from the radar to places.
 
-    Returns (frame, path) bool. The body has the capsules of the ray tracer, about the bones of a person of average
-    height.
+    The body has the capsules of the ray tracer, about the bones of a person of average height.
+
+    Args:
+        ends_m: places (path, 3), or (frame, path, 3).
+        joints_m: (frame, 22, 3).
+
+    Returns:
+        Bool (frame, path).
     """
     body = average_body()
     posed = body.posed(joints_m.double().cpu().numpy())

@@ -28,7 +28,13 @@ FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are le
 
 
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
-    """Static echoes (echo,) with sampled phases."""
+    """Static echoes with sampled phases.
+
+    Args:
+        static: mean echoes (echo,).
+        config: the radar.
+        room_seed: of the phases.
+    """
     rng = stream(room_seed, "weaver", "room")
     amplitude = points_of(static, _response(config)).amplitude
     cycles = rng.random(len(amplitude))
@@ -47,7 +53,17 @@ def strongest_first(paths: StaticPaths) -> StaticPaths:
 
 
 def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Moving echoes (frame, echo) with sampled phases. `aspect` (frame, 3): twice the line of sight the body sees."""
+    """Moving echoes with sampled phases.
+
+    Args:
+        moving: mean echoes (frame, echo).
+        aspect: (frame, 3), twice the line of sight that the body sees.
+        config: the radar.
+        subject: whose spots of skin scintillate.
+
+    Returns:
+        Paths (frame, echo).
+    """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
     scintillation = (carrier(along_m, config) * level).sum(dim=-1)

@@ -191,7 +191,16 @@ class RayTracedRoom(PreparedRoom):
         return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
-        """Bool (...): nothing of the room lies between start and end (..., 3), but for a margin at either end."""
+        """Whether nothing of the room lies between two points.
+
+        Args:
+            start_m: (..., 3).
+            end_m: (..., 3).
+            margin_m: at either end, within which faces do not count.
+
+        Returns:
+            Bool (...).
+        """
         shape = np.broadcast_shapes(start_m.shape, end_m.shape)
         start = np.broadcast_to(start_m, shape).reshape(-1, 3).astype(float)
         end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
@@ -312,7 +321,14 @@ class RayTracedRoom(PreparedRoom):
 
 
 def scattered_paths(place_m: np.ndarray, amplitude: np.ndarray, kind: Interaction, config: RadarConfig) -> StaticPaths:
-    """Static paths to scatterers at places (path, 3) and straight back, of amplitude (path,) in sqrt(mW)."""
+    """Static paths to scatterers and straight back.
+
+    Args:
+        place_m: (path, 3).
+        amplitude: (path,) complex, in sqrt(mW).
+        kind: of all paths.
+        config: the radar, for its antennas.
+    """
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
     back = np.linalg.norm(place_m[:, None] - rx, axis=-1)

@@ -48,7 +48,13 @@ class FitRecipe:
 
 
 def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
-    """Layers that approximate the working frames `target` (frame, range, doppler, antenna) in least squares."""
+    """Layers that approximate working frames in least squares.
+
+    Args:
+        target: working frames (frame, range, doppler, antenna) in centred phase.
+        fit_window: of these frames.
+        recipe: budget and effort.
+    """
     with torch.no_grad():
         return Fit(target, fit_window, recipe).run()
 

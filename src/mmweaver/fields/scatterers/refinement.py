@@ -52,11 +52,22 @@ def refined(
     steps: int,
     largest: int,
 ) -> tuple[Points, Tensor]:
-    """The points (frame, point) after `steps` steps, and the residual of the target.
+    """Levenberg-Marquardt refinement of all scatterers.
 
-    The target is (frame, range, doppler, antenna) in centred phase, its axes are those of the radar or parts of them.
     Frames of more than `largest` scatterers are split into groups of neighbours in range, solved in turn. A step that
     would raise a frame's error is rejected. Padded points have amplitude zero and stay.
+
+    Args:
+        points: (frame, point).
+        target: (frame, range, doppler, antenna) in centred phase.
+        response: of the radar.
+        axes: of the target, those of the radar or parts of them.
+        damping: of each frame, changed in place.
+        steps: number of steps.
+        largest: scatterers that are solved for together.
+
+    Returns:
+        The points after the steps, and the residual of the target.
     """
     residual = target - response.render(points, axes)
     received, rest = (torch.view_as_real(values.contiguous()).flatten(2).numpy() for values in (target, residual))
