@@ -10,10 +10,10 @@ from jaxtyping import Complex
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
+from mmweaver.dsp.windows import MIN_HANN_LOOPS, doppler_window, hann
 
 # Singular values below this share of the largest carry nothing but rounding.
-SMALLEST_SINGULAR_VALUE = 1e-9
+MIN_SINGULAR_VALUE = 1e-9
 FRAMES_A_BLOCK = 5  # stay in the cache
 STATIC_REMOVALS = ("auto", "mean_chirp", "mean_frame", "none")
 
@@ -93,7 +93,7 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     turned = encoded(cube.values.astype(np.complex128), config) * slot_compensation(config).conj()
     loops = _inverse_fft(turned, 2)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
-    loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
+    loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > MIN_SINGULAR_VALUE)[:, None]
     samples = _samples_of_ranges(loops.transpose(0, 2, 3, 1), config)
     return AdcCube(samples=samples, config=config, scale=cube.scale)
 
@@ -140,12 +140,12 @@ def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
     if how == "none":
         return cube
     config = cube.config
-    if how == "mean_frame" or (how == "auto" and config.num_loops < SHORTEST_HANN):
+    if how == "mean_frame" or (how == "auto" and config.num_loops < MIN_HANN_LOOPS):
         mean = cube.values.mean(axis=0, keepdims=True, dtype=np.complex128)
         return replace(cube, values=(cube.values - mean).astype(np.complex64))
     compensation = slot_compensation(config)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
-    seen = np.abs(weight) > SMALLEST_SINGULAR_VALUE
+    seen = np.abs(weight) > MIN_SINGULAR_VALUE
     # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
     share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
     mean_of_doppler = _inverse_fft(share, 0)
@@ -238,4 +238,4 @@ def _range_inverse(num_samples: int, first_bin: int, num_bins: int, complex_samp
     forward = window / window.sum() * np.exp(-2j * np.pi * turns)
     if not complex_samples:
         forward = 2 * np.concatenate([forward.real, forward.imag])
-    return np.linalg.pinv(forward, rcond=SMALLEST_SINGULAR_VALUE).T
+    return np.linalg.pinv(forward, rcond=MIN_SINGULAR_VALUE).T

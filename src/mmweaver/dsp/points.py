@@ -12,7 +12,7 @@ from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.cfar import CfarCells, CfarResult, ca_cfar
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
-from mmweaver.dsp.windows import SHORTEST_HANN
+from mmweaver.dsp.windows import MIN_HANN_LOOPS
 
 LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
 AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; in a cell
@@ -114,7 +114,7 @@ def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
     """Local maxima along range, or along Doppler (cyclic); with fewer than four loops the strongest of each range."""
     padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
     along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
-    if power.shape[2] < SHORTEST_HANN:
+    if power.shape[2] < MIN_HANN_LOOPS:
         return along_range & (power == power.max(axis=2, keepdims=True))
     along_doppler = (power >= np.roll(power, 1, 2)) & (power >= np.roll(power, -1, 2))
     return along_range | along_doppler

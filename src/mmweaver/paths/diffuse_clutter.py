@@ -21,8 +21,8 @@ from mmweaver.paths.static_paths import scattered_paths
 SQUARE_METRES_A_METRE = 1.5e-4
 LEVELS_DB = (0.0, 12.0)  # over that, from room to room: a recorded hall has 12 dB more
 AT_M = 2.0
-FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
-NEAREST_M = 1.0
+MAX_RANGE_M = 8.0  # beyond, patches have the cross section of those there
+MIN_RANGE_M = 1.0
 PATCHES_A_METRE = 300
 SHAPE = 0.5  # of the gamma distribution; smaller is spikier
 # From the sides as much is received as from ahead (1 to 6 m, to 75 degrees, within 5 dB), 5 m aside at most.
@@ -40,9 +40,9 @@ def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
         Static paths of kind CLUTTER, amplitudes in sqrt(mW).
     """
     rng = stream(micro_seed, "room", "unresolved clutter")
-    count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))
-    range_m = np.sort(rng.uniform(NEAREST_M, max(config.max_range_m, NEAREST_M), count))
-    widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, NEAREST_M))
+    count = int(PATCHES_A_METRE * max(config.max_range_m - MIN_RANGE_M, 0.0))
+    range_m = np.sort(rng.uniform(MIN_RANGE_M, max(config.max_range_m, MIN_RANGE_M), count))
+    widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, MIN_RANGE_M))
     azimuth = np.arcsin(widest * rng.uniform(-1, 1, count))
     elevation = rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count)
     towards = np.stack(
@@ -52,7 +52,10 @@ def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     gain = pattern(ahead, config) ** 2
     texture = rng.gamma(SHAPE, 1 / SHAPE, count)
     mean_m2 = (
-        room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
+        room_level(micro_seed)
+        * SQUARE_METRES_A_METRE
+        / PATCHES_A_METRE
+        * (np.minimum(range_m, MAX_RANGE_M) / AT_M) ** 4
     )
     # the level is that of all directions together, as antennas weigh them
     cross_section_m2 = mean_m2 * texture / max(float((gain**2).mean()) if count else 1.0, 1e-9)

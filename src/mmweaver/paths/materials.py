@@ -12,7 +12,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Values
 
-FAINTEST_BACK = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
+MIN_ECHO_SHARE = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +143,7 @@ class SlabEchoes:
         coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
         longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()
         strongest = np.abs(coefficient).argmax()
-        kept = np.abs(coefficient) >= FAINTEST_BACK * np.abs(coefficient[strongest])
+        kept = np.abs(coefficient) >= MIN_ECHO_SHARE * np.abs(coefficient[strongest])
         turn = np.exp(2j * np.pi * frequency_hz * (longer_m - longer_m[strongest]) / SPEED_OF_LIGHT_MPS)
         coefficient[strongest] += (coefficient * turn)[~kept].sum()
         return SlabEchoes(coefficient[kept], longer_m[kept])
@@ -172,7 +172,7 @@ def slab_echoes(
     for order in range(1, most):
         coefficients.append(-face * (1 - face**2) * face ** (2 * order - 2) * again**order)
     coefficients[-1] = coefficients[-1] / (1 - face**2 * through)
-    if most == 1 or np.all(np.abs(coefficients[1]) < FAINTEST_BACK * np.abs(face)):
+    if most == 1 or np.all(np.abs(coefficients[1]) < MIN_ECHO_SHARE * np.abs(face)):
         return SlabEchoes((face * (1 - through) / (1 - face**2 * through))[None], np.zeros_like(longer_m)[None])
     return SlabEchoes(np.array(coefficients), np.arange(most).reshape(-1, *[1] * longer_m.ndim) * longer_m)
 

@@ -24,7 +24,7 @@ from mmweaver.paths.static_paths import scattered_paths
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
-FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
+MIN_SHARE = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
 
 
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
@@ -49,7 +49,7 @@ def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> St
 def strongest_first(paths: StaticPaths) -> StaticPaths:
     """Static paths in the order of their strength; those too faint to matter are left out."""
     size = paths.amplitude.abs()
-    return paths[size.argsort(descending=True)[: int((size > FAINTEST * size.max()).sum())]]
+    return paths[size.argsort(descending=True)[: int((size > MIN_SHARE * size.max()).sum())]]
 
 
 def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:

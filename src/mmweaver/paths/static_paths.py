@@ -25,7 +25,7 @@ AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
 AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
 EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
 EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
-NEAREST_M = 0.15
+MIN_RANGE_M = 0.15
 THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is the whole wall: furniture has other faces behind
 SAME_WALL_M = 0.3  # nearer behind a wall lies the same one: a photo's bumps, the other face of a scan
 
@@ -228,7 +228,7 @@ class RayTracedRoom(PreparedRoom):
     def _struck(self, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
         """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
         distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
-        hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
+        hit = (face >= 0) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         return _Struck.of(self._scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
 
     def _behind_walls(self, struck: "_Struck") -> StaticPaths:
@@ -303,7 +303,7 @@ class RayTracedRoom(PreparedRoom):
         cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * reflectivity[edges.material]
         cross_section *= lobe
         cycles = rng.random(len(cos))
-        keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
+        keep = (cross_section > 1e-7) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
         # into other directions than straight back an edge scatters as if it were seen from the side
         level = cross_section / lobe[keep] * EDGE_LOBE

@@ -19,9 +19,9 @@ from mmweaver.fields.scatterers.point_factors import PointFactors
 
 Array = np.ndarray
 SOLVE = get_lapack_funcs("posv", dtype=np.float32)
-LARGEST_STEP_BINS = 0.5
-LARGEST_STEP_DIRECTION = 0.25
-DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 3e-2, 3e-3, 1e3
+MAX_STEP_BINS = 0.5
+MAX_STEP_DIRECTION = 0.25
+DAMPING_START, DAMPING_MIN, DAMPING_MAX = 3e-2, 3e-3, 1e3
 DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a step that is rejected costs as much as one that is not
 HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
@@ -39,7 +39,7 @@ class Damping:
     def learn(self, frame: int, *, is_better: bool) -> None:
         """Lowers the damping of a frame whose step was accepted, raises that of another."""
         changed = self.value[frame] / DAMPING_DOWN if is_better else self.value[frame] * DAMPING_UP
-        self.value[frame] = min(max(changed, DAMPING_LEAST), DAMPING_MOST)
+        self.value[frame] = min(max(changed, DAMPING_MIN), DAMPING_MAX)
 
 
 def refined(
@@ -99,7 +99,7 @@ def refined_factors(
             for frame in filled:
                 for group, cells in _groups(points, frame, counts[frame], largest)[half::2]:
                     moves[frame, group] = _step(points, frame, group, rest[frame], cells, float(damping.value[frame]))
-            trial = points.moved(moves, LARGEST_STEP_BINS, LARGEST_STEP_DIRECTION)
+            trial = points.moved(moves, MAX_STEP_BINS, MAX_STEP_DIRECTION)
             for frame in filled:
                 left = received[frame] - trial.rendered(frame, counts[frame])
                 trial_cost = np.vdot(left, left)
