@@ -168,9 +168,12 @@ class LevelCoder:
         self.levels = SignedModel(self.scales)
 
     def code(self, stream: BitStream, levels: Integers, factor: Integers) -> None:
-        """Encodes `levels` (part, beam, cell) of the open cells, or fills them in when decoding.
+        """Encodes levels, or fills them in when decoding.
 
-        `factor` (time, range, doppler): step of each cell in units of the finest, 0 where it is closed.
+        Args:
+            stream: encoder or decoder.
+            levels: (part, beam, cell) of the open cells.
+            factor: (time, range, doppler), step of each cell in units of the finest, 0 where it is closed.
         """
         beams, num = levels.shape[1:]
         if not num:

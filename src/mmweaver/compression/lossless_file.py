@@ -70,13 +70,23 @@ def compress_bin(
     max_error: int = 0,
     progress: Progress = lambda _: None,
 ) -> int:
-    """Writes adc_data.bin as a .mmwl file, block by block, and returns the size of that file.
+    """Writes adc_data.bin as a .mmwl file, block by block.
 
     Of a recording of packets (.pcap, .pcapng) the samples are kept, in order and with zeros for lost packets: those of
     the adc_data.bin that decompressing gives.
 
-    `config`: the radar, for the order of the words; a wrong one costs bytes, not correctness. With `max_error` every
-    word may change by so many counts. Raises InputError where the file cannot be read or written.
+    Args:
+        path: of the recording.
+        out: the file.
+        config: the radar, for the order of the words; a wrong one costs bytes, not correctness.
+        max_error: counts by which every word may change.
+        progress: called with what is done.
+
+    Returns:
+        Size of the file in bytes.
+
+    Raises:
+        InputError: where a file cannot be read or written.
     """
     if not 0 <= max_error <= MAX_ERROR:
         raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MAX_ERROR}")
@@ -125,9 +135,18 @@ class LosslessFile(CheckedFile):
         return sum(self.block_frames)
 
     def decompress(self, out: Path | str, frames: slice = slice(None), progress: Progress = lambda _: None) -> int:
-        """Writes the recording, or a stretch of its frames, as a .bin, and returns its size.
+        """Writes the recording, or a stretch of its frames, as a .bin.
 
-        Raises InputError where it was cut before its first whole block.
+        Args:
+            out: the file.
+            frames: which, by default all and the bytes of an unfinished one.
+            progress: called with what is done.
+
+        Returns:
+            Size of the file in bytes.
+
+        Raises:
+            InputError: where the file was cut before its first whole block, or is damaged.
         """
         if self.cut_short and not self.num_frames:
             raise self.damaged("it was cut short before its first whole block")

@@ -91,7 +91,14 @@ def pack_header(header: MmwHeader) -> bytes:
 
 
 def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_s: float | None) -> bytes:
-    """A record. `last_s`: time of the last frame before it, None for the first record."""
+    """A record of a file.
+
+    Args:
+        chunk: its payload.
+        frame_time_s: of its frames.
+        header: of the file.
+        last_s: time of the last frame before it, None for the first record.
+    """
     num = len(frame_time_s)
     first_s = header.start_s if last_s is None else last_s + header.period_s
     if _is_regular(frame_time_s, first_s, header.period_s):

@@ -108,7 +108,18 @@ def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int,
 
 
 def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:
-    """Scatterers (frame, point) from their quantised form, padded with amplitude zero."""
+    """Scatterers from their quantised form.
+
+    Args:
+        coded: one row each.
+        num_frames: of the result.
+        steps: of quantisation.
+        axes: of the working frames.
+        num_directions: that the array resolves.
+
+    Returns:
+        Points (frame, point), padded with amplitude zero.
+    """
     counts = np.bincount(coded.frame, minlength=num_frames)
     slot = np.arange(len(coded)) - np.repeat(np.cumsum(counts) - counts, counts)
     shape = (num_frames, int(counts.max(initial=0)))

@@ -71,9 +71,15 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
 
 
 def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
-    """Power of windows of `width` loops, `hop` loops apart within each frame, mean of the antennas.
+    """Short-time spectra within each frame, mean of the antennas. The cube's own Doppler window is undone first.
 
-    The cube's own Doppler window is undone first; a windowed tone of amplitude a shows a^2.
+    Args:
+        cube: of any radar.
+        width: loops of a window.
+        hop: loops from one window to the next.
+
+    Returns:
+        Power (frame, window, range, doppler); a windowed tone of amplitude a shows a^2.
     """
     loops = cube.values.shape[2]
     if width == loops:

@@ -86,7 +86,16 @@ def range_step_m(config: RadarConfig) -> float:
 
 
 def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = slice(None)) -> Spectrum:
-    """Range-Doppler spectrum in integer counts of the device; Doppler bin num_loops // 2 is zero velocity."""
+    """Range-Doppler spectrum in integer counts of the device.
+
+    Args:
+        adc: samples.
+        settings: of the firmware.
+        frames: which, by default all.
+
+    Returns:
+        (frame, range, doppler, antenna); Doppler bin num_loops // 2 is zero velocity.
+    """
     config = adc.config
     counts = adc.samples[frames]
     if np.isfinite(adc.scale):

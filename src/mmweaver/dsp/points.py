@@ -37,14 +37,21 @@ def point_cloud(
     max_points_per_frame: int = 128,
     moving_only: bool = False,
 ) -> PointCloud:
-    """Detections of each frame in the radar's frame of reference, the strongest (by SNR) up to a limit.
+    """Detections in the radar's frame of reference, range, velocity and azimuth interpolated between bins.
 
     1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
-       `moving_only` first removes the Doppler bins of static clutter.
     2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the cell's highest is a point of its own,
        three at most.
     3. Elevation from the phase between two rows, 0 where the array has none.
-    Range, velocity and azimuth are interpolated between bins. Raises InputError for a limit below 1.
+
+    Args:
+        cube: of any radar.
+        false_alarm_rate: of a cell of noise.
+        max_points_per_frame: the strongest (by SNR) are kept.
+        moving_only: without the Doppler bins of static clutter.
+
+    Raises:
+        InputError: for a limit below 1.
     """
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")

@@ -92,7 +92,13 @@ def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *
 
 
 def transmission(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
-    """Complex transmission coefficient of a slab, relative to free space in its place; the rest as in `reflection`.
+    """Complex transmission coefficient of a slab, relative to free space in its place.
+
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence, in [0, 1].
+        frequency_hz: of the wave.
+        polarisation: see `reflection`.
 
     Reference: ITU-R P.2040-3, equation 37b, 37d.
     """

@@ -108,9 +108,12 @@ class Greedy:
         power.flat[cells], beam.flat[cells] = each[np.arange(len(best)), best], best
 
     def next_points(self, residual: Array, *, count: int, least: float) -> NewPoints:
-        """The `count` best new scatterers over all frames.
+        """The best new scatterers over all frames, local maxima over range and Doppler.
 
-        Candidates are local maxima over range and Doppler that explain more energy than `least`.
+        Args:
+            residual: (frame, range, doppler, antenna).
+            count: how many at most.
+            least: energy that each must explain.
         """
         least = max(least, 0.0)
         power, beam = self.matched_power(residual, count=count, least=least)
