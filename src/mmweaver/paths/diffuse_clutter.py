@@ -12,6 +12,7 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
+from mmweaver.geometry.rotations import directions
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import scattered_paths
@@ -45,23 +46,17 @@ def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
     widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, MIN_RANGE_M))
     azimuth = np.arcsin(widest * rng.uniform(-1, 1, count))
     elevation = rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count)
-    towards = np.stack(
-        [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], axis=1
-    )
-    ahead = np.stack([np.zeros(count), np.cos(elevation), np.sin(elevation)], axis=1)
-    gain = pattern(ahead, config) ** 2
+    gain = pattern(directions(np.zeros(count), elevation), config) ** 2
     texture = rng.gamma(SHAPE, 1 / SHAPE, count)
-    mean_m2 = (
-        room_level(micro_seed)
-        * SQUARE_METRES_A_METRE
-        / PATCHES_A_METRE
-        * (np.minimum(range_m, MAX_RANGE_M) / AT_M) ** 4
-    )
+    each_m2 = room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE
+    mean_m2 = each_m2 * (np.minimum(range_m, MAX_RANGE_M) / AT_M) ** 4
     # the level is that of all directions together, as antennas weigh them
     cross_section_m2 = mean_m2 * texture / max(float((gain**2).mean()) if count else 1.0, 1e-9)
     amplitude = scatterer_gain(config) * gain * np.sqrt(cross_section_m2) / range_m**2
     phase = np.exp(2j * np.pi * rng.random(count))
-    return scattered_paths(towards * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config)
+    return scattered_paths(
+        directions(azimuth, elevation) * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config
+    )
 
 
 def seed_of_room(scene: Scene) -> int:

@@ -12,7 +12,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Values
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.geometry.rotations import unit
+from mmweaver.geometry.rotations import directions, unit
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
@@ -215,10 +215,7 @@ class RayTracedRoom(PreparedRoom):
         elevation = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * step_el - ELEVATION_LIMIT_RAD
         cycles = rng.random(azimuth.size)
         solid_angle = (np.cos(elevation) * step_az * step_el).ravel()
-        direction = np.stack(
-            [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
-        ).reshape(-1, 3)  # fmt: skip
-        struck, hit = self._struck(direction, solid_angle)
+        struck, hit = self._struck(directions(azimuth, elevation).reshape(-1, 3), solid_angle)
         cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
         phase = np.exp(2j * np.pi * cycles[hit])
         self._patches = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
