@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from mmweaver import Weaver
-from mmweaver.compression.mmw_codec import compress_cube, errors_db, read_cube
+from mmweaver.compression.mmw_codec import compress_cube, errors_db, read_cube, values_of_bytes
 
 weaver = Weaver()
 cube = weaver.generate(weaver.sample_room(), "a person walks to the right", frames=5, seed=2).cube
@@ -20,7 +20,7 @@ errors = []
 for num_bytes in sizes:
     data = compress_cube(cube, num_bytes=num_bytes)
     Path(f"walk_{num_bytes}.mmw").write_bytes(data)
-    errors.append(errors_db(data, cube))
+    errors.append(errors_db(values_of_bytes(data), cube))
     print(f"{len(data):5,} bytes, {cube.values.nbytes / len(data):5,.0f} times smaller:", errors[-1])
 again = read_cube("walk_5000.mmw", slice(3, 5))  # only these frames are decoded
 print("frames 3 and 4:", again.values.shape)

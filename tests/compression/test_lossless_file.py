@@ -70,7 +70,7 @@ def test_a_file_cut_short_holds_the_blocks_before(recording: Path, tmp_path: Pat
 def test_damage_is_noticed(recording: Path, tmp_path: Path):
     compress_bin(recording, tmp_path / "a.mmwl", RADAR)
     data = (tmp_path / "a.mmwl").read_bytes()
-    for at in stream(0, "damage").integers(0, len(data), 60):
+    for at in stream(0, "damage").integers(0, len(data), 15):
         (tmp_path / "b.mmwl").write_bytes(data[:at] + bytes([data[at] ^ 0x10]) + data[at + 1 :])
         with pytest.raises(InputError):
             LosslessFile(tmp_path / "b.mmwl").decompress(tmp_path / "b.bin")

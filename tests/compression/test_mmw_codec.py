@@ -1,5 +1,4 @@
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +10,8 @@ from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_d
 from mmweaver.compression.optimiser import EXACT_DB
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
-from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
+from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
 from tests.fields.echoes import SMALL, crowd, error_db
 
 
@@ -31,24 +29,17 @@ def long_file(long_cube: RadarCube) -> bytes:
         return compress_cube(long_cube, num_bytes=8000, keep_noise=True, effort="fast")
 
 
-@lru_cache
-def crowd_in(num_bytes: int, *, keep_noise: bool = False) -> bytes:
-    """A file of the usual cube; encoded once."""
-    return compress_cube(crowd(), num_bytes=num_bytes, keep_noise=keep_noise)
-
-
-@pytest.mark.parametrize(
-    "num_bytes", [4000, pytest.param(1500, marks=pytest.mark.slow), pytest.param(9000, marks=pytest.mark.slow)]
-)
-def test_the_requested_size_is_not_exceeded(num_bytes: int, tmp_path: Path):
-    cube, data = crowd(), crowd_in(num_bytes)
+def test_the_requested_size_is_not_exceeded(tmp_path: Path):
+    cube, num_bytes = crowd(), 4000
+    data = compress_cube(cube, num_bytes=num_bytes)
+    assert data == compress_cube(cube, num_bytes=num_bytes)
     assert 0.97 * num_bytes <= len(data) <= num_bytes
     (tmp_path / "a.mmw").write_bytes(data)
     again = read_cube(tmp_path / "a.mmw")
     assert again.config == cube.config
     assert again.scale == cube.scale
     assert np.allclose(again.grid.frame_time_s, cube.grid.frame_time_s)
-    assert error_db(again.values, cube.values) < {1500: -10, 4000: -25, 9000: -35}[num_bytes]
+    assert error_db(again.values, cube.values) < -25
 
 
 def test_the_requested_quality_is_met(tmp_path: Path):
@@ -58,22 +49,6 @@ def test_the_requested_quality_is_met(tmp_path: Path):
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     active = power > np.median(power) * 10**1.2
     assert -27 < error_db(again.values[active], cube.values[active]) <= -25
-
-
-@pytest.mark.slow  # test_chunk.py has the noise layer of a chunk
-def test_noise_is_kept_on_request(tmp_path: Path):
-    """Bytes go to the signal unless noise is requested too; both report their errors."""
-    cube = crowd()
-    files = [crowd_in(9000, keep_noise=keep) for keep in (False, True)]
-    plain, even = (errors_db(values_of_bytes(data), cube) for data in files)
-    assert plain["signal_error_db"] < even["signal_error_db"] - 1
-    power = np.mean(np.abs(cube.values) ** 2, axis=-1)
-    noise = power <= np.median(power) * 10**1.2
-    left = []
-    for data in files:
-        (tmp_path / "a.mmw").write_bytes(data)
-        left.append(error_db(read_cube(tmp_path / "a.mmw").values[noise], cube.values[noise]))
-    assert left[1] < left[0] - 1
 
 
 def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
@@ -92,10 +67,6 @@ def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path
         read_cube(path)
     with pytest.raises(InputError, match="5 frames"):
         read_cube(path, slice(9, 12))
-
-
-def test_the_same_cube_gives_the_same_bytes():
-    assert compress_cube(crowd(), num_bytes=1500) == crowd_in(1500)
 
 
 def test_a_file_is_described(long_file: bytes, tmp_path: Path):
@@ -170,11 +141,7 @@ SHAPES = {
 }
 
 
-# slow: every second shape
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.slow] if number % 2 else []) for number, name in enumerate(SHAPES)],
-)
+@pytest.mark.parametrize("name", SHAPES)
 def test_cubes_of_any_shape_use_their_bytes(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     data = compress_cube(cube, num_bytes=1500)
@@ -220,7 +187,6 @@ def test_strange_cubes_use_their_bytes_and_are_read(kind: str, num_frames: int, 
     [
         "two loops, 120 frames",
         "one frame",
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("one antenna", "one loop, 300 frames")),
     ],
 )
 def test_cubes_of_any_shape_reach_their_quality(name: str, tmp_path: Path):
@@ -257,26 +223,3 @@ def test_a_file_that_was_cut_short_holds_the_frames_before(long_file: bytes, tmp
     facts = describe_mmw(path)
     assert facts["shape"][0] == 3
     assert facts["cut_short_bytes"] > 0
-
-
-@pytest.mark.slow  # test_cubes_of_any_shape_use_their_bytes has chunks of several modes
-def test_the_mode_follows_the_recording():
-    """Four loops under a Hann window are three; a steady scene over many frames is one frame after a DCT."""
-    radar = replace(SMALL, num_loops=4, num_range_bins=4)
-    draw = stream(0, "samples").normal(size=(2, 24, 4, 3, 4, radar.num_samples)).astype(np.float32)
-    samples = draw[0] + 1j * draw[1]
-    cube = radar_cube(AdcCube(samples=samples.astype(np.complex64), config=radar, scale=float("nan")))
-    assert "KLT of Doppler" in describe_bytes(compress_cube(cube, num_bytes=2400))
-    assert "DCT of all bins" in describe_bytes(
-        compress_cube(plain_cube(*SHAPES["one loop, 300 frames"]), num_bytes=2000)
-    )
-    assert "scatterers" in describe_bytes(crowd_in(1500))
-    assert "scatterers" not in describe_bytes(compress_cube(crowd(num_frames=1), num_bytes=900, effort="fast"))
-
-
-def describe_bytes(data: bytes) -> str:
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "a.mmw").write_bytes(data)
-        return describe_mmw(Path(folder) / "a.mmw")["chunks"][0]["mode"]

@@ -6,7 +6,6 @@ import pytest
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.geometry.pinhole import (
     binned,
-    pixel_coordinates,
     project,
     resized,
     rotated_clockwise,
@@ -39,15 +38,6 @@ def test_points_behind_have_no_pixel_and_holes_stay_holes():
     assert depth.tolist() == [-1, 0]
     holes = np.full((48, 64), np.nan)
     assert np.isnan(unproject(holes, CAMERA)).all()
-
-
-def test_every_array_library_projects_alike():
-    torch = pytest.importorskip("torch")
-    points = np.random.default_rng(1).uniform(0.5, 3.0, (5, 3))
-    pixels, _ = project(points, CAMERA)
-    x, y, z = torch.from_numpy(points).unbind(-1)
-    column, row = pixel_coordinates(x, y, z, CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy)
-    np.testing.assert_array_equal(torch.stack([column, row], dim=-1).numpy(), pixels)
 
 
 def test_subsampling_keeps_the_rays_of_the_pixels_that_stay():

@@ -5,7 +5,6 @@ import pytest
 
 from mmweaver.geometry.body_capsules import CAPSULES
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.skin_scattering import SkinEcho
 from tests.rooms import standing_person
 
 PERSON = standing_person((0.0, 2.0, -1.2))
@@ -36,11 +35,6 @@ def test_the_person_keeps_the_skin_and_others_have_another():
     assert not np.array_equal(ScatteringBody(1, 1.7).micro_phase, ScatteringBody(2, 1.7).micro_phase)
 
 
-def test_skin_area_is_a_persons():
-    body = ScatteringBody(0, 1.75)
-    assert 1.5 < body.area_m2 * 800 < 2.2
-
-
 def test_turning_an_arm_spins_no_skin():
     """Raising the arm by 2 mm moves no point of it by more than its lever allows."""
     joints = np.repeat(JOINTS, 2, axis=0)
@@ -49,16 +43,6 @@ def test_turning_an_arm_spins_no_skin():
     places = body.skin(joints).place_m
     assert np.linalg.norm(places[1] - places[0], axis=-1).max() < 0.005
     assert np.linalg.norm(places[1] - places[0], axis=-1).max() == pytest.approx(0.003, abs=0.0015)
-
-
-def test_arms_and_legs_have_a_brightness_of_their_own():
-    plain = ScatteringBody(0, 1.75, echo=SkinEcho(arms_db=0.0, legs_db=0.0))
-    dim = ScatteringBody(0, 1.75, echo=SkinEcho(arms_db=3.0, legs_db=-10.0))
-    assert np.all(plain.brightness == 1)
-    names = np.array([capsule.end.rsplit("_", 1)[-1] for capsule in CAPSULES])[dim.part]
-    assert np.allclose(dim.brightness[np.isin(names, ["elbow", "wrist"])], 10**0.3)
-    assert np.allclose(dim.brightness[np.isin(names, ["knee", "ankle", "foot"])], 0.1)
-    assert np.all(dim.brightness[np.isin(names, ["head", "neck", "spine1", "hip", "shoulder"])] == 1)
 
 
 def test_skin_of_a_tapering_limb_faces_its_thin_end():

@@ -20,7 +20,7 @@ from mmweaver.paths.mean_power import MeanPower
 def test_they_are_the_mean_over_drawn_phases():
     radar = MeanPower(AWR1843)
     rng = np.random.default_rng(3)
-    count, draws = 12, 3000
+    count, draws = 12, 1000
     places = [rng.uniform(20, 75, count), rng.uniform(-12, 12, count)]
     direction = np.column_stack([rng.uniform(-0.7, 0.7, count), rng.uniform(-0.3, 0.3, count)])
     strength = rng.uniform(0.3, 1.0, count)

@@ -47,11 +47,6 @@ def test_nobody_is_the_empty_room(room: Simulator):
     assert np.allclose(adc, room.room_adc, atol=1e-9)
 
 
-def test_one_person_in_a_tuple_is_one_person(room: Simulator):
-    one = room.run(person(0.2, 2.0), num_frames=1, seed=0).adc.samples
-    assert one.tobytes() == room.run((person(0.2, 2.0),), num_frames=1, seed=0).adc.samples.tobytes()
-
-
 def test_two_far_apart_are_the_sum_of_both(nowhere: Simulator, room: Simulator):
     left, right = person(-0.9, 2.2), person(0.7, 1.9, subject=1)
     both, each = echo(nowhere, left, right), echo(nowhere, left) + echo(nowhere, right)

@@ -21,12 +21,6 @@ def _standing(x: float, y: float, radar_height_m: float) -> torch.Tensor:
     return torch.from_numpy(joints).float()
 
 
-def test_behind_the_chest_is_occluded_and_the_rest_is_not():
-    behind, before, beside, above = (0.0, 4.0, 0.1), (0.0, 1.0, 0.0), (0.9, 4.0, 0.1), (0.0, 4.0, 1.6)
-    places = torch.tensor([behind, before, beside, above])
-    assert occluded(places, _standing(0.0, 2.0, 1.2)[None]).tolist() == [[True, False, False, False]]
-
-
 def _by_capsules(places_m: np.ndarray, joints: torch.Tensor) -> np.ndarray:
     return occluded(torch.from_numpy(places_m).float(), joints)[0].numpy()
 
@@ -49,12 +43,6 @@ def test_what_stands_in_front_of_a_body_is_not_occluded_and_what_stands_behind_i
     before, behind = np.linspace(0.3, away_m - 0.25, 12), np.linspace(away_m + 0.35, 7.0, 12)
     assert not decide(before[:, None] * chest_m / away_m, joints).any()
     assert decide(behind[:, None] * chest_m / away_m, joints).all()
-
-
-def test_occlusion_moves_with_the_person():
-    places = torch.tensor([(0.0, 4.0, 0.1), (1.0, 4.0, 0.1)])
-    joints = torch.stack([_standing(0.0, 2.0, 1.2), _standing(0.5, 2.0, 1.2)])
-    assert occluded(places, joints).tolist() == [[True, False], [False, True]]
 
 
 def test_thighs_occlude_all_along_and_not_about_joints_alone():

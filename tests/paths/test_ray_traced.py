@@ -33,15 +33,6 @@ def test_a_motion_that_does_not_cover_the_frames_is_refused(simulator: Simulator
             refused(pose, num_frames=NUM_FRAMES, seed=0)
 
 
-def test_one_of_several_people_is_enough_to_refuse(simulator: Simulator):
-    with pytest.raises(InputError, match="covers"):
-        simulator.run((_moving(0.0, LAST_S), _moving(0.0, LAST_S / 2)), num_frames=NUM_FRAMES, seed=0)
-
-
-def test_a_motion_that_just_covers_them_is_simulated(simulator: Simulator):
-    assert simulator.run(_moving(0.0, LAST_S), num_frames=NUM_FRAMES, seed=0).adc.samples.shape[0] == NUM_FRAMES
-
-
 @pytest.mark.parametrize("part", [1, 4])
 def test_frames_are_the_same_bits_in_parts(part: int):
     """Of somebody who walks through the paths of wall and cupboard, each of which is occluded in some frames alone."""

@@ -1,9 +1,6 @@
 """Second-order paths of a person: lengths, levels, and the sum of both against Sionna RT."""
 
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -92,18 +89,6 @@ def test_a_wall_beside_the_radar_returns_the_body_at_its_own_velocity():
     assert (over_room.rate_mps / 2 < -0.85).all()
     longer_m = over_room.length_m / 2 - 3.0
     assert 0.5 < longer_m.mean() < 1.5
-
-
-@pytest.mark.slow  # test_the_level_behind_a_body_is_that_of_sionna holds the same against stored figures
-def test_the_stored_figures_are_those_of_an_installed_sionna(tmp_path: Path):
-    """Skipped where Sionna RT is absent; in a process of its own, which an old LLVM aborts."""
-    vertices, faces = body_of(PERSON).hull(PERSON.joints_m[:1].astype(float))
-    np.savez(tmp_path / "body.npz", vertices=vertices[0], faces=faces)
-    script = Path(__file__).with_name("sionna_halo.py")
-    done = subprocess.run([sys.executable, script, tmp_path / "body.npz"], capture_output=True, text=True, timeout=300)
-    if done.returncode:
-        pytest.skip("no working sionna-rt")
-    assert np.abs(np.array(done.stdout.split(), float) - SIONNA_DB).max() < 2.0
 
 
 def test_lengths_follow_the_body_over_the_room():

@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.materials import MATERIALS, transmission
 from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation, RayTracedRoom
+from mmweaver.paths.static_paths import Propagation, RayTracedRoom
 from tests.rooms import back_wall, plane, scene_of
 
 ONCE = Propagation(bounces=1, fine_roughness=False)
@@ -53,12 +53,6 @@ def test_the_same_wall_twice_is_one_wall():
     straight_ahead = 0.05  # oblique rays are longer between two faces
     two = through((back_wall(2.0), back_wall(2.0 + straight_ahead)))
     assert two < 0.01 * through((back_wall(2.0), back_wall(2.5)))
-
-
-def test_published_studies_do_not_have_it():
-    planes = (back_wall(2.0), back_wall(3.2, "metal"))
-    without = diffuse(planes, replace(ONCE, through_walls=False))
-    assert len(diffuse(planes, AS_PUBLISHED)) == len(without) < len(diffuse(planes))
 
 
 @pytest.mark.parametrize(("material", "loss_db"), [("plasterboard", 1.07), ("concrete", 1.07), ("glass", 0.0)])

@@ -7,8 +7,7 @@ import pytest
 import torch
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
-from mmweaver.core.presets import AWR1843, BGT60
-from mmweaver.core.records import AdcCube
+from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.cube import cube_values
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis
@@ -18,7 +17,7 @@ from mmweaver.paths.image_method import specular_paths, specular_reflectors
 from mmweaver.paths.materials import MATERIALS, reflection
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import IDEAL, Impairments
+from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.skin_scattering import LAMBERT
 from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
@@ -256,13 +255,6 @@ def test_cutting_the_frames_changes_no_bit(monkeypatch: pytest.MonkeyPatch):
     whole = simulator.run(person, num_frames=3, seed=0).adc.samples
     monkeypatch.setattr("mmweaver.paths.ray_traced.CHUNK_FRAMES", 2)
     assert whole.tobytes() == simulator.run(person, num_frames=3, seed=0).adc.samples.tobytes()
-
-
-def test_real_sampling_radars_run():
-    simulator = Simulator(scene_of((back_wall(),)), BGT60, Impairments())
-    adc: AdcCube = simulator.run(standing_person((0.0, 0.8, -1.2)), num_frames=2, seed=0).adc
-    assert adc.samples.shape == (2, 8, 1, 3, 64)
-    assert np.all(adc.samples.imag == 0)
 
 
 def test_gains_are_the_radar_equation_in_decibels():

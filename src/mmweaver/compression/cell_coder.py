@@ -46,7 +46,7 @@ NUM_SIZES, NUM_TRENDS, NUM_WIDE = len(SIZE_BOUNDS) + 1, len(TREND_BOUNDS) + 2, l
 NUM_REAL = 4
 UNKNOWN = NUM_SIZES  # class of a size that is not known
 OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
-LARGER, LEAST_SCALE = 2.0, 0.3
+LARGER, MIN_SCALE = 2.0, 0.3
 DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
 LARGE, MIDDLE = 20_000, 500  # open cells
 FEW_BEAMS = 3  # up to which all lattices pay
@@ -157,7 +157,7 @@ class LevelCoder:
 
     def __init__(self, shape: tuple[int, int, int, int], correlated: tuple[bool, bool] = (True, True)):
         self.shape, self.correlated = shape, correlated
-        middle = np.append(SIZE_BOUNDS, 2 * SIZE_BOUNDS[-1]) / 8 * LARGER + LEAST_SCALE
+        middle = np.append(SIZE_BOUNDS, 2 * SIZE_BOUNDS[-1]) / 8 * LARGER + MIN_SCALE
         known_or_not = np.append(middle, 1.0)
         self.scales = [
             np.repeat(middle, NUM_TRENDS),
@@ -168,9 +168,12 @@ class LevelCoder:
         self.levels = SignedModel(self.scales)
 
     def code(self, stream: BitStream, levels: Integers, factor: Integers) -> None:
-        """Encodes `levels` (part, beam, cell) of the open cells, or fills them in when decoding.
+        """Encodes levels, or fills them in when decoding.
 
-        `factor` (time, range, doppler): step of each cell in units of the finest, 0 where it is closed.
+        Args:
+            stream: encoder or decoder.
+            levels: (part, beam, cell) of the open cells.
+            factor: (time, range, doppler), step of each cell in units of the finest, 0 where it is closed.
         """
         beams, num = levels.shape[1:]
         if not num:

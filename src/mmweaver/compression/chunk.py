@@ -266,7 +266,21 @@ def decode_layers(
     code_static: Callable[[BitStream, np.ndarray], None] = code_static,
     point_coder: Callable[[ChunkFrames, PointSteps, PointResponse], PointCoder] = point_coder_of,
 ) -> tuple[Layers | None, np.ndarray]:
-    """Decodes static layer and scatterers, None where there are none, and the nearness of scatterers to each cell."""
+    """Decodes static layer and scatterers.
+
+    Args:
+        stream: decoder.
+        frames: of the chunk.
+        step: of all values.
+        flags: which layers there are.
+        gains: of the antennas, None for 1.
+        noise_power: of a cell.
+        code_static: decodes the levels of a static layer.
+        point_coder: makes the coder of scatterers.
+
+    Returns:
+        The layers, None where there are none, and the nearness of scatterers to each cell.
+    """
     near = np.zeros(frames.working_shape[:3], np.int64)
     if not flags & (HAS_STATIC | HAS_POINTS):
         return None, near

@@ -175,7 +175,14 @@ class ChunkEncoder:
         return front + pack_exact(self.values)
 
     def estimate(self, sample: CellSample, mode: ChunkMode, step: float, coarser: int) -> Estimate:
-        """What the chunk in a mode would cost at a step, by a sample of its cells (`sample`)."""
+        """What the chunk would cost, by a sample of its cells.
+
+        Args:
+            sample: of the mode, from `sample`.
+            mode: how the chunk is coded.
+            step: relative to the peak.
+            coarser: the step of cells without signal over that of the others.
+        """
         if not mode.with_noise:
             return sample.estimate(step, coarser)
         noise = self._noise_sample(with_points=mode.with_points)

@@ -16,7 +16,7 @@ Probability = np.ndarray  # (n,) float64
 VERSION = 5  # of the .mmw format that is written
 MIN_PROBABILITY = 2.0**-14
 MAX_OCTAVES = 30
-LARGEST_UNIFORM = 2**23
+MAX_UNIFORM = 2**23
 
 
 class BitStream(ABC):
@@ -57,7 +57,7 @@ class BitStream(ABC):
         Beyond 2^23, the limit of the coder's precision, sizes count as multiples of 2^16: the values of what is left
         over cannot be coded.
         """
-        huge = sizes > LARGEST_UNIFORM
+        huge = sizes > MAX_UNIFORM
         if not huge.any():
             return self._small(sizes, values)
         out = self._small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))

@@ -136,21 +136,20 @@ class LegacyMapCoder:
         earlier = np.zeros((2, num_range + 2, num_doppler + 2), np.int64)
         block = max(2, CELLS_AT_ONCE * 4 // num_doppler // 2 * 2)
         for frame in range(frames):
-            opened, fine = _smoothed_plane(earlier[0]), _smoothed_plane(earlier[1])
+            smooth = _smoothed_plane(earlier[0]), _smoothed_plane(earlier[1])
             for row in range(0, num_range, block):
                 for phase in range(4):
                     r = np.arange(row + phase // 2, min(row + block, num_range), 2)
                     d = np.arange(phase % 2, num_doppler, 2)
                     if len(r) and len(d):
-                        self._code_cells(stream, classes[frame], padded[frame], opened, fine, near[frame], r, d, phase)
+                        self._code_cells(stream, classes[frame], padded[frame], smooth, near[frame], (r, d), phase)
             earlier = np.stack([padded[frame] > 0, padded[frame] == FINE]).astype(np.int64)
 
-    def _code_cells(self, stream, classes, padded, opened, fine, near, r, d, phase) -> None:
+    def _code_cells(self, stream, classes, padded, smooth, near, cells, phase) -> None:
+        (r, d), n = cells, NUM_OPEN
         at = np.ix_(r + 1, d + 1)
-        n = NUM_OPEN
-        around = _class_of(_neighbour_sum((padded > 0).astype(np.int64), r + 1, d + 1))
-        before = _class_of(opened[at])
-        both = _class_of((_neighbour_sum((padded > 0).astype(np.int64), r + 1, d + 1) + opened[at]) // 2)
+        known, earlier = _neighbour_sum((padded > 0).astype(np.int64), r + 1, d + 1), smooth[0][at]
+        around, before, both = _class_of(known), _class_of(earlier), _class_of((known + earlier) // 2)
         by_near = np.minimum(near[np.ix_(r, d)], NUM_NEAR - 1)
         at_bin = by_near * self.shape[2] + d
         contexts = [
@@ -166,7 +165,7 @@ class LegacyMapCoder:
         some = np.flatnonzero(is_open)
         if len(some):
             mine = _class_of(_neighbour_sum((padded == FINE).astype(np.int64), r + 1, d + 1)).ravel()
-            past = _class_of(fine[at]).ravel()
+            past = _class_of(smooth[1][at]).ravel()
             is_fine = self.fine.code(
                 stream, [(mine * n + past)[some], contexts[2][some]], (wanted[some] == FINE).astype(np.int64)
             )

@@ -73,11 +73,24 @@ def compress_recording(
     progress: Progress = lambda _: None,
     **how: Any,
 ) -> dict[str, float]:
-    """Writes a recording to `out`, or appends it: at most `num_bytes`, or to a quality. Returns its errors in dB.
+    """Writes a recording piece by piece.
 
-    A first pass shares the bytes among the pieces as one step for all of them would. Appended frames follow those of
-    the file; where appending fails, the file is as it was. `how`: further arguments of `MmwWriter.append`. Raises
-    InputError where a piece cannot be stored.
+    A first pass shares the bytes among the pieces as one step for all of them would.
+
+    Args:
+        recording: what is stored.
+        out: the file.
+        num_bytes: at most; either this or `quality_db`.
+        quality_db: signal-to-error ratio in active cells.
+        append: frames follow those of the file; where appending fails, the file is as it was.
+        progress: called with the name of each step.
+        how: further arguments of `MmwWriter.append`.
+
+    Returns:
+        Errors in dB in active and in all cells.
+
+    Raises:
+        InputError: where a piece cannot be stored.
     """
     check_request(num_bytes, quality_db)
     parts = split(recording.num_frames, max(1, PIECE_VALUES // recording.num_values_a_frame))

@@ -1,6 +1,6 @@
 """A DCA1000 recording without loss, or with a bounded error, in blocks of frames: the .mmwl file.
 
-    "MMWL" | version u8 | length of header u16 | header | CRC-32 of all before | block, block, ... ; all little-endian
+    "MMWL" and the rest of a `checked_file`
     header: JSON (UTF-8), deflated: radar, frames in a block, largest error in counts
     block:  length of payload u32 | frames u16 | check u16 | payload | CRC-32 of all of it
 
@@ -20,6 +20,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from mmweaver.compression.checked_file import CHECK, HEAD_CHECK, PREFIX, CheckedFile, checked, head_check
 from mmweaver.compression.sample_block import BlockShape, decode_block, encode_block
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
@@ -30,10 +31,7 @@ from mmweaver.formats.dca1000 import bytes_of_frame
 from mmweaver.formats.dca_packets import SampleBytes
 
 MAGIC, VERSION = b"MMWL", 1
-PREFIX = struct.Struct("<4sBH")
-CHECK = struct.Struct("<I")
 BLOCK = struct.Struct("<IH")
-HEAD_CHECK = struct.Struct("<H")
 BLOCK_BYTES = 2**21  # of raw samples, about
 MAX_FRAMES = 4096
 MAX_ERROR = 1000
@@ -72,13 +70,23 @@ def compress_bin(
     max_error: int = 0,
     progress: Progress = lambda _: None,
 ) -> int:
-    """Writes adc_data.bin as a .mmwl file, block by block, and returns the size of that file.
+    """Writes adc_data.bin as a .mmwl file, block by block.
 
     Of a recording of packets (.pcap, .pcapng) the samples are kept, in order and with zeros for lost packets: those of
     the adc_data.bin that decompressing gives.
 
-    `config`: the radar, for the order of the words; a wrong one costs bytes, not correctness. With `max_error` every
-    word may change by so many counts. Raises InputError where the file cannot be read or written.
+    Args:
+        path: of the recording.
+        out: the file.
+        config: the radar, for the order of the words; a wrong one costs bytes, not correctness.
+        max_error: counts by which every word may change.
+        progress: called with what is done.
+
+    Returns:
+        Size of the file in bytes.
+
+    Raises:
+        InputError: where a file cannot be read or written.
     """
     if not 0 <= max_error <= MAX_ERROR:
         raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MAX_ERROR}")
@@ -115,19 +123,11 @@ def _samples_of(path: Path) -> Iterator[tuple[BinaryIO | SampleBytes, int]]:
             yield source, size
 
 
-class LosslessFile:
-    """A .mmwl file: header and places of the blocks are read and checked at once, blocks on demand.
+class LosslessFile(CheckedFile):
+    """A .mmwl file: header and places of the blocks are read and checked at once, blocks on demand."""
 
-    `cut_short` is the number of bytes after the last whole block; 0 where the file is whole.
-    """
-
-    def __init__(self, path: Path | str):
-        """Raises InputError where the file is unreadable, not a .mmwl file, or its header is damaged."""
-        self.path = Path(path)
-        self.num_bytes = check_regular(path)
-        with open_regular(path) as stream:
-            self.header = self._read_header(stream)
-            self._scan(stream)
+    MAGIC, SUFFIX, READABLE = MAGIC, ".mmwl", (VERSION,)
+    MADE_BY = "mmweaver compress ADC_DATA.bin --radar RADAR --lossless -o OUT.mmwl"
 
     @property
     def num_frames(self) -> int:
@@ -135,12 +135,21 @@ class LosslessFile:
         return sum(self.block_frames)
 
     def decompress(self, out: Path | str, frames: slice = slice(None), progress: Progress = lambda _: None) -> int:
-        """Writes the recording, or a stretch of its frames, as a .bin, and returns its size.
+        """Writes the recording, or a stretch of its frames, as a .bin.
 
-        Raises InputError where it was cut before its first whole block.
+        Args:
+            out: the file.
+            frames: which, by default all and the bytes of an unfinished one.
+            progress: called with what is done.
+
+        Returns:
+            Size of the file in bytes.
+
+        Raises:
+            InputError: where the file was cut before its first whole block, or is damaged.
         """
         if self.cut_short and not self.num_frames:
-            raise self._damaged("it was cut short before its first whole block")
+            raise self.damaged("it was cut short before its first whole block")
         chosen = range(self.num_frames)[frames]
         is_whole = len(chosen) == self.num_frames
         if chosen.step != 1 or not (len(chosen) or is_whole):
@@ -163,7 +172,7 @@ class LosslessFile:
         for index in range(len(self.block_frames)):
             self._payload(index)
         if self.cut_short:
-            raise self._damaged(f"{self.cut_short} bytes at its end are no whole block")
+            raise self.damaged(f"{self.cut_short} bytes at its end are no whole block")
 
     def block(self, index: int) -> bytes:
         """The bytes of a block of frames, as the recording had them. Raises InputError where it is damaged."""
@@ -171,7 +180,7 @@ class LosslessFile:
         try:
             samples = decode_block(self._payload(index), self.header.shape(count))
         except (ValueError, IndexError, struct.error, AssertionError, OverflowError) as error:
-            raise self._damaged(f"block {index} is malformed ({error})") from None
+            raise self.damaged(f"block {index} is malformed ({error})") from None
         config = self.header.config
         lines = samples.reshape(count * config.num_loops, config.num_antennas, config.num_samples // 2, 2, 2)
         return lines.swapaxes(3, 4).astype("<i2").tobytes()
@@ -181,49 +190,27 @@ class LosslessFile:
         try:
             data = unpacker.decompress(self._payload(index), self.header.frame_bytes)
         except zlib.error as error:
-            raise self._damaged(f"its last bytes are malformed ({error})") from None
+            raise self.damaged(f"its last bytes are malformed ({error})") from None
         return data
 
     def _payload(self, index: int) -> bytes:
         start, length = self._places[index]
-        with open_regular(self.path) as stream:
-            stream.seek(start)
-            data = stream.read(BLOCK.size + HEAD_CHECK.size + length + CHECK.size)
-        if CHECK.unpack(data[-CHECK.size :])[0] != zlib.crc32(data[: -CHECK.size]):
-            raise self._damaged(f"block {index} fails its checksum")
-        return data[BLOCK.size + HEAD_CHECK.size : -CHECK.size]
+        head = BLOCK.size + HEAD_CHECK.size
+        return self.read_checked(start, head + length, f"block {index}")[head:]
 
-    def _read_header(self, stream: BinaryIO) -> LosslessHeader:
-        front = stream.read(PREFIX.size)
-        if len(front) < PREFIX.size or front[:4] != MAGIC:
-            raise InputError(
-                f"{self.path} is no .mmwl file; make one with: mmweaver compress ADC_DATA.bin --radar RADAR --lossless"
-                " -o OUT.mmwl"
-            )
-        _, version, size = PREFIX.unpack(front)
-        if version != VERSION:
-            raise InputError(f"{self.path} is a .mmwl file of version {version}; this program reads {VERSION}")
-        body = stream.read(size)
-        check = stream.read(CHECK.size)
-        if len(check) < CHECK.size or CHECK.unpack(check)[0] != zlib.crc32(front + body):
-            raise self._damaged("its header fails its checksum")
-        try:
-            text = zlib.decompressobj().decompress(body, MAX_TEXT)
-            values: dict[str, Any] = parse_json(text, f"the header of {self.path}")
-            header = LosslessHeader(
-                config=RadarConfig.from_values(values["radar"]), frames_a_block=int(values["frames_a_block"]),
-                max_error=int(values["max_error"]),
-            )  # fmt: skip
-        except InputError as error:
-            raise self._damaged(str(error)) from None
-        except (zlib.error, ValueError, KeyError, TypeError, OverflowError) as error:
-            raise self._damaged(f"its header is malformed ({error})") from None
-        if not 0 < header.frames_a_block <= MAX_FRAMES:
-            raise self._damaged("its header is malformed (frames in a block)")
-        return header
+    def _read_header(self, body: bytes) -> None:
+        values: dict[str, Any] = parse_json(
+            zlib.decompressobj().decompress(body, MAX_TEXT), f"the header of {self.path}"
+        )
+        self.header = LosslessHeader(
+            config=RadarConfig.from_values(values["radar"]),
+            frames_a_block=int(values["frames_a_block"]),
+            max_error=int(values["max_error"]),
+        )
+        if not 0 < self.header.frames_a_block <= MAX_FRAMES:
+            raise ValueError("frames in a block")
 
-    def _scan(self, stream: BinaryIO) -> None:
-        """Finds the blocks; nothing is read but their heads."""
+    def _find_records(self, stream: BinaryIO) -> None:
         self.block_frames: list[int] = []
         self._places: list[tuple[int, int]] = []
         at = stream.tell()
@@ -231,8 +218,8 @@ class LosslessFile:
             stream.seek(at)
             head, check = stream.read(BLOCK.size), stream.read(HEAD_CHECK.size)
             length, count = BLOCK.unpack(head)
-            if HEAD_CHECK.unpack(check)[0] != zlib.crc32(head) & 0xFFFF or count > self.header.frames_a_block:
-                raise self._damaged(f"block {len(self._places)} fails its checksum")
+            if check != head_check(head) or count > self.header.frames_a_block:
+                raise self.damaged(f"block {len(self._places)} fails its checksum")
             end = at + BLOCK.size + HEAD_CHECK.size + length + CHECK.size
             if end > self.num_bytes:
                 break
@@ -240,9 +227,6 @@ class LosslessFile:
             self._places.append((at, length))
             at = end
         self.cut_short = self.num_bytes - at
-
-    def _damaged(self, why: str) -> InputError:
-        return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
 
 
 def is_lossless_file(path: Path | str) -> bool:
@@ -276,11 +260,9 @@ def _packed_header(header: LosslessHeader) -> bytes:
         "radar": header.config.to_values(), "frames_a_block": header.frames_a_block, "max_error": header.max_error
     }  # fmt: skip
     body = zlib.compress(json.dumps(values, separators=(",", ":"), allow_nan=False).encode(), 9)
-    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
-    return front + CHECK.pack(zlib.crc32(front))
+    return checked(PREFIX.pack(MAGIC, VERSION, len(body)) + body)
 
 
 def _packed_block(payload: bytes, num_frames: int) -> bytes:
     head = BLOCK.pack(len(payload), num_frames)
-    body = head + HEAD_CHECK.pack(zlib.crc32(head) & 0xFFFF) + payload
-    return body + CHECK.pack(zlib.crc32(body))
+    return checked(head + head_check(head) + payload)

@@ -90,7 +90,20 @@ def encoded(
     effort: str = "full",
     progress: Progress = lambda _: None,
 ) -> tuple[list[range], list[bytes]]:
-    """Frames and bytes of the chunks of a cube; see `compress_cube`. `framing`: bytes of a file besides its chunks."""
+    """The chunks of a cube; see `compress_cube`.
+
+    Args:
+        cube: what is stored.
+        framing: bytes of a file besides its chunks, of the frames of each.
+        num_bytes: of the file at most.
+        quality_db: signal-to-error ratio in active cells; either this or `num_bytes`.
+        keep_noise: the same error in all cells.
+        effort: "full" or "fast".
+        progress: called with the name of each step.
+
+    Returns:
+        Frames and bytes of each chunk.
+    """
     if effort not in EFFORTS:
         raise InputError(f"unknown effort {effort!r}; choose {' or '.join(EFFORTS)}")
     optimiser = Optimiser(cube, keep_noise=keep_noise, with_points=effort == "full")
@@ -104,8 +117,13 @@ def encoded(
 def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: bool = True) -> RadarCube:
     """Reads a .mmw file, or some of its frames, as a cube; only the required chunks are decoded.
 
-    Of a file that was cut short, the frames of its whole chunks. Raises InputError where the file is damaged or
-    `frames` selects none of its frames.
+    Args:
+        path: of the file; of one that was cut short, the frames of its whole chunks are read.
+        frames: which, by default all.
+        with_residual: False for scatterers and static layer alone.
+
+    Raises:
+        InputError: where the file is damaged or `frames` selects none of its frames.
     """
     file = MmwFile(path)
     wanted = range(file.num_frames)[frames]

@@ -1,6 +1,6 @@
 """The .mmw container: a header and records of a few frames each, all covered by checksums.
 
-    "MMWV" | version u8 | length of header u16 | header | CRC-32 of all before | record, record, ...; all little-endian
+    "MMWV" and the rest of a `checked_file`
     header: JSON (UTF-8), deflated with a dictionary
     record: length of payload u32 | frames u16 | times u8 | frame times | check u16 | payload | CRC-32 of all of it
 
@@ -20,11 +20,11 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from mmweaver.compression.checked_file import CHECK, HEAD_CHECK, PREFIX, CheckedFile, checked, head_check
 from mmweaver.compression.entropy import VERSION
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 from mmweaver.core.safe_files.safe_text import parse_json
 
 MAGIC = b"MMWV"
@@ -32,16 +32,12 @@ MAX_CHUNK_BYTES = 64 * 2**20  # of a decoded chunk, unless a single frame is lar
 MAX_CHUNKS, MAX_FRAMES = 100_000, 1_000_000
 MAX_RATIO = 20_000  # decoded bytes a byte of a file: 256 bytes of 20 frames of an AWR1843 are 15,000
 MAX_TIME_S = 1e15
-READABLE = tuple(
-    range(1, VERSION + 1)
-)  # 2 may hold residuals with a map of open cells; 3 has records, 4 and 5 other models
+# 2 may hold residuals with a map of open cells; 3 has records, 4 and 5 other models
+READABLE = tuple(range(1, VERSION + 1))
 LISTED = (1, 2)  # versions whose header lists the chunks
-PREFIX = struct.Struct("<4sBH")
-CHECK = struct.Struct("<I")
 RECORD = struct.Struct("<IHB")
 FOLLOWING, FROM_FIRST, ALL_TIMES = 0, 1, 2  # frame times: a period on from the record before, from a first one, all
 TIME = struct.Struct("<d")
-HEAD_CHECK = struct.Struct("<H")  # tells a damaged length from a file that was cut short
 SAME_TIME_S = 1e-9
 MAX_HEADER, MAX_TEXT = 0xFFFF, 1 << 24
 # Deflate dictionary of header text; part of the format, so it must never change.
@@ -91,12 +87,18 @@ def pack_header(header: MmwHeader) -> bytes:
     body = packer.compress(text) + packer.flush()
     if len(body) > MAX_HEADER:
         raise InputError("the radar's description is too long for a .mmw file; shorten its name")
-    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
-    return front + CHECK.pack(zlib.crc32(front))
+    return checked(PREFIX.pack(MAGIC, VERSION, len(body)) + body)
 
 
 def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_s: float | None) -> bytes:
-    """A record. `last_s`: time of the last frame before it, None for the first record."""
+    """A record of a file.
+
+    Args:
+        chunk: its payload.
+        frame_time_s: of its frames.
+        header: of the file.
+        last_s: time of the last frame before it, None for the first record.
+    """
     num = len(frame_time_s)
     first_s = header.start_s if last_s is None else last_s + header.period_s
     if _is_regular(frame_time_s, first_s, header.period_s):
@@ -106,8 +108,7 @@ def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_
     else:
         times, kind = np.asarray(frame_time_s, "<f8").tobytes(), ALL_TIMES
     head = RECORD.pack(len(chunk), num, kind) + times
-    body = head + HEAD_CHECK.pack(_head_check(head)) + chunk
-    return body + CHECK.pack(zlib.crc32(body))
+    return checked(head + head_check(head) + chunk)
 
 
 def pack_mmw(header: MmwHeader, chunks: list[bytes], frame_time_s: list[np.ndarray]) -> bytes:
@@ -127,26 +128,17 @@ def header_for(config: RadarConfig, scale: float, frame_time_s: np.ndarray) -> M
     return MmwHeader(config=config, scale=scale, start_s=start_s, period_s=period_s)
 
 
-class MmwFile:
-    """A .mmw file: header and places of the records are read and checked at once, chunks on demand.
+class MmwFile(CheckedFile):
+    """A .mmw file: header and places of the records are read and checked at once, chunks on demand."""
 
-    `cut_short` is the number of bytes after the last whole record; 0 where the file is whole.
-    """
+    MAGIC, SUFFIX, READABLE = MAGIC, ".mmw", READABLE
+    MADE_BY = "mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw"
 
     def __init__(self, path: Path | str):
         """Raises InputError where the file is unreadable, not a .mmw file, or damaged before its first chunk."""
-        self.path = Path(path)
-        self.cut_short = 0
-        self.num_bytes = check_regular(self.path)
-        with open_regular(self.path) as stream:
-            front = stream.read(PREFIX.size)
-            size = self._header_size(front)
-            body = stream.read(size + CHECK.size)
-            self._read_header(front, body, size)
-            if self.version not in LISTED:
-                self.records = self._scanned(stream)
+        super().__init__(path)
         if not self.records:
-            raise InputError(f"{self.path} holds no whole chunk: it is damaged or was cut short; compress it again")
+            raise InputError(f"{path} holds no whole chunk: it is damaged or was cut short; compress it again")
         self._check_promises()
 
     @property
@@ -161,37 +153,25 @@ class MmwFile:
 
     def chunk(self, index: int) -> bytes:
         """One chunk's payload. Raises InputError where it fails its checksum."""
-        record = self.records[index]
-        start = self._starts[index]
-        end = record.offset + record.num_bytes + CHECK.size
-        with open_regular(self.path) as stream:
-            stream.seek(start)
-            data = stream.read(end - start)
-        body = data[: -CHECK.size]
-        if len(data) != end - start or CHECK.unpack(data[-CHECK.size :])[0] != zlib.crc32(body):
-            raise self._damaged(f"chunk {index} fails its checksum")
+        record, start = self.records[index], self._starts[index]
+        body = self.read_checked(start, record.offset + record.num_bytes - start, f"chunk {index}")
         return body[record.offset - start :]
 
-    def _read_header(self, front: bytes, body: bytes, size: int) -> None:
-        if len(body) < size + CHECK.size:
-            raise self._damaged("it is truncated")
-        if CHECK.unpack(body[size:])[0] != zlib.crc32(front + body[:size]):
-            raise self._damaged("its header fails its checksum")
-        self.end_of_header = PREFIX.size + size + CHECK.size
-        try:
-            values = parse_json(_inflated(body[:size]), f"the header of {self.path}")
-            self.header = _header_of(values)
-            if self.version in LISTED:
-                self.records = self._listed(values)
-        except InputError as error:
-            raise self._damaged(str(error)) from None
-        except (zlib.error, ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError) as error:
-            raise self._damaged(f"its header is malformed ({error})") from None
+    def _read_header(self, body: bytes) -> None:
+        self.end_of_header = PREFIX.size + len(body) + CHECK.size
+        values = parse_json(_inflated(body), f"the header of {self.path}")
+        self.header = _header_of(values)
         if self.version in LISTED:
-            last = self.records[-1]
-            expected = last.offset + last.num_bytes + CHECK.size
-            if self.num_bytes != expected:
-                raise self._damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
+            self.records = self._listed(values)
+
+    def _find_records(self, stream: BinaryIO) -> None:
+        if self.version not in LISTED:
+            self.records = self._scanned(stream)
+            return
+        last = self.records[-1]
+        expected = last.offset + last.num_bytes + CHECK.size
+        if self.num_bytes != expected:
+            raise self.damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
 
     def _check_promises(self) -> None:
         """Raises InputError where the records promise a cube far larger than any file of this size holds."""
@@ -201,7 +181,7 @@ class MmwFile:
         largest = max((record.num_frames for record in self.records), default=0)
         total = self.num_frames * frame_bytes
         if largest * frame_bytes > most or total > max(most, MAX_RATIO * self.num_bytes):
-            raise self._damaged(
+            raise self.damaged(
                 f"its {self.num_bytes} bytes promise {self.num_frames} frames of {frame_bytes / 1e6:.3g} MB"
             )
 
@@ -241,8 +221,8 @@ class MmwFile:
             if offset > self.num_bytes and is_possible:
                 break
             times, check = stream.read(extra), stream.read(HEAD_CHECK.size)
-            if not is_possible or HEAD_CHECK.unpack(check)[0] != _head_check(head + times):
-                raise self._damaged(f"record {len(records)} fails its checksum")
+            if not is_possible or check != head_check(head + times):
+                raise self.damaged(f"record {len(records)} fails its checksum")
             if offset + length + CHECK.size > self.num_bytes:
                 break
             time_s = self._times(times, kind, num, last_s)
@@ -251,7 +231,7 @@ class MmwFile:
             at, last_s = offset + length + CHECK.size, float(time_s[-1])
         self.cut_short = self.num_bytes - at
         if not records and self.cut_short:
-            raise self._damaged("it is truncated before the end of its first chunk")
+            raise self.damaged("it is truncated before the end of its first chunk")
         return records
 
     def _times(self, data: bytes, kind: int, num: int, last_s: float | None) -> np.ndarray:
@@ -262,28 +242,8 @@ class MmwFile:
             first_s = TIME.unpack(data)[0] if kind == FROM_FIRST else following_s
             time_s = first_s + np.arange(num) * self.header.period_s
         if not (np.abs(time_s) < MAX_TIME_S).all():
-            raise self._damaged("its frame times are impossible")
+            raise self.damaged("its frame times are impossible")
         return time_s
-
-    def _header_size(self, front: bytes) -> int:
-        if len(front) < PREFIX.size or front[:4] != MAGIC:
-            raise InputError(
-                f"{self.path} is no .mmw file; make one with: mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw"
-            )
-        _, self.version, size = PREFIX.unpack(front)
-        if self.version not in READABLE:
-            raise InputError(
-                f"{self.path} is a .mmw file of version {self.version}, or damaged; this program reads versions"
-                f" {', '.join(map(str, READABLE[:-1]))} and {READABLE[-1]}"
-            )
-        return size
-
-    def _damaged(self, why: str) -> InputError:
-        return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
-
-
-def _head_check(head: bytes) -> int:
-    return zlib.crc32(head) & 0xFFFF
 
 
 def _is_regular(time_s: np.ndarray, first_s: float, period_s: float) -> bool:

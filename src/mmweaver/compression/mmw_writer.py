@@ -60,10 +60,20 @@ class MmwWriter:
         keep_noise: bool = False,
         effort: str = "full",
     ) -> int:
-        """Encodes and writes a piece in at most `num_bytes` or to `quality_db`; returns the bytes written.
+        """Encodes and writes a piece whose frame times continue the recording's.
 
-        A new file's header is not counted. Frame times continue the recording's. Raises InputError where the piece has
-        another radar or scale, or cannot be stored.
+        Args:
+            cube: the piece.
+            num_bytes: of its records at most; either this or `quality_db`.
+            quality_db: signal-to-error ratio in active cells.
+            keep_noise: the same error in all cells.
+            effort: "full" or "fast".
+
+        Returns:
+            Bytes written, without the header of a new file.
+
+        Raises:
+            InputError: where the piece has another radar or scale, or cannot be stored.
         """
         check_encodable(cube, num_bytes, quality_db)
         if self._header is None:

@@ -13,7 +13,7 @@ import torch
 from jaxtyping import Float, Int
 
 from mmweaver.compression.cell_coder import ClassMapCoder, LevelCoder
-from mmweaver.compression.entropy import LARGEST_UNIFORM, BitModel, BitStream, NumberModel
+from mmweaver.compression.entropy import MAX_UNIFORM, BitModel, BitStream, NumberModel
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 from mmweaver.fields.scatterers.fit_window import FitWindow
 
@@ -108,7 +108,18 @@ def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int,
 
 
 def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:
-    """Scatterers (frame, point) from their quantised form, padded with amplitude zero."""
+    """Scatterers from their quantised form.
+
+    Args:
+        coded: one row each.
+        num_frames: of the result.
+        steps: of quantisation.
+        axes: of the working frames.
+        num_directions: that the array resolves.
+
+    Returns:
+        Points (frame, point), padded with amplitude zero.
+    """
     counts = np.bincount(coded.frame, minlength=num_frames)
     slot = np.arange(len(coded)) - np.repeat(np.cumsum(counts) - counts, counts)
     shape = (num_frames, int(counts.max(initial=0)))
@@ -253,7 +264,7 @@ def _parts(size: Integers, sixteenths: int) -> Integers:
 
 def _largest(parts: Integers) -> Integers:
     """The largest value that `BitStream.uniform` codes of so many: beyond 2^23 they count as multiples of 2^16."""
-    return np.where(parts > LARGEST_UNIFORM, parts >> 16 << 16, parts) - 1
+    return np.where(parts > MAX_UNIFORM, parts >> 16 << 16, parts) - 1
 
 
 def _direction_parts(size: Integers, sixteenths: int) -> Integers:

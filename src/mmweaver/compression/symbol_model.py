@@ -59,9 +59,13 @@ class MixedModel:
         self._weigh(np.arange(len(self.counts)))
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
-        """Codes symbols (n,) with one context (n,) per table, then learns them.
+        """Codes symbols, then learns them.
 
-        Where `mirrored` (n,) is set, or for ALWAYS, a number and its negative are learned alike.
+        Args:
+            stream: encoder or decoder.
+            contexts: one (n,) for each table.
+            values: symbols (n,).
+            mirrored: (n,) bool or ALWAYS; where it is set, a number and its negative are learned alike.
         """
         places = np.concatenate(contexts).reshape(len(contexts), -1) + self._first
         rows = self._weighted.take(places[0], axis=0)

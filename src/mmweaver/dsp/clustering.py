@@ -18,6 +18,11 @@ def dbscan(places: Float[np.ndarray, "point axis"], *, distance: float, fewest: 
     A point with `fewest` points within `distance` (itself counted) is a core; cores within reach of each other are one
     cluster, and other points belong to the cluster of their nearest core within reach.
 
+    Args:
+        places: (point, axis).
+        distance: reach.
+        fewest: points of a core.
+
     >>> dbscan(np.array([[0.0], [0.1], [0.2], [5.0]]), distance=0.3, fewest=2).tolist()
     [0, 0, 0, -1]
     """

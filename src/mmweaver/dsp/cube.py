@@ -10,10 +10,10 @@ from jaxtyping import Complex
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
+from mmweaver.dsp.windows import MIN_HANN_LOOPS, doppler_window, hann
 
 # Singular values below this share of the largest carry nothing but rounding.
-SMALLEST_SINGULAR_VALUE = 1e-9
+MIN_SINGULAR_VALUE = 1e-9
 FRAMES_A_BLOCK = 5  # stay in the cache
 STATIC_REMOVALS = ("auto", "mean_chirp", "mean_frame", "none")
 
@@ -22,9 +22,12 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     """Range FFT, Doppler FFT and TDM phase compensation, both FFTs under a Hann window.
 
     Normalised so that a tone of amplitude a peaks at a (for a radar with real samples: a cosine of amplitude a).
-    Keeps the configuration's range bins; Doppler bins rise with radial velocity. The antennas of one transmitter are
-    turned back by the phase that the cell's velocity gathers until that transmitter fires: left out
-    (`compensate_tdm=False`), a moving target shows at a wrong angle.
+    Keeps the configuration's range bins; Doppler bins rise with radial velocity.
+
+    Args:
+        adc: samples.
+        compensate_tdm: the antennas of one transmitter are turned back by the phase that the cell's velocity gathers
+            until that transmitter fires; without it a moving target shows at a wrong angle.
 
     Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
     """
@@ -58,9 +61,14 @@ def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = Tru
 
 
 def cropped(cube: RadarCube, config: RadarConfig) -> RadarCube:
-    """The range bins of a cube that `config`, the same radar with another range window, keeps.
+    """The range bins of a cube that another range window of its radar keeps.
 
-    Raises InputError where the cube does not hold all of them.
+    Args:
+        cube: of the radar.
+        config: the same radar with another range window.
+
+    Raises:
+        InputError: where the cube does not hold all of them.
     """
     own = cube.config
     first = config.first_range_bin - own.first_range_bin
@@ -85,14 +93,9 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     turned = encoded(cube.values.astype(np.complex128), config) * slot_compensation(config).conj()
     loops = _inverse_fft(turned, 2)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
-    loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
-    slow = loops.transpose(0, 2, 3, 1)
-    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    samples = (
-        slow @ inverse if config.complex_samples else np.concatenate([np.real(slow), np.imag(slow)], axis=-1) @ inverse
-    )
-    shape = (len(samples), config.num_loops, config.num_slots, config.num_rx, config.num_samples)
-    return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
+    loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > MIN_SINGULAR_VALUE)[:, None]
+    samples = _samples_of_ranges(loops.transpose(0, 2, 3, 1), config)
+    return AdcCube(samples=samples, config=config, scale=cube.scale)
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
@@ -106,11 +109,16 @@ def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
 
 def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
     """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
-    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    spectrum = encoded(static.astype(np.complex128), config).T  # (slot * rx, range)
+    return _samples_of_ranges(encoded(static.astype(np.complex128), config).T, config)
+
+
+def _samples_of_ranges(spectrum: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Range bins (..., slot * rx, range) -> samples (..., slot, rx, sample) of least energy, complex64."""
     if not config.complex_samples:
         spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
-    return (spectrum @ inverse).reshape(config.num_slots, config.num_rx, -1).astype(np.complex64)
+    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
+    samples = (spectrum @ inverse).astype(np.complex64)
+    return samples.reshape(*spectrum.shape[:-2], config.num_slots, config.num_rx, config.num_samples)
 
 
 def remove_static_adc(adc: AdcCube) -> AdcCube:
@@ -132,12 +140,12 @@ def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
     if how == "none":
         return cube
     config = cube.config
-    if how == "mean_frame" or (how == "auto" and config.num_loops < SHORTEST_HANN):
+    if how == "mean_frame" or (how == "auto" and config.num_loops < MIN_HANN_LOOPS):
         mean = cube.values.mean(axis=0, keepdims=True, dtype=np.complex128)
         return replace(cube, values=(cube.values - mean).astype(np.complex64))
     compensation = slot_compensation(config)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
-    seen = np.abs(weight) > SMALLEST_SINGULAR_VALUE
+    seen = np.abs(weight) > MIN_SINGULAR_VALUE
     # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
     share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
     mean_of_doppler = _inverse_fft(share, 0)
@@ -230,4 +238,4 @@ def _range_inverse(num_samples: int, first_bin: int, num_bins: int, complex_samp
     forward = window / window.sum() * np.exp(-2j * np.pi * turns)
     if not complex_samples:
         forward = 2 * np.concatenate([forward.real, forward.imag])
-    return np.linalg.pinv(forward, rcond=SMALLEST_SINGULAR_VALUE).T
+    return np.linalg.pinv(forward, rcond=MIN_SINGULAR_VALUE).T

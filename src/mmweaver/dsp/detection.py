@@ -46,10 +46,16 @@ def check_points(points: str, config: RadarConfig) -> None:
 
 
 def detect(cube: RadarCube, adc: AdcCube | None, points: str, firmware: FirmwareSettings | None = None) -> PointCloud:
-    """Points of a cube: "cfar", "firmware" with its settings, or by a registered detector.
+    """Points of a cube.
 
-    The firmware uses the ADC samples if given. Raises InputError for an unknown kind of point cloud, or a radar that
-    the firmware does not support.
+    Args:
+        cube: of any radar that the detector supports.
+        adc: its samples, which the firmware's detector uses if given.
+        points: "cfar", "firmware" or a registered detector.
+        firmware: settings of the firmware's detector.
+
+    Raises:
+        InputError: for an unknown kind of point cloud, or a radar that the firmware does not support.
     """
     check_points(points, cube.config)
     detector = DETECTORS[points]

@@ -17,11 +17,11 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.dsp.cube import remove_static_adc
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
+from mmweaver.dsp.windows import MIN_HANN_LOOPS, doppler_window, hann
 
-LONGEST_WINDOW = 64  # loops
+MAX_WINDOW = 64  # loops
 OVERLAP = 4  # windows a window length
-SMALLEST_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
+MIN_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
 SIGNAL_DB = 15.0  # range bins this far below the strongest still count
 FRAMES_A_BLOCK = 20
 
@@ -52,8 +52,8 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
     pause_s = config.frame_period_s - config.active_time_s
     runs_on = pause_s < 0.5 * config.loop_period_s
     longest = config.num_loops * (len(adc.samples) if runs_on else 1)
-    width = min(window_loops or min(config.num_loops, LONGEST_WINDOW), longest)
-    if width < SHORTEST_HANN:
+    width = min(window_loops or min(config.num_loops, MAX_WINDOW), longest)
+    if width < MIN_HANN_LOOPS:
         raise InputError(
             f"radar {config.name!r} has {config.num_loops} loops a frame, too few for a micro-Doppler spectrum"
         )
@@ -71,15 +71,21 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
 
 
 def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
-    """Power of windows of `width` loops, `hop` loops apart within each frame, mean of the antennas.
+    """Short-time spectra within each frame, mean of the antennas. The cube's own Doppler window is undone first.
 
-    The cube's own Doppler window is undone first; a windowed tone of amplitude a shows a^2.
+    Args:
+        cube: of any radar.
+        width: loops of a window.
+        hop: loops from one window to the next.
+
+    Returns:
+        Power (frame, window, range, doppler); a windowed tone of amplitude a shows a^2.
     """
     loops = cube.values.shape[2]
     if width == loops:
         return range_doppler_power(cube)[:, None]
     own = doppler_window(loops) / doppler_window(loops).sum()
-    own = np.maximum(own, SMALLEST_WEIGHT * own.max()).astype(np.float32)[:, None]
+    own = np.maximum(own, MIN_WEIGHT * own.max()).astype(np.float32)[:, None]
     chirps = (np.asarray(fft.ifft(np.fft.ifftshift(one, axes=1), axis=1)) / own for one in cube.values)
     return np.array([list(_window_powers(one, width, hop)) for one in chirps], np.float64)
 
@@ -89,7 +95,7 @@ def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
 
     Clutter is taken away beforehand (`dsp.cube.remove_static`).
     """
-    width = min(cube.config.num_loops, LONGEST_WINDOW)
+    width = min(cube.config.num_loops, MAX_WINDOW)
     power = cube_spectrogram(cube, width, max(1, width // OVERLAP)).max(axis=2)
     return _spectrogram(power, cube.grid.frame_time_s, cube.config, cube.grid.range_m)
 

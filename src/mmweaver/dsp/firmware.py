@@ -16,7 +16,7 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import PerIndex, PerPoint
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.cube import adc_from_cube
-from mmweaver.dsp.firmware_cfar import DetectionMatrix, cfar_detections, detection_matrix, is_local_peak
+from mmweaver.dsp.firmware_cfar import cfar_detections, detection_matrix, is_local_peak
 
 AZIMUTH_BINS = 64
 BLACKMAN = (0.42, 0.5, 0.08)
@@ -39,18 +39,6 @@ class FirmwareCloud(PointCloud):
     doppler_bin: Int[np.ndarray, " point"]  # num_loops // 2 is zero velocity
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Objects:
-    """Objects of one frame in the order of the device's list."""
-
-    range_bin: np.ndarray
-    doppler_bin: np.ndarray
-    azimuth_bin: np.ndarray
-    up: np.ndarray  # direction cosine upwards, in half wavelengths of the device
-    intensity: np.ndarray
-    snr_db: np.ndarray
-
-
 def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = FirmwareSettings()) -> FirmwareCloud:  # noqa: B008
     """Points of each frame, as the demo's firmware would report them.
 
@@ -68,12 +56,13 @@ def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = Fi
     adc = adc_from_cube(signal) if isinstance(signal, RadarCube) else signal
     config = adc.config
     check_firmware_radar(config)
-    found: list[tuple[int, _Objects]] = []
+    found: list[dict[str, np.ndarray]] = []
     for start in range(0, len(adc.samples), FRAMES_A_BLOCK):
         spectrum = firmware_spectrum(adc, settings, slice(start, start + FRAMES_A_BLOCK))
         matrix = detection_matrix(spectrum, settings.device)
         for index in range(len(spectrum)):
-            found.append((start + index, _objects(spectrum[index], matrix, index, config, settings)))
+            objects = _objects(spectrum[index], matrix.level[index], matrix.counts_per_octave, config, settings)
+            found.append({"frame": np.full(len(objects["range_bin"]), start + index), **objects})
     return _cloud(found, config)
 
 
@@ -97,7 +86,16 @@ def range_step_m(config: RadarConfig) -> float:
 
 
 def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = slice(None)) -> Spectrum:
-    """Range-Doppler spectrum in integer counts of the device; Doppler bin num_loops // 2 is zero velocity."""
+    """Range-Doppler spectrum in integer counts of the device.
+
+    Args:
+        adc: samples.
+        settings: of the firmware.
+        frames: which, by default all.
+
+    Returns:
+        (frame, range, doppler, antenna); Doppler bin num_loops // 2 is zero velocity.
+    """
     config = adc.config
     counts = adc.samples[frames]
     if np.isfinite(adc.scale):
@@ -135,10 +133,13 @@ def _whole(values: np.ndarray) -> np.ndarray:
 
 def _objects(
     spectrum: Complex[np.ndarray, "range doppler antenna"],
-    matrix: DetectionMatrix, index: int, config: RadarConfig, settings: FirmwareSettings,
-) -> _Objects:  # fmt: skip
-    level = matrix.level[index]
-    passed, snr = cfar_detections(level, settings, matrix.counts_per_octave)
+    level: np.ndarray,
+    counts_per_octave: float,
+    config: RadarConfig,
+    settings: FirmwareSettings,
+) -> dict[str, np.ndarray]:
+    """Objects of one frame in the order of the device's list; `up`: direction cosine in its half wavelengths."""
+    passed, snr = cfar_detections(level, settings, counts_per_octave)
     passed &= is_local_peak(level, settings)
     # the list is filled in FFT order: zero and positive velocities, then negative ones
     loops = config.num_loops
@@ -156,14 +157,14 @@ def _objects(
     also = np.flatnonzero(second >= 0)[: max(most - len(row), 0)]
     which = np.concatenate([np.arange(len(row)), also])
     azimuth = np.concatenate([first, second[also]])
-    return _Objects(
-        range_bin=row[which],
-        doppler_bin=column[which],
-        azimuth_bin=azimuth,
-        up=_elevation(signal[which], beams[which, azimuth], azimuth, across, config),
-        intensity=np.abs(beams[which, azimuth]),
-        snr_db=snr[row, column][which],
-    )
+    return {
+        "range_bin": row[which],
+        "doppler_bin": column[which],
+        "azimuth_bin": azimuth,
+        "up": _elevation(signal[which], beams[which, azimuth], azimuth, across, config),
+        "intensity": np.abs(beams[which, azimuth]),
+        "snr_db": snr[row, column][which],
+    }
 
 
 def _azimuth_peaks(magnitude: Float[np.ndarray, "object azimuth"], share: float | None) -> tuple[PerIndex, PerIndex]:
@@ -208,24 +209,26 @@ def _signed(azimuth_bin: np.ndarray) -> np.ndarray:
     return np.where(azimuth_bin >= AZIMUTH_BINS // 2, azimuth_bin - AZIMUTH_BINS, azimuth_bin)
 
 
-def _cloud(found: list[tuple[int, _Objects]], config: RadarConfig) -> FirmwareCloud:
+def _cloud(found: list[dict[str, np.ndarray]], config: RadarConfig) -> FirmwareCloud:
     """Objects of all frames with their positions; y is 0 for impossible angles, as on the device."""
-
-    def column(name: str) -> np.ndarray:
-        return np.concatenate([np.zeros(0), *(getattr(objects, name) for _, objects in found)])
-
-    range_bin, doppler_bin = column("range_bin").astype(int), column("doppler_bin").astype(int)
+    names = ("frame", "range_bin", "doppler_bin", "azimuth_bin", "up", "intensity", "snr_db")
+    every = {name: np.concatenate([np.zeros(0), *(objects[name] for objects in found)]) for name in names}
+    range_bin, doppler_bin = every["range_bin"].astype(int), every["doppler_bin"].astype(int)
     step_m = range_step_m(config)
     grain = 2.0 ** -np.ceil(np.log2(16 / step_m))  # the device's fixed point
     range_m = range_bin * step_m
-    x_m = range_m * _signed(column("azimuth_bin")) * 2 / AZIMUTH_BINS
-    z_m = range_m * column("up")
+    x_m = range_m * _signed(every["azimuth_bin"]) * 2 / AZIMUTH_BINS
+    z_m = range_m * every["up"]
     y_m = np.sqrt(np.maximum(range_m**2 - x_m**2 - z_m**2, 0))
     x_m, y_m, z_m = (np.rint(value / grain) * grain for value in (x_m, y_m, z_m))
-    counts = [len(objects.range_bin) for _, objects in found]
     return FirmwareCloud(
-        frame=np.repeat(np.array([frame for frame, _ in found], int), np.array(counts, int)),
-        x_m=x_m, y_m=y_m, z_m=z_m,
+        frame=every["frame"].astype(int),
+        x_m=x_m,
+        y_m=y_m,
+        z_m=z_m,
         radial_velocity_mps=config.radial_velocity_mps[doppler_bin],
-        snr_db=column("snr_db"), intensity=column("intensity"), range_bin=range_bin, doppler_bin=doppler_bin,
-    )  # fmt: skip
+        snr_db=every["snr_db"],
+        intensity=every["intensity"],
+        range_bin=range_bin,
+        doppler_bin=doppler_bin,
+    )

@@ -12,7 +12,7 @@ from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.cfar import CfarCells, CfarResult, ca_cfar
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
-from mmweaver.dsp.windows import SHORTEST_HANN
+from mmweaver.dsp.windows import MIN_HANN_LOOPS
 
 LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
 AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; in a cell
@@ -37,14 +37,21 @@ def point_cloud(
     max_points_per_frame: int = 128,
     moving_only: bool = False,
 ) -> PointCloud:
-    """Detections of each frame in the radar's frame of reference, the strongest (by SNR) up to a limit.
+    """Detections in the radar's frame of reference, range, velocity and azimuth interpolated between bins.
 
     1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
-       `moving_only` first removes the Doppler bins of static clutter.
     2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the cell's highest is a point of its own,
        three at most.
     3. Elevation from the phase between two rows, 0 where the array has none.
-    Range, velocity and azimuth are interpolated between bins. Raises InputError for a limit below 1.
+
+    Args:
+        cube: of any radar.
+        false_alarm_rate: of a cell of noise.
+        max_points_per_frame: the strongest (by SNR) are kept.
+        moving_only: without the Doppler bins of static clutter.
+
+    Raises:
+        InputError: for a limit below 1.
     """
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
@@ -114,7 +121,7 @@ def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
     """Local maxima along range, or along Doppler (cyclic); with fewer than four loops the strongest of each range."""
     padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
     along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
-    if power.shape[2] < SHORTEST_HANN:
+    if power.shape[2] < MIN_HANN_LOOPS:
         return along_range & (power == power.max(axis=2, keepdims=True))
     along_doppler = (power >= np.roll(power, 1, 2)) & (power >= np.roll(power, -1, 2))
     return along_range | along_doppler

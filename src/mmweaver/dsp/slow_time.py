@@ -14,11 +14,11 @@ from scipy import fft
 from mmweaver.core.records import RadarCube
 from mmweaver.dsp.windows import hann
 
-FEWEST_FRAMES = 8
-NEAREST_BINS = 2.5
-WEAKEST = 1e-3  # moving power of a cell relative to the strongest
-LARGEST_RESIDUAL = 0.35  # of a circle fit, relative to the radius
-LARGEST_RADIUS = 10.0  # relative to the spread of the points: beyond, the arc is too short to have a centre
+MIN_FRAMES = 8
+MIN_BINS = 2.5
+MIN_MOVING_SHARE = 1e-3  # moving power of a cell relative to the strongest
+MAX_RESIDUAL = 0.35  # of a circle fit, relative to the radius
+MAX_RADIUS = 10.0  # relative to the spread of the points: beyond, the arc is too short to have a centre
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,21 +53,26 @@ def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler
 
 
 def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
-    """The range bins with the most movement over the frames, strongest first, each a local maximum along range."""
+    """The range bins with the most movement over the frames, strongest first, each a local maximum along range.
+
+    Args:
+        cube: of at least 8 frames; of fewer there are none.
+        count: at most so many.
+    """
     still = zero_doppler(cube)
-    if len(still) < FEWEST_FRAMES:
+    if len(still) < MIN_FRAMES:
         return []
     moving = still - still.mean(axis=0)
     power = (np.abs(moving) ** 2).mean(axis=(0, 2))
     padded = np.pad(power, 1)
     # the first bins hold the transmitters' leakage, and at zero beat frequency real samples have no phase
-    is_far = cube.grid.range_m >= NEAREST_BINS * cube.config.range_resolution_m
+    is_far = cube.grid.range_m >= MIN_BINS * cube.config.range_resolution_m
     is_peak = (
         is_far
         & (power > 0)
         & (power >= padded[:-2])
         & (power > padded[2:])
-        & (power >= WEAKEST * power[is_far].max(initial=0.0))
+        & (power >= MIN_MOVING_SHARE * power[is_far].max(initial=0.0))
     )
     order = [index for index in np.argsort(-power) if is_peak[index]][:count]
     return [_cell(cube, still[:, index], int(index), float(power[index])) for index in order]
@@ -117,6 +122,6 @@ def circle_centre(signal: Complex[np.ndarray, " sample"]) -> complex | None:
     offset = complex(-b / (2 * a), -c / (2 * a))
     distance = np.abs(x + 1j * y - offset)
     radius = float(distance.mean())
-    if radius > LARGEST_RADIUS * spread or distance.std() > LARGEST_RESIDUAL * radius:
+    if radius > MAX_RADIUS * spread or distance.std() > MAX_RESIDUAL * radius:
         return None
     return complex(mean + offset)

@@ -51,10 +51,16 @@ def noise_power(cube: RadarCube) -> float | None:
 
 
 def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:
-    """Beamforming on the array's horizontal row, power summed over Doppler, (frame, range, azimuth).
+    """Beamforming on the array's horizontal row, power summed over Doppler.
 
-    A lone scatterer that gives amplitude a at every antenna shows a^2 (summed over its Doppler cells) at its angle.
-    `moving_only` excludes the Doppler bins of static clutter.
+    Args:
+        cube: of any radar.
+        azimuth_rad: angles, positive to the right.
+        moving_only: without the Doppler bins of static clutter.
+
+    Returns:
+        Power (frame, range, azimuth): a lone scatterer that gives amplitude a at every antenna shows a^2 (summed over
+        its Doppler cells) at its angle.
     """
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     direction = np.stack([np.sin(azimuth_rad), np.cos(azimuth_rad), np.zeros_like(azimuth_rad)])
@@ -62,10 +68,21 @@ def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: 
 
 
 def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:
-    """Beamforming within columns, power summed over Doppler and averaged over columns, (frame, range, elevation).
+    """Beamforming within columns, power summed over Doppler and averaged over columns.
 
     Each of the tallest columns is beamformed by itself, so the target's azimuth does not matter; columns of two
-    antennas give a wide beam. Raises InputError for an array without elevation (see `has_elevation`).
+    antennas give a wide beam.
+
+    Args:
+        cube: of a radar with elevation.
+        elevation_rad: angles, positive upwards.
+        moving_only: without the Doppler bins of static clutter.
+
+    Returns:
+        Power (frame, range, elevation).
+
+    Raises:
+        InputError: for an array without elevation (see `has_elevation`).
     """
     columns = elevation_columns(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     if not columns:
@@ -80,7 +97,16 @@ def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_on
 def steering(
     cube: RadarCube, antennas: PerIndex, direction: Float[np.ndarray, "3 angle"]
 ) -> Complex[np.ndarray, "_ angle"]:
-    """Steering phasors exp(+j 2 pi / wavelength u.p) (antenna, angle), which align a far target at direction u."""
+    """Steering phasors exp(+j 2 pi / wavelength u.p), which align a far target.
+
+    Args:
+        cube: of the radar.
+        antennas: indices.
+        direction: unit vectors u (3, angle).
+
+    Returns:
+        (antenna, angle), complex.
+    """
     path_m = cube.grid.antenna_position_m[antennas] @ direction
     return np.exp(2j * np.pi / cube.grid.wavelength_m * path_m)
 

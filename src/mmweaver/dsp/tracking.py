@@ -18,7 +18,7 @@ from mmweaver.dsp.clustering import NOISE, dbscan
 
 REACH_M = 0.5  # between points of one person
 VELOCITY_WEIGHT_S = 0.2  # metres that a difference of 1 m/s counts
-FEWEST_POINTS = 4
+MIN_POINTS = 4
 GATE = 9.2  # 99 % of a chi-square with two degrees of freedom
 PLACE_SD_M = 0.15
 ACCELERATION_SD_MPS2 = 2.0
@@ -59,12 +59,17 @@ def cluster_points(points: PointCloud) -> Int[np.ndarray, " point"]:
     where = np.stack([points.x_m, points.y_m, points.z_m, VELOCITY_WEIGHT_S * points.radial_velocity_mps], axis=1)
     for frame in np.unique(points.frame):
         own = points.frame == frame
-        labels[own] = dbscan(where[own], distance=REACH_M, fewest=FEWEST_POINTS)
+        labels[own] = dbscan(where[own], distance=REACH_M, fewest=MIN_POINTS)
     return labels
 
 
 def track_people(points: PointCloud, frame_time_s: PerFrame) -> list[PersonTrack]:
-    """Tracks of people, the longest first, from moving points (`point_cloud(..., moving_only=True)`)."""
+    """Tracks of people, the longest first.
+
+    Args:
+        points: moving ones (`point_cloud(..., moving_only=True)`).
+        frame_time_s: of all frames.
+    """
     labels = cluster_points(points)
     tracks: list[_Track] = []
     done: list[_Track] = []

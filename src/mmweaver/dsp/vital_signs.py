@@ -15,10 +15,10 @@ BREATHING_HZ = (0.1, 0.7)
 HEART_HZ = (0.8, 2.5)
 CLEAR_DB = 8.0  # peak over the band's median; the heart is fainter among more harmonics
 CLEAR_HEART_DB = 12.0
-FEWEST_PERIODS = 2.0
+MIN_PERIODS = 2.0
 PAD = 8  # times longer spectra: a grid to find the peak on
 HARMONICS = 12
-MOST_BREATHING_M, LEAST_BREATHING_M = 40e-3, 0.1e-3  # peak to peak: more is walking, less is noise
+MAX_BREATHING_M, MIN_BREATHING_M = 40e-3, 0.1e-3  # peak to peak: more is walking, less is noise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,13 +32,21 @@ class Rate:
 
 
 def breathing_rate(displacement_m: Float[np.ndarray, " frame"], period_s: float) -> Rate | None:
-    """The breathing rate; None for a recording shorter than two of the slowest breaths that would count."""
+    """The breathing rate.
+
+    Args:
+        displacement_m: (frame,), of a chest.
+        period_s: between frames.
+
+    Returns:
+        The rate; None for a recording shorter than two of the slowest breaths that would count.
+    """
     detrended = scipy_signal.detrend(displacement_m)
     found = _rate(detrended, period_s, BREATHING_HZ)
     if found is None:
         return None
     extent_m = float(np.ptp(_band(detrended, period_s, BREATHING_HZ)))
-    is_breath = LEAST_BREATHING_M <= extent_m <= MOST_BREATHING_M
+    is_breath = MIN_BREATHING_M <= extent_m <= MAX_BREATHING_M
     return found if is_breath else Rate(**{**vars(found), "is_clear": False})
 
 
@@ -47,7 +55,13 @@ def heart_rate(
 ) -> Rate | None:
     """The heart rate, from the velocity of the skin, away from the harmonics of the breathing.
 
-    None where frames are too far apart (fewer than 5 a second) or too few.
+    Args:
+        displacement_m: (frame,), of a chest.
+        period_s: between frames.
+        breathing: its rate, if known.
+
+    Returns:
+        The rate; None where frames are too far apart (fewer than 5 per second) or too few.
     """
     if 1 / period_s < 2 * HEART_HZ[1]:
         return None
@@ -64,12 +78,12 @@ def _rate(
     clear_db: float = CLEAR_DB,
 ) -> Rate | None:
     duration_s = len(values) * period_s
-    if len(values) < 16 or duration_s * band_hz[1] < FEWEST_PERIODS:
+    if len(values) < 16 or duration_s * band_hz[1] < MIN_PERIODS:
         return None
     window = np.hanning(len(values))
     power = np.abs(np.fft.rfft(values * window, PAD * len(values))) ** 2
     frequency_hz = np.fft.rfftfreq(PAD * len(values), period_s)
-    inside = (frequency_hz >= max(band_hz[0], FEWEST_PERIODS / duration_s)) & (frequency_hz <= band_hz[1])
+    inside = (frequency_hz >= max(band_hz[0], MIN_PERIODS / duration_s)) & (frequency_hz <= band_hz[1])
     for avoided in avoided_hz:
         inside &= np.abs(frequency_hz - avoided) > 2 / duration_s
     if inside.sum() < 3:

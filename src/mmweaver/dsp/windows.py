@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-SHORTEST_HANN = 4  # loops; a shorter Hann window would leave out a third of the chirps or more, and resolve nothing
+MIN_HANN_LOOPS = 4  # loops; a shorter Hann window would leave out a third of the chirps or more, and resolve nothing
 
 
 def doppler_window(num_loops: int) -> Float[np.ndarray, " num_loops"]:
@@ -12,12 +12,12 @@ def doppler_window(num_loops: int) -> Float[np.ndarray, " num_loops"]:
     >>> doppler_window(2).tolist()
     [1.0, 1.0]
     """
-    return hann(num_loops) if num_loops >= SHORTEST_HANN else np.ones(num_loops)
+    return hann(num_loops) if num_loops >= MIN_HANN_LOOPS else np.ones(num_loops)
 
 
 def doppler_window_middle(num_loops: int) -> float:
     """The loop about which `doppler_window` is symmetric: a periodic Hann window counts its zero at both ends."""
-    return num_loops / 2 if num_loops >= SHORTEST_HANN else (num_loops - 1) / 2
+    return num_loops / 2 if num_loops >= MIN_HANN_LOOPS else (num_loops - 1) / 2
 
 
 def noise_share(num_samples: int, num_loops: int) -> float:

@@ -11,7 +11,7 @@ from mmweaver.core.shapes import Array, PerFrame
 from mmweaver.core.virtual_array import has_elevation, resolves_elevation
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.doppler_spectrogram import MicroDoppler, micro_doppler_of_cube
-from mmweaver.dsp.slow_time import FEWEST_FRAMES, SlowTimeCell, moving_cells, slow_time_doppler, zero_doppler
+from mmweaver.dsp.slow_time import MIN_FRAMES, SlowTimeCell, moving_cells, slow_time_doppler, zero_doppler
 from mmweaver.dsp.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
@@ -20,7 +20,7 @@ from mmweaver.dsp.spectra import (
     range_doppler_power,
     range_elevation_power,
 )
-from mmweaver.dsp.windows import SHORTEST_HANN
+from mmweaver.dsp.windows import MIN_HANN_LOOPS
 from mmweaver.figures.power_scale import PowerScale
 from mmweaver.figures.theme import evenly_spaced
 from mmweaver.geometry.aligned_photo import AlignedPhoto
@@ -94,9 +94,9 @@ class FigureData:
     @cached_property
     def is_slow(self) -> bool:
         """Whether movement shows from frame to frame only: too few loops a frame, or somebody who just breathes."""
-        if len(self.cube.values) < FEWEST_FRAMES:
+        if len(self.cube.values) < MIN_FRAMES:
             return False
-        if self.cube.config.num_loops < SHORTEST_HANN:
+        if self.cube.config.num_loops < MIN_HANN_LOOPS:
             return True
         noise = self._noise
         if not noise:

@@ -146,7 +146,12 @@ class PosedCapsules:
 
 
 def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> PosedCapsules:
-    """All capsules for joints in metres, of a person of `height_m`."""
+    """All capsules of a person.
+
+    Args:
+        joints_m: (time, 22, 3).
+        height_m: of the person.
+    """
     trunk = _trunk_rotation(joints_m)
     start, end = joints_m[:, _START], joints_m[:, _END]
     bone = joints_m[:, _TO] - joints_m[:, _FROM]
@@ -162,7 +167,16 @@ def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> Posed
 def hull(
     posed: PosedCapsules, height_m: float, girth: float = 1.0
 ) -> tuple[Float[Array, "time vertex 3"], Int[Array, "face 3"]]:
-    """Low-poly hull of all capsules: vertices in metres for each time, and the faces that they share."""
+    """Low-poly hull of all capsules.
+
+    Args:
+        posed: capsules (time, capsule).
+        height_m: of the person.
+        girth: thickness relative to the average body of that height.
+
+    Returns:
+        Vertices in m for each time, and the faces that they share.
+    """
     angles = np.arange(HULL_CORNERS) * 2 * np.pi / HULL_CORNERS
     circle = np.stack([np.cos(angles), np.sin(angles), np.zeros(HULL_CORNERS)], -1)
     radii, widths = radii_m(height_m, girth), widths_per_depth()

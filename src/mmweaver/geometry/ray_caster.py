@@ -47,7 +47,15 @@ class RayCaster:
         return self.first_hit(origins, directions)[0]
 
     def first_hit(self, origins: Points, directions: Points) -> tuple[PerPoint, Int[Array, " point"]]:
-        """Distance to the first face along unit directions, metres, and its index; inf and -1 where there is none."""
+        """The first face along rays.
+
+        Args:
+            origins: (point, 3) in m.
+            directions: unit vectors (point, 3).
+
+        Returns:
+            Distance in m and index of the face (point,); inf and -1 where there is none.
+        """
         if self._is_empty(origins):
             return np.full(len(origins), np.inf), np.full(len(origins), -1)
         hits = self._scene.run(_packed(origins), _packed(directions), output=True)
@@ -64,9 +72,15 @@ class RayCaster:
         return distance, face
 
     def is_clear(self, start: Points, end: Points, margin_m: float = 0.02) -> Bool[Array, " point"]:
-        """Whether no face lies between start and end, (point,), except within the margin at either end.
+        """Whether no face lies between two points. (Embree's OCCLUDED query has no far end, hence the distance.)
 
-        A segment shorter than its two margins is clear. (Embree's OCCLUDED query has no far end, hence the distance.)
+        Args:
+            start: (point, 3) in m.
+            end: (point, 3) in m.
+            margin_m: at either end, within which faces do not count; a segment shorter than two of them is clear.
+
+        Returns:
+            Bool (point,).
         """
         if self._is_empty(start):
             return np.ones(len(start), bool)

@@ -10,6 +10,12 @@ def unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
+def directions(azimuth_rad: np.ndarray, elevation_rad: np.ndarray) -> np.ndarray:
+    """Unit vectors (..., 3) of azimuths (positive to the right, +x) and elevations (positive upwards, +z)."""
+    level = np.cos(elevation_rad)
+    return np.stack([np.sin(azimuth_rad) * level, np.cos(azimuth_rad) * level, np.sin(elevation_rad)], -1)
+
+
 def level_from_camera(up_camera: Vec3) -> Rotation:
     """The rotation into the level frame (x right, y horizontal direction of the optical axis, z up).
 

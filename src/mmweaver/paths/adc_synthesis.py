@@ -60,7 +60,14 @@ class AdcSynthesis:
             ]
 
     def moving(self, paths: Paths) -> Tensor:
-        """Samples of moving paths (frame * segment, path): complex64 (frame, loop, tx, rx, sample), in sqrt(mW)."""
+        """Samples of moving paths.
+
+        Args:
+            paths: (frame * segment, path), amplitudes in sqrt(mW).
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
+        """
         config, count = self.config, len(self._segments)
         frames = len(paths) // count
         adc = torch.empty(
@@ -89,9 +96,14 @@ class AdcSynthesis:
         return torch.from_numpy(share[..., None, None].astype(np.float32)).to(self.device)
 
     def static(self, paths: StaticPaths, weight: Tensor | None = None) -> Tensor:
-        """Samples of static paths, complex64 (tx, rx, sample); the same in every loop.
+        """Samples of static paths, the same in every loop.
 
-        With `weight` (set, path), float or complex, those of so many sums of weighted paths: (set, tx, rx, sample).
+        Args:
+            paths: (path,).
+            weight: (set, path), real or complex: so many sums of weighted paths; by default one plain sum.
+
+        Returns:
+            Samples (tx, rx, sample), or (set, tx, rx, sample) with weights; complex64, in sqrt(mW).
         """
         weights = torch.ones(1, len(paths)) if weight is None else weight
         some = weights.ne(0).any(dim=0).nonzero()[:, 0]
@@ -130,7 +142,15 @@ class AdcSynthesis:
         return torch.cat([self._recorded(factors.summed(frame[None])) for frame in weight[:, some]])
 
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
-        """Samples of leakage, complex64 (tx, rx, sample), the same in every loop; `BoardEffects.leakage` gives it."""
+        """Samples of leakage, the same in every loop.
+
+        Args:
+            length_m: path lengths (tap,), as `BoardEffects.leakage` gives them.
+            amplitude: (tap, tx, rx) in sqrt(mW).
+
+        Returns:
+            Samples (tx, rx, sample), complex64.
+        """
         fast = self._fast.factor(length_m / SPEED_OF_LIGHT_MPS, 0.0)  # (tap, sample)
         adc = torch.tensordot(self._elements.pair_values(amplitude), fast, dims=([0], [0]))
         return self._elements.slots(adc, 0)
@@ -265,7 +285,15 @@ def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
 
 
 def interpolation(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(node, time): values at nodes times this are values in between, straight from node to node and beyond them."""
+    """Weights of linear interpolation, continued beyond the ends.
+
+    Args:
+        nodes: places (node,), rising.
+        at: places (time,) of interpolation.
+
+    Returns:
+        (node, time): values at nodes times this are values in between.
+    """
     if len(nodes) == 1:
         return np.ones((1, len(at)))
     left = np.clip(np.searchsorted(nodes, at) - 1, 0, len(nodes) - 2)

@@ -14,12 +14,28 @@ FLOOR_DB = -25.0  # side lobes
 
 
 def pattern(direction: Points, config: RadarConfig) -> PerPoint:
-    """Amplitude of one antenna in unit directions (point, 3), relative to its peak straight ahead (+y)."""
+    """Amplitude of one antenna relative to its peak straight ahead (+y).
+
+    Args:
+        direction: unit vectors (point, 3).
+        config: the radar, for its beam widths.
+
+    Returns:
+        (point,).
+    """
     return 10 ** (-pattern_db(direction, config) / 20)
 
 
 def pattern_db(direction: Any, config: RadarConfig) -> Any:
-    """Loss of one antenna in dB towards unit directions (..., 3), an array or a tensor; differentiable."""
+    """Loss of one antenna in dB; differentiable.
+
+    Args:
+        direction: unit vectors (..., 3), an array or a tensor.
+        config: the radar, for its beam widths.
+
+    Returns:
+        (...), 0 straight ahead.
+    """
     if isinstance(direction, np.ndarray):
         xp: Any = np
     else:

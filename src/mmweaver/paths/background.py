@@ -97,8 +97,14 @@ def check_recording(recording: RadarCube, config: RadarConfig) -> None:
 
 
 def agreeing_gain(maps: Sequence[tuple[Tensor, Tensor]]) -> float:
-    """The factor of amplitude at which recorded power maps agree with expected ones, pairs of (expected, recorded), by
-    the median of what both show. Raises InputError where they show nothing in common."""
+    """The factor of amplitude at which recorded power maps agree with expected ones, by the median of what both show.
+
+    Args:
+        maps: pairs of (expected, recorded) power.
+
+    Raises:
+        InputError: where they show nothing in common.
+    """
     ratios = []
     for expected, own in maps:
         shown = (own > SHOWN * own.max()) & (expected > SHOWN * expected.max())

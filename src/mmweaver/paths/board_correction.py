@@ -1,6 +1,6 @@
 """A recording without the errors of the board that made it: `board_effects` the other way round.
 
-Noise stays noise, so nothing is gained where the IF passes little: there it is raised by LARGEST_GAIN_DB at most. What
+Noise stays noise, so nothing is gained where the IF passes little: there it is raised by MAX_GAIN_DB at most. What
 is another error each time (drift) cannot be taken away. Reference: docs/board.md.
 """
 
@@ -16,7 +16,7 @@ from mmweaver.core.records import AdcCube
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.board_effects import BoardEffects
 
-LARGEST_GAIN_DB = 30.0
+MAX_GAIN_DB = 30.0
 WORST_CONDITION = 1e3  # of coupled antennas, beyond which they cannot be taken apart
 LIKE_THE_LEAKAGE = 0.5  # correlation of a recording of unknown scale with a board's leakage, from which it is that
 
@@ -31,9 +31,14 @@ class CorrectedSamples:
 
 
 def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
-    """Recorded samples (frame, loop, tx, rx, sample) as an ideal board would have recorded them.
+    """Recorded samples as an ideal board would have recorded them.
 
-    Raises InputError for the board of another radar, and for antennas whose coupling cannot be undone.
+    Args:
+        adc: samples (frame, loop, tx, rx, sample).
+        board: that recorded them.
+
+    Raises:
+        InputError: for the board of another radar, and for antennas whose coupling cannot be undone.
     """
     effects = BoardEffects(board, adc.config)
     done, left = [], []
@@ -58,7 +63,9 @@ def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
         done.append("range bias")
     fixed = replace(adc, samples=samples)
     if board.element_spacing_m is not None:
-        fixed = replace(fixed, config=_with_antennas(adc.config, effects.radar))
+        built = effects.radar
+        antennas = {"tx_position_m": built.tx_position_m, "rx_position_m": built.rx_position_m}
+        fixed = replace(fixed, config=replace(adc.config, **antennas))
         done.append("element spacing")
     if board.drift_ppm:
         left.append("drift: it is another one in each recording")
@@ -115,7 +122,7 @@ def _unfiltered(samples: np.ndarray, config: RadarConfig, effects: BoardEffects)
         response = np.where(share < 0, response.conj(), response)
         response = np.where(np.isin(share, (0.0, -0.5)), np.abs(response), response)  # these bins of it are real
     response = response * effects.gain
-    least = 10 ** (-LARGEST_GAIN_DB / 20) * effects.gain
+    least = 10 ** (-MAX_GAIN_DB / 20) * effects.gain
     response *= np.maximum(1, least / np.maximum(np.abs(response), 1e-12))
     spectrum = fft.fft(samples, axis=-1, overwrite_x=True) / response.astype(np.complex64)
     return np.asarray(fft.ifft(spectrum, axis=-1, overwrite_x=True))
@@ -131,7 +138,3 @@ def _nearer(samples: np.ndarray, config: RadarConfig, bias_m: float) -> np.ndarr
     from scipy.signal import hilbert
 
     return ((hilbert(samples.real, axis=-1) * turn).real + 0j).astype(np.complex64)
-
-
-def _with_antennas(config: RadarConfig, built: RadarConfig) -> RadarConfig:
-    return replace(config, tx_position_m=built.tx_position_m, rx_position_m=built.rx_position_m)

@@ -29,6 +29,8 @@ AVERAGE_SUBJECT, AVERAGE_NUM_POINTS = 90_000, 600  # the average body, no subjec
 DEFAULT_NUM_POINTS = 800
 CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # how far each part of the trunk breathes
 CHEST_BACK = 0.15  # and its back, of its front
+# how fast each capsule's radius grows along it
+TAPER = np.array([(c.end_radius_m - c.start_radius_m) / c.typical_length_m * (c.start != c.end) for c in CAPSULES])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,12 +49,12 @@ class ScatteringBody:
         girth: float = 1.0,
     ):  # fmt: skip
         self.echo = echo or SkinEcho()
-        self.scale = scale_of(height_m)
-        self.height_m = height_m
-        self.girth = girth
+        self.height_m, self.girth = height_m, girth
+        self.radii_m = radii_m(height_m, girth)  # (capsule, 2)
+        self.widths = widths_per_depth()  # (capsule,) how much wider than deep each is
         self._posed: tuple[bytes, PosedCapsules] | None = None
         rng = stream(subject, "body", num_points)
-        area = np.array([self._side_area(capsule) for capsule in CAPSULES])
+        area = np.array([_side_area(capsule) for capsule in CAPSULES])
         self.part = np.sort(rng.choice(len(CAPSULES), size=num_points, p=area / area.sum()))
         # Uniform over the sides and, by Archimedes, over the round caps.
         caps = np.array([_cap_shares(c) for c in CAPSULES])[self.part]
@@ -61,32 +63,9 @@ class ScatteringBody:
         self.cap_sine = over / np.maximum(np.where(over < 0, caps[:, 0], caps[:, 1]), 1e-9)
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
-        self.area_m2 = area.sum() * self.scale**2 * girth / num_points
+        self.area_m2 = area.sum() * scale_of(height_m) ** 2 * girth / num_points
         limb_db = [_limb_db(capsule, self.echo) for capsule in CAPSULES]
         self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
-
-    @staticmethod
-    def _side_area(capsule: Capsule) -> float:
-        radius = (capsule.start_radius_m + capsule.end_radius_m) / 2
-        return 2 * np.pi * radius * capsule.typical_length_m * (1 + sum(_cap_shares(capsule)))
-
-    @cached_property
-    def radii_m(self) -> np.ndarray:
-        """(capsule, 2)."""
-        return radii_m(self.height_m, self.girth)
-
-    @cached_property
-    def _taper(self) -> np.ndarray:
-        """How fast each capsule's radius grows along it."""
-        grows = [
-            (c.end_radius_m - c.start_radius_m) / c.typical_length_m if c.start != c.end else 0.0 for c in CAPSULES
-        ]
-        return np.array(grows)
-
-    @cached_property
-    def widths(self) -> np.ndarray:
-        """(capsule,) how much wider than deep each is."""
-        return widths_per_depth()
 
     def posed(self, joints_m: np.ndarray) -> PosedCapsules:
         """The capsules for joints (time, 22, 3); the last ones are kept, for skin and occlusion ask for the same."""
@@ -115,7 +94,7 @@ class ScatteringBody:
         offset[:, 0] *= width
         normal = local.copy()
         normal[:, 0] /= width
-        normal[:, 2] -= self._taper[part] * (self.cap_sine == 0)
+        normal[:, 2] -= TAPER[part] * (self.cap_sine == 0)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         rotation = posed.rotation[:, part]
         axis_points = posed.start_m[:, part] + posed.axis_m[:, part] * along[None, :, None]
@@ -129,6 +108,11 @@ class ScatteringBody:
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Low-poly hull of all capsules for occlusion: vertices (time, vertex, 3) and faces (face, 3)."""
         return hull(self.posed(joints_m), self.height_m, self.girth)
+
+
+def _side_area(capsule: Capsule) -> float:
+    radius = (capsule.start_radius_m + capsule.end_radius_m) / 2
+    return 2 * np.pi * radius * capsule.typical_length_m * (1 + sum(_cap_shares(capsule)))
 
 
 def _cap_shares(capsule: Capsule) -> tuple[float, float]:

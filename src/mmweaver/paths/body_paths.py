@@ -21,7 +21,7 @@ GHOST_SLAB_ECHOES = 2  # of a face in body-wall paths: front, and back with all 
 SKIN_MARGIN_M = 0.03  # a point on the skin is not occluded by its own capsule's hull
 ROOM_MARGIN_M = 0.05  # nor by the seat it touches
 WALL_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
-FAINTEST = 1e-4  # ghosts over one face of less power than this share of the direct paths are left out,
+MIN_SHARE = 1e-4  # ghosts over one face of less power than this share of the direct paths are left out,
 LEFT_OUT = 0.02  # and so much of the others' power, in their faintest paths
 CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine from its middle,
 SIDE_MARGIN = 0.05  # and in the sine to its right and left
@@ -181,7 +181,7 @@ class SkinPaths:
         total = below[:, -1:]
         strong = np.zeros_like(self.present)
         np.put_along_axis(strong, order, below > LEFT_OUT * total, axis=1)
-        return replace(self, present=self.present & strong & (total > FAINTEST * direct_power[:, None]))
+        return replace(self, present=self.present & strong & (total > MIN_SHARE * direct_power[:, None]))
 
     def paths(self, frame: int, motion: np.ndarray) -> Paths:
         """The paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""

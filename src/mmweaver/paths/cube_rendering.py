@@ -103,7 +103,14 @@ class CubeRenderer:
         self._segments = [_SegmentDoppler.of(one, by_tx) for one in self.clock.faded_segments]
 
     def moving(self, paths: Paths) -> Tensor:
-        """Cube values of moving paths (frame * segment, path): complex64 (frame, range, doppler, antenna)."""
+        """Cube values of moving paths.
+
+        Args:
+            paths: (frame * segment, path), amplitudes in sqrt(mW).
+
+        Returns:
+            Values (frame, range, doppler, antenna), complex64, in sqrt(mW).
+        """
         config, count = self.config, len(self._segments)
         frames = len(paths) // count
         values = torch.empty(
@@ -171,7 +178,14 @@ class CubeRenderer:
         return at_range.T @ self._elements.decoded(self._elements.pair_values(amplitude).flatten(1))
 
     def leakage_response(self, length_m: Tensor) -> Tensor:
-        """What leakage of amplitude 1 and path lengths (tap,) leaves in the range bins, complex64 (tap, range)."""
+        """Range response of leakage of amplitude 1.
+
+        Args:
+            length_m: path lengths (tap,).
+
+        Returns:
+            (tap, range), complex64.
+        """
         config = self.config
         delay_s = length_m / SPEED_OF_LIGHT_MPS
         kernel, _ = self._range_kernel(self._range_bin - (length_m / (2 * config.range_resolution_m)).float()[:, None])
@@ -179,7 +193,12 @@ class CubeRenderer:
         return (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:
-        """Adds static layers (range, antenna) or (frame, range, antenna) to cube values, in place."""
+        """Adds static layers to cube values, in place.
+
+        Args:
+            values: (frame, range, doppler, antenna).
+            layer: (range, antenna), or (frame, range, antenna).
+        """
         if self._static_mixing is not None:
             tx = layer.unflatten(-1, (self._static_mixing.shape[-1], -1))
             mixed = torch.einsum("bvw,...wr->...bvr", self._static_mixing, tx)

@@ -12,6 +12,7 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
+from mmweaver.geometry.rotations import directions
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.static_paths import scattered_paths
@@ -21,8 +22,8 @@ from mmweaver.paths.static_paths import scattered_paths
 SQUARE_METRES_A_METRE = 1.5e-4
 LEVELS_DB = (0.0, 12.0)  # over that, from room to room: a recorded hall has 12 dB more
 AT_M = 2.0
-FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
-NEAREST_M = 1.0
+MAX_RANGE_M = 8.0  # beyond, patches have the cross section of those there
+MIN_RANGE_M = 1.0
 PATCHES_A_METRE = 300
 SHAPE = 0.5  # of the gamma distribution; smaller is spikier
 # From the sides as much is received as from ahead (1 to 6 m, to 75 degrees, within 5 dB), 5 m aside at most.
@@ -30,27 +31,32 @@ AZIMUTH_RAD, ASIDE_M, ELEVATION_RAD = np.radians(75.0), 5.0, np.radians(40.0)
 
 
 def diffuse_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
-    """The patches of one room and radar, by the room's seed."""
+    """The patches of clutter of one room and radar.
+
+    Args:
+        config: the radar, for its range and antennas.
+        micro_seed: of the room.
+
+    Returns:
+        Static paths of kind CLUTTER, amplitudes in sqrt(mW).
+    """
     rng = stream(micro_seed, "room", "unresolved clutter")
-    count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))
-    range_m = np.sort(rng.uniform(NEAREST_M, max(config.max_range_m, NEAREST_M), count))
-    widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, NEAREST_M))
+    count = int(PATCHES_A_METRE * max(config.max_range_m - MIN_RANGE_M, 0.0))
+    range_m = np.sort(rng.uniform(MIN_RANGE_M, max(config.max_range_m, MIN_RANGE_M), count))
+    widest = np.minimum(np.sin(AZIMUTH_RAD), ASIDE_M / np.maximum(range_m, MIN_RANGE_M))
     azimuth = np.arcsin(widest * rng.uniform(-1, 1, count))
     elevation = rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count)
-    towards = np.stack(
-        [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], axis=1
-    )
-    ahead = np.stack([np.zeros(count), np.cos(elevation), np.sin(elevation)], axis=1)
-    gain = pattern(ahead, config) ** 2
+    gain = pattern(directions(np.zeros(count), elevation), config) ** 2
     texture = rng.gamma(SHAPE, 1 / SHAPE, count)
-    mean_m2 = (
-        room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
-    )
+    each_m2 = room_level(micro_seed) * SQUARE_METRES_A_METRE / PATCHES_A_METRE
+    mean_m2 = each_m2 * (np.minimum(range_m, MAX_RANGE_M) / AT_M) ** 4
     # the level is that of all directions together, as antennas weigh them
     cross_section_m2 = mean_m2 * texture / max(float((gain**2).mean()) if count else 1.0, 1e-9)
     amplitude = scatterer_gain(config) * gain * np.sqrt(cross_section_m2) / range_m**2
     phase = np.exp(2j * np.pi * rng.random(count))
-    return scattered_paths(towards * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config)
+    return scattered_paths(
+        directions(azimuth, elevation) * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config
+    )
 
 
 def seed_of_room(scene: Scene) -> int:

@@ -28,8 +28,11 @@ class Edges:
 def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edges:
     """Free edges of the mesh that the radar sees before a farther background, in pieces of SEGMENT_M.
 
-    `straight`: a piece runs as the edge's wider neighbourhood does. The mesh of a photo ends in steps of its cells,
-    whose own directions say little.
+    Args:
+        scene: room with its mesh.
+        caster: of that mesh.
+        straight: a piece runs as the edge's wider neighbourhood does: the mesh of a photo ends in steps of its cells,
+            whose own directions say little.
     """
     ends, opposite, face = _free_edges(scene.faces)
     vertices = scene.vertices_m.astype(float)

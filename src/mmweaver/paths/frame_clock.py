@@ -8,7 +8,7 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 
 NUM_NODES = 3  # instants of a segment at which positions are asked for
-LONGEST_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time for so long
+MAX_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time for so long
 BLOCK_S = 2.5e-3  # within which range changes to first order in time, and angles linearly from one to the next
 
 
@@ -65,7 +65,7 @@ class FrameClock:
         middle_s = config.idle_time_s + config.adc_start_time_s + config.num_samples / config.sample_rate_hz / 2
         loop_s = np.arange(config.num_loops) * config.loop_period_s
         self.chirp_s = loop_s[:, None] + config.tx_delay_s[None, :] + middle_s  # (loop, tx) since the frame's start
-        count = int(np.ceil(config.active_time_s / LONGEST_SEGMENT_S))
+        count = int(np.ceil(config.active_time_s / MAX_SEGMENT_S))
         count = min(count + 1 - count % 2, config.num_loops)
         loops = np.array_split(np.arange(config.num_loops), count)
         self.segments = tuple(self._segment(part) for part in loops)

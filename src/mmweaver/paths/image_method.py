@@ -120,7 +120,10 @@ def specular_reflectors(
 ) -> list[SpecularReflector]:
     """The largest planes that face the radar.
 
-    `rough`: whether their fine roughness scatters; `hidden`: whether those right behind others are hidden by them.
+    Args:
+        planes: flat faces of the room.
+        rough: whether their fine roughness scatters.
+        hidden: whether those right behind others are hidden by them.
     """
     facing = []
     for plane in planes:
@@ -138,7 +141,16 @@ def layered_faces(faces: list[SpecularReflector]) -> list[SpecularReflector]:
 
 
 def fresnel_radius_m(first_m: Values, second_m: Values, wavelength_m: float) -> Values:
-    """Radius of the first Fresnel zone at a point between two path lengths, in m."""
+    """Radius of the first Fresnel zone.
+
+    Args:
+        first_m: length from the one end to the point.
+        second_m: length from the point to the other end.
+        wavelength_m: of the wave.
+
+    Returns:
+        Radius in m, 0 at either end.
+    """
     return np.sqrt(wavelength_m * np.maximum(first_m * second_m, 0) / np.maximum(first_m + second_m, 1e-9))
 
 
@@ -162,7 +174,11 @@ def specular_paths(
 ) -> list[SpecularPath]:
     """All paths of one, two and three bounces from the radar to itself, each image once.
 
-    Each slab gives so many echoes at most; with one its reflection is that at the given frequency.
+    Args:
+        reflectors: flat faces.
+        wavelength_m: at the centre of the band.
+        frequency_hz: the centre of the band.
+        most_echoes: of each slab; with one its reflection is that at the centre.
     """
     paths: list[SpecularPath] = []
     seen: list[np.ndarray] = []

@@ -12,7 +12,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Values
 
-FAINTEST_BACK = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
+MIN_ECHO_SHARE = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,10 +76,14 @@ def relative_permittivity(material: Material, frequency_hz: float) -> complex:
 
 
 def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
-    """Complex reflection coefficient of a slab at each angle of incidence (its cosine, in [0, 1]).
+    """Complex reflection coefficient of a slab.
 
-    `te`: the electric field is parallel to the face (a vertically polarised radar and a wall); `tm`: it lies in the
-    plane of incidence (the same radar and the floor).
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence, in [0, 1].
+        frequency_hz: of the wave.
+        polarisation: "te", the electric field parallel to the face (a vertically polarised radar and a wall), or "tm",
+            the field in the plane of incidence (the same radar and the floor).
 
     Reference: ITU-R P.2040-3, equations 31a, 31b and 37a, 37c.
     """
@@ -88,7 +92,13 @@ def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *
 
 
 def transmission(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
-    """Complex transmission coefficient of a slab, relative to free space in its place; the rest as in `reflection`.
+    """Complex transmission coefficient of a slab, relative to free space in its place.
+
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence, in [0, 1].
+        frequency_hz: of the wave.
+        polarisation: see `reflection`.
 
     Reference: ITU-R P.2040-3, equation 37b, 37d.
     """
@@ -139,7 +149,7 @@ class SlabEchoes:
         coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
         longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()
         strongest = np.abs(coefficient).argmax()
-        kept = np.abs(coefficient) >= FAINTEST_BACK * np.abs(coefficient[strongest])
+        kept = np.abs(coefficient) >= MIN_ECHO_SHARE * np.abs(coefficient[strongest])
         turn = np.exp(2j * np.pi * frequency_hz * (longer_m - longer_m[strongest]) / SPEED_OF_LIGHT_MPS)
         coefficient[strongest] += (coefficient * turn)[~kept].sum()
         return SlabEchoes(coefficient[kept], longer_m[kept])
@@ -148,10 +158,17 @@ class SlabEchoes:
 def slab_echoes(
     material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te", most: int = 4
 ) -> SlabEchoes:
-    """At most so many echoes; the last stands for all later ones, so that the sum is exact at this frequency.
+    """A slab's reflection as a few echoes.
 
     Each echo is nearly flat over a radar's band, their sum is not: 12.5 mm of plasterboard reflect 0.19 to 0.28 of the
     amplitude within 3.4 GHz. Of slabs that nothing comes back through there is the front alone.
+
+    Args:
+        material: of the slab.
+        cos_incidence: cosine of the angle of incidence.
+        frequency_hz: at which the sum is exact.
+        polarisation: see `reflection`.
+        most: number of echoes; the last stands for all later ones.
     """
     face, through, root = (np.conj(part) for part in _slab(material, cos_incidence, frequency_hz, polarisation))
     longer_m = 2 * material.thickness_m * root.real
@@ -161,7 +178,7 @@ def slab_echoes(
     for order in range(1, most):
         coefficients.append(-face * (1 - face**2) * face ** (2 * order - 2) * again**order)
     coefficients[-1] = coefficients[-1] / (1 - face**2 * through)
-    if most == 1 or np.all(np.abs(coefficients[1]) < FAINTEST_BACK * np.abs(face)):
+    if most == 1 or np.all(np.abs(coefficients[1]) < MIN_ECHO_SHARE * np.abs(face)):
         return SlabEchoes((face * (1 - through) / (1 - face**2 * through))[None], np.zeros_like(longer_m)[None])
     return SlabEchoes(np.array(coefficients), np.arange(most).reshape(-1, *[1] * longer_m.ndim) * longer_m)
 

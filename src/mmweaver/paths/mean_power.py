@@ -52,7 +52,14 @@ class MeanPower:
         return self
 
     def maps(self, points: Points) -> PowerMaps:
-        """Points (..., point) in bins of the response; their amplitudes' absolute square is the mean power."""
+        """Mean power maps of points whose phases are independent.
+
+        Args:
+            points: (..., point) in bins of the response; their amplitudes' absolute square is the mean power.
+
+        Returns:
+            Power in mW (..., range, doppler), (..., range, azimuth), (..., range, elevation).
+        """
         power = points.amplitude.abs().square()
         at_range = self.response.range_kernel(self.axes.range_bin - points.range_bin[..., None])[0].square()
         weighted = (at_range * power[..., None]).transpose(-1, -2)

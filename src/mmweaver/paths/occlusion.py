@@ -8,17 +8,23 @@ from torch import Tensor
 
 from mmweaver.paths.body_model import average_body
 
-WIDEST_M = 0.2  # from a bone to the skin at most
+MAX_FLESH_M = 0.2  # from a bone to the skin at most
 BEHIND_M = 0.1  # farther than the body at least
 FRAMES_AT_ONCE = 5  # stay in the cache
 CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer's bodies occlude
 
 
 def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
-    """Whether the body of joints (frame, 22, 3) blocks the line from the radar to places (path, 3) or (frame, path, 3).
+    """Whether a body blocks the line from the radar to places.
 
-    Returns (frame, path) bool. The body has the capsules of the ray tracer, about the bones of a person of average
-    height.
+    The body has the capsules of the ray tracer, about the bones of a person of average height.
+
+    Args:
+        ends_m: places (path, 3), or (frame, path, 3).
+        joints_m: (frame, 22, 3).
+
+    Returns:
+        Bool (frame, path).
     """
     body = average_body()
     posed = body.posed(joints_m.double().cpu().numpy())
@@ -46,7 +52,7 @@ def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
     distance = ends.norm(dim=-1)
     unit = ends / distance[..., None]
     middle = torch.nn.functional.normalize(unit.mean(dim=1), dim=-1)
-    flesh = torch.asin((WIDEST_M / distance.amin(dim=1)).clamp(max=1.0))
+    flesh = torch.asin((MAX_FLESH_M / distance.amin(dim=1)).clamp(max=1.0))
     widest = torch.acos((unit @ middle[..., None])[..., 0].amin(dim=1).clamp(-1, 1)) + flesh
     in_cone = (rays @ middle[..., None])[..., 0] > torch.cos(widest.clamp(max=torch.pi))[:, None]
     return in_cone & (rays @ _sides(ends, middle) >= 0).all(dim=-1)
@@ -60,7 +66,7 @@ def _sides(ends_m: Tensor, middle: Tensor) -> Tensor:
     ahead = middle[:, None, :2]
     along, across = (ends_m[..., :2] * ahead).sum(-1), ends_m[..., 1] * ahead[..., 0] - ends_m[..., 0] * ahead[..., 1]
     azimuth = torch.atan2(across, along) + torch.atan2(ahead[..., 1], ahead[..., 0])
-    flesh = torch.asin((WIDEST_M / ends_m[..., :2].norm(dim=-1).amin(dim=1)).clamp(max=1.0))
+    flesh = torch.asin((MAX_FLESH_M / ends_m[..., :2].norm(dim=-1).amin(dim=1)).clamp(max=1.0))
     right, left = azimuth.amin(dim=1) - flesh, azimuth.amax(dim=1) + flesh
     level = torch.zeros_like(left)
     normals = (torch.stack([-right.sin(), right.cos(), level], -1), torch.stack([left.sin(), -left.cos(), level], -1))

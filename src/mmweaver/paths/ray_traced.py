@@ -68,11 +68,20 @@ class Simulator:
         background: RadarCube | None = None, board: Board | None = None, propagation: Propagation | None = None,
         room: RayTracedRoom | None = None,
     ):  # fmt: skip
-        """`board`: whose errors all signals have (default: those of `impairments` alone). `propagation`: which paths
-        there are. `room`: the scene as it was traced for another board with the same places of antennas.
-        `background`: a recording by this radar with nobody present, whose static clutter and noise are used.
+        """Traces the room.
 
-        Raises InputError for the recording of another radar.
+        Args:
+            scene: room and place of the radar.
+            config: the radar.
+            impairments: of an ideal board's receiver; by default all.
+            micro_seed: samples the phases of the room's surfaces.
+            background: a recording by this radar without people, whose static clutter and noise are used.
+            board: whose errors all signals have; by default those of `impairments` alone.
+            propagation: which paths there are.
+            room: the scene as it was traced for another board with the same places of antennas.
+
+        Raises:
+            InputError: for the recording of another radar.
         """
         self.config, self.radar_pose = config, scene.radar_pose
         self.impairments = impairments or Impairments()
@@ -147,9 +156,14 @@ class Simulator:
     ) -> Iterator[AdcCube]:
         """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
 
-        `first_frame`: the number of the first one, in the time of the poses, whose noise and micro-motion go on so.
-        People sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
-        `pose` is one person, several, or an empty tuple for the room alone.
+        Args:
+            pose: one person, several, or an empty tuple for the room alone.
+            num_frames: number of frames.
+            seed: of the receiver's noise and of micro-motion.
+            first_frame: number of the first one, in the time of the poses; noise and micro-motion continue from there.
+            num_points: skin points of each body.
+            echo: how skin scatters.
+            motions: sway, tremor and breathing, by default typical ones; STILL holds the joints alone.
 
         Raises:
             InputError: where a pose does not cover the frames or holds values that are not finite.
@@ -169,7 +183,16 @@ class Simulator:
             yield AdcCube(samples=samples, config=self.config, scale=unit)
 
     def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
-        """What the receiver records of paths in frames of these numbers, complex64 (frame, loop, tx, rx, sample)."""
+        """What the receiver records of paths.
+
+        Args:
+            paths: of the frames.
+            frames: their numbers (frame,), which noise and drift depend on.
+            receiver: noise and converter.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
+        """
         with one_thread():
             static, moving = self._static - self.synthesis.occluded(paths), paths.moving
             if self.board is not None:
@@ -198,9 +221,13 @@ class Simulator:
         return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
 
     def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
-        """What `Resynthesis` needs of a motion: joints at the clock's nodes (frame, node, 22, 3), and visibility.
+        """What `Resynthesis` needs of a motion.
 
-        Raises InputError as `chunks` does.
+        Returns:
+            Joints at the clock's nodes (frame, node, 22, 3) in m, and the visibility that rays decided.
+
+        Raises:
+            InputError: as `chunks` does.
         """
         self._check(pose, num_frames)
         frames = np.arange(num_frames)
@@ -236,7 +263,18 @@ class Simulator:
 def add_micro_motion(
     motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Joints at the nodes of frames (frame, node, 22, 3) with micro-motion, and how far the chest is raised, in m."""
+    """Adds a person's micro-motion.
+
+    Args:
+        motion: of the person.
+        joints_m: at the nodes of frames (frame, node, 22, 3).
+        frames: their numbers (frame,).
+        clock: of the radar.
+        height_m: of the person.
+
+    Returns:
+        The joints with micro-motion, and by how much the chest is raised, (frame, node) in m.
+    """
     time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
     moved = motion.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
     return moved.reshape(joints_m.shape), motion.chest_m(time_s).reshape(joints_m.shape[:2])

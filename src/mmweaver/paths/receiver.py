@@ -69,11 +69,18 @@ class Receiver:
     def receive(
         self, moving: Tensor, static: Tensor, static_rate: Tensor, frames: Sequence[int], *, on_device: bool = False
     ) -> Tensor:
-        """Samples as recorded, complex64 (frame, loop, tx, rx, sample), in sqrt(mW), of frames of these numbers.
+        """Samples as recorded.
 
-        `moving` (frame, loop, tx, rx, sample) may be overwritten; `static` (frame, tx, rx, sample) is the same in every
-        loop, `static_rate` (tx, rx, sample) how fast it changes within a chirp. Noise comes from the seed's streams, or
-        with `on_device` from the tensors' device, which is quicker on a GPU and gives other noise of the same kind.
+        Args:
+            moving: samples of moving paths (frame, loop, tx, rx, sample) in sqrt(mW); they may be overwritten.
+            static: samples of static paths (frame, tx, rx, sample), the same in every loop.
+            static_rate: how fast these change within a chirp (tx, rx, sample), in sqrt(mW)/s.
+            frames: numbers of the frames.
+            on_device: noise from the tensors' device, which is faster on a GPU and gives other noise of the same kind;
+                by default from the seed's streams.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
         """
         if on_device:
             self._add(moving, static, static_rate, *self._sampled(frames, moving))

@@ -15,10 +15,17 @@ from mmweaver.core.transmit_code import weights_of
 def exact_frame(
     position_m: Callable[[np.ndarray], np.ndarray], amplitude: np.ndarray, config: RadarConfig
 ) -> np.ndarray:
-    """ADC samples of one frame, complex128 (loop, tx, rx, sample), of moving point scatterers.
+    """ADC samples of one frame of moving point scatterers.
 
-    `position_m` maps times (time,) from the frame's start to positions (point, time, 3); it is asked for every
-    sample. `amplitude` (point,) complex. Reference: docs/radar_primer.md, equation 7.
+    Args:
+        position_m: maps times (time,) from the frame's start to positions (point, time, 3); called for every sample.
+        amplitude: (point,) complex.
+        config: the radar.
+
+    Returns:
+        Samples (loop, slot, rx, sample), complex128.
+
+    Reference: docs/radar_primer.md, equation 7.
     """
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     ramp_s = config.adc_start_time_s + np.arange(config.num_samples) / config.sample_rate_hz

@@ -49,10 +49,16 @@ class Resynthesis:
         self._realizations: dict[int, tuple[PreparedRoom, Tensor, Tensor]] = {}
 
     def samples(self, motion: TracedMotion, frames: np.ndarray, *, realization: int = 0) -> Tensor:
-        """ADC samples (frame, loop, tx, rx, sample) of frames of these numbers.
+        """ADC samples of a motion.
 
-        Realization 0 is what the simulator gave when it traced, to single precision. Any other has other
-        micro-phases of room and skin and other noise.
+        Args:
+            motion: traced in this room.
+            frames: numbers of the frames.
+            realization: 0 is what the simulator gave when it traced, to single precision; any other has other
+                micro-phases of room and skin and other noise.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64.
         """
         room, static, rate = self._room(realization)
         body = _body(motion.subject, motion.height_m)

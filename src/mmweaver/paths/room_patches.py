@@ -75,10 +75,17 @@ FIELDS = tuple(RoomPatches.__dataclass_fields__)
 
 
 def roulette(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of fewer than `most` of some powers, and how much power of its kind each stands for, 1 or more.
+    """Fewer than `most` of some powers, chosen so that the mean power stays.
 
-    Each is kept with a probability as its power, the strong ones always, so the mean stays; `luck`, uniform in [0, 1),
-    decides, so that the same are kept from frame to frame.
+    Each is kept with a probability as its power, the strong ones always.
+
+    Args:
+        power: (n,).
+        luck: (n,) uniform in [0, 1), which decides, so that the same are kept from frame to frame.
+        most: limit.
+
+    Returns:
+        Indices of those kept, and how much power of its kind each stands for, 1 or more.
     """
     least = power.sum() / most
     kept = np.flatnonzero(power > least * luck)

@@ -22,7 +22,7 @@ MAX_FACE_PATHS = 600  # patch-face paths of each order
 MAX_PATCHES, MAX_PAIRS = 200, 300  # patches whose pairs are looked at, and pairs of each order
 CLEAR_MARGIN_M = 0.06
 FACE_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
-NEAREST_M = 0.2  # between two patches: nearer ones are one surface
+MIN_RANGE_M = 0.2  # between two patches: nearer ones are one surface
 
 
 def room_room_paths(room: "RayTracedRoom") -> StaticPaths:
@@ -79,8 +79,8 @@ def _patch_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Ge
     towards = leg / np.maximum(leg_m, 1e-9)[..., None]
     power = some.cross_sections(towards.swapaxes(0, 1)).T * some.cross_sections(-towards) / (4 * np.pi)
     power *= scatterer_gain(config) ** 2 * np.outer(gain * standing_for**0.5, gain * standing_for**0.5) ** 2
-    power /= (np.outer(distance, distance) * np.maximum(leg_m, NEAREST_M)) ** 2
-    power = np.triu(np.where(leg_m > NEAREST_M, power, 0.0), 1)
+    power /= (np.outer(distance, distance) * np.maximum(leg_m, MIN_RANGE_M)) ** 2
+    power = np.triu(np.where(leg_m > MIN_RANGE_M, power, 0.0), 1)
     first, last, size = sampled_pairs(power, luck.random(power.size), MAX_PAIRS)
     clear = room.is_clear(some.place_m[first], some.place_m[last], CLEAR_MARGIN_M)
     first, last, size = first[clear], last[clear], size[clear]

@@ -21,10 +21,10 @@ from mmweaver.paths.room_patches import roulette, sampled_pairs
 if TYPE_CHECKING:
     from mmweaver.paths.visible_body import VisibleBody
 
-NEAREST_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
+MIN_RANGE_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
 ROOM_MARGIN_M = 0.06
 MAX_BODY_PAIRS = 32  # of parts of two people in a frame
-FAINTEST_OF_DIRECT = 1e-6  # power of a frame's pairs, or of body-radar-body, that is left out
+MIN_DIRECT_SHARE = 1e-6  # power of a frame's pairs, or of body-radar-body, that is left out
 # A radar as what a body's echo meets: an evaluation board of 7 cm by 7 cm, half of whose power comes back, diffusely.
 BOARD_AREA_M2, BOARD_REFLECTIVITY = 0.07**2, 0.5
 
@@ -118,19 +118,19 @@ class BodyRoomPaths:
         """Those of one frame, chosen."""
         seen, parts_m = self.seen, self.middles_m(frame)
         middle_m = seen.posed.place_m[frame].mean(axis=0)
-        gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * NEAREST_M)
+        gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * MIN_RANGE_M)
         level = self.patches.cross_section_m2 * (self._patch_gain / (self._patch_m * gap_m)) ** 2
         near, standing_for = roulette(level, self._patch_luck, self.sampling.most_patches)
         some = self.patches[near]
         clear = self.room.is_clear(np.broadcast_to(middle_m, some.place_m.shape), some.place_m, ROOM_MARGIN_M)
         near, some, standing_for = near[clear], some[clear], standing_for[clear]
         leg = some.place_m - parts_m[:, None]  # (part, patch, 3)
-        leg_m = np.maximum(np.linalg.norm(leg, axis=2), NEAREST_M)
+        leg_m = np.maximum(np.linalg.norm(leg, axis=2), MIN_RANGE_M)
         sigma = self.bistatic(frame, some.place_m)  # (part, patch)
         power = seen.gain**2 * (seen.pattern(unit(parts_m))[:, None] * self._patch_gain[near]) ** 2 * sigma
         power = power * some.cross_sections(-leg / leg_m[..., None]) / (4 * np.pi)
         power *= standing_for / (np.linalg.norm(parts_m, axis=1)[:, None] * leg_m * self._patch_m[near]) ** 2
-        power *= power.sum() >= FAINTEST_OF_DIRECT * direct_power
+        power *= power.sum() >= MIN_DIRECT_SHARE * direct_power
         part, patch, size = sampled_pairs(power, self._pair_luck[:, near], self.sampling.most_pairs)
         amplitude = size * self.phase[part] * self.patches.phase[near[patch]]
         return Pairs(first=part, second=near[patch], amplitude=amplitude)
@@ -167,7 +167,7 @@ class BodyRoomPaths:
         board = 4 * BOARD_REFLECTIVITY * BOARD_AREA_M2 * np.maximum(towards[:, 1], 0.0) ** 2
         level = seen.gain * seen.pattern(towards) ** 2
         amplitude = level * np.sqrt(each * each.sum() * board) / (4 * np.pi) * self.phase**2
-        return np.where(np.abs(amplitude) ** 2 > FAINTEST_OF_DIRECT * direct_power, amplitude, 0.0)
+        return np.where(np.abs(amplitude) ** 2 > MIN_DIRECT_SHARE * direct_power, amplitude, 0.0)
 
 
 class BodyBodyPaths:
@@ -191,14 +191,14 @@ class BodyBodyPaths:
     def _pairs(self, frame: int) -> Pairs:
         one, other = self.first, self.second
         a_m, b_m = one.middles_m(frame), other.middles_m(frame)
-        leg_m = np.maximum(np.linalg.norm(a_m[:, None] - b_m, axis=2), NEAREST_M)
+        leg_m = np.maximum(np.linalg.norm(a_m[:, None] - b_m, axis=2), MIN_RANGE_M)
         sigma = one.bistatic(frame, b_m) * other.bistatic(frame, a_m).T
         level = one.seen.gain * np.outer(one.seen.pattern(unit(a_m)), other.seen.pattern(unit(b_m)))
         distance_m = np.outer(np.linalg.norm(a_m, axis=1), np.linalg.norm(b_m, axis=1)) * leg_m
         power = level**2 * sigma / (4 * np.pi * distance_m**2)
         power *= one.room.is_clear(a_m[:, None], b_m[None], ROOM_MARGIN_M)
         direct_power = one.seen.direct_power[frame] + other.seen.direct_power[frame]
-        power *= power.sum() >= FAINTEST_OF_DIRECT * direct_power
+        power *= power.sum() >= MIN_DIRECT_SHARE * direct_power
         first, second, size = sampled_pairs(power, self._luck, MAX_BODY_PAIRS)
         return Pairs(first=first, second=second, amplitude=size * one.phase[first] * other.phase[second])
 

@@ -47,9 +47,14 @@ class SkinEcho:
         return self.bistatic(cos, cos, cos)
 
     def bistatic(self, cos_in: np.ndarray, cos_out: np.ndarray, cos_half: np.ndarray) -> np.ndarray:
-        """From one direction to another; `cos_half` is between the normal and the direction half way between both.
+        """From one direction to another, 0 where a cosine is 0 or less.
 
-        0 where a cosine is 0 or less: no return. Reciprocal: the two directions are interchangeable.
+        Reciprocal: the two directions are interchangeable.
+
+        Args:
+            cos_in: between the normal and the one direction.
+            cos_out: between the normal and the other.
+            cos_half: between the normal and the direction half way between both.
         """
         secant2 = 1 / np.clip(cos_half, 1e-3, 1.0) ** 2
         narrow = 1 / (2 * self.slope**2)

@@ -24,11 +24,17 @@ from mmweaver.paths.static_paths import scattered_paths
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
-FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
+MIN_SHARE = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
 
 
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
-    """Static echoes (echo,) with sampled phases."""
+    """Static echoes with sampled phases.
+
+    Args:
+        static: mean echoes (echo,).
+        config: the radar.
+        room_seed: of the phases.
+    """
     rng = stream(room_seed, "weaver", "room")
     amplitude = points_of(static, _response(config)).amplitude
     cycles = rng.random(len(amplitude))
@@ -43,11 +49,21 @@ def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> St
 def strongest_first(paths: StaticPaths) -> StaticPaths:
     """Static paths in the order of their strength; those too faint to matter are left out."""
     size = paths.amplitude.abs()
-    return paths[size.argsort(descending=True)[: int((size > FAINTEST * size.max()).sum())]]
+    return paths[size.argsort(descending=True)[: int((size > MIN_SHARE * size.max()).sum())]]
 
 
 def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Moving echoes (frame, echo) with sampled phases. `aspect` (frame, 3): twice the line of sight the body sees."""
+    """Moving echoes with sampled phases.
+
+    Args:
+        moving: mean echoes (frame, echo).
+        aspect: (frame, 3), twice the line of sight that the body sees.
+        config: the radar.
+        subject: whose spots of skin scintillate.
+
+    Returns:
+        Paths (frame, echo).
+    """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
     scintillation = (carrier(along_m, config) * level).sum(dim=-1)
@@ -58,11 +74,20 @@ def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subje
 def sample_moving_segments(
     moving: MeanEchoes, aspect: Tensor, time_s: Tensor, config: RadarConfig, subject: int
 ) -> Paths:
-    """The same of frames with long chirps: echoes (frame, segment, echo), a path for each spot of skin.
+    """Moving echoes of frames with long chirps, a path for each spot of skin.
 
-    `aspect` (frame, segment, 3), `time_s` (segment,) the middles of the segments. Spots are paths of their own, whose
-    phases follow the turning body: a sum of them, constant within a segment, would jump from one to the next. All are
-    at their echo's range, as above. Returns paths (frame * segment, echo * spot).
+    Spots are paths of their own, whose phases follow the turning body: a sum of them, constant within a segment, would
+    jump from one to the next. All are at their echo's range.
+
+    Args:
+        moving: mean echoes (frame, segment, echo).
+        aspect: (frame, segment, 3), twice the line of sight that the body sees.
+        time_s: (segment,), the middles of the segments.
+        config: the radar.
+        subject: whose spots of skin scintillate.
+
+    Returns:
+        Paths (frame * segment, echo * spot).
     """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("gtc,esc->gtes", aspect, offset_m)
@@ -78,10 +103,19 @@ def sample_moving_segments(
 
 
 def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Cells (frame, segment, cell) with sampled phases at times (frame, segment), paths (frame * segment, cell).
+    """Cells with sampled phases.
 
     A cell is one scatterer at its place that moves with its velocity. It has one random phase, which turns with that
     velocity from frame to frame as it does from chirp to chirp; at rest it stays.
+
+    Args:
+        cells: (frame, segment, cell).
+        time_s: (frame, segment).
+        config: the radar.
+        subject: whose phases they are.
+
+    Returns:
+        Paths (frame * segment, cell).
     """
     amplitude = points_of(cells, _response(config)).amplitude
     turned = carrier(cells.velocity_mps.double() * time_s[..., None], config)

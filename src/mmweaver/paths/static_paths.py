@@ -12,7 +12,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Values
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.geometry.rotations import unit
+from mmweaver.geometry.rotations import directions, unit
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
@@ -25,7 +25,7 @@ AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
 AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
 EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
 EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
-NEAREST_M = 0.15
+MIN_RANGE_M = 0.15
 THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is the whole wall: furniture has other faces behind
 SAME_WALL_M = 0.3  # nearer behind a wall lies the same one: a photo's bumps, the other face of a scan
 
@@ -191,7 +191,16 @@ class RayTracedRoom(PreparedRoom):
         return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
-        """Bool (...): nothing of the room lies between start and end (..., 3), but for a margin at either end."""
+        """Whether nothing of the room lies between two points.
+
+        Args:
+            start_m: (..., 3).
+            end_m: (..., 3).
+            margin_m: at either end, within which faces do not count.
+
+        Returns:
+            Bool (...).
+        """
         shape = np.broadcast_shapes(start_m.shape, end_m.shape)
         start = np.broadcast_to(start_m, shape).reshape(-1, 3).astype(float)
         end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
@@ -206,10 +215,7 @@ class RayTracedRoom(PreparedRoom):
         elevation = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * step_el - ELEVATION_LIMIT_RAD
         cycles = rng.random(azimuth.size)
         solid_angle = (np.cos(elevation) * step_az * step_el).ravel()
-        direction = np.stack(
-            [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
-        ).reshape(-1, 3)  # fmt: skip
-        struck, hit = self._struck(direction, solid_angle)
+        struck, hit = self._struck(directions(azimuth, elevation).reshape(-1, 3), solid_angle)
         cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
         phase = np.exp(2j * np.pi * cycles[hit])
         self._patches = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
@@ -219,7 +225,7 @@ class RayTracedRoom(PreparedRoom):
     def _struck(self, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
         """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
         distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
-        hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
+        hit = (face >= 0) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         return _Struck.of(self._scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
 
     def _behind_walls(self, struck: "_Struck") -> StaticPaths:
@@ -294,7 +300,7 @@ class RayTracedRoom(PreparedRoom):
         cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * reflectivity[edges.material]
         cross_section *= lobe
         cycles = rng.random(len(cos))
-        keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
+        keep = (cross_section > 1e-7) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
         # into other directions than straight back an edge scatters as if it were seen from the side
         level = cross_section / lobe[keep] * EDGE_LOBE
@@ -312,7 +318,14 @@ class RayTracedRoom(PreparedRoom):
 
 
 def scattered_paths(place_m: np.ndarray, amplitude: np.ndarray, kind: Interaction, config: RadarConfig) -> StaticPaths:
-    """Static paths to scatterers at places (path, 3) and straight back, of amplitude (path,) in sqrt(mW)."""
+    """Static paths to scatterers and straight back.
+
+    Args:
+        place_m: (path, 3).
+        amplitude: (path,) complex, in sqrt(mW).
+        kind: of all paths.
+        config: the radar, for its antennas.
+    """
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
     back = np.linalg.norm(place_m[:, None] - rx, axis=-1)

@@ -42,7 +42,14 @@ def room_words(room: PreparedRoom) -> list[list[str]]:
 def room_of(
     arrays: dict[str, np.ndarray], words: list[list[str]], config: RadarConfig, propagation: Propagation
 ) -> PreparedRoom:
-    """The room again, for the radar that it was prepared for, with its paths of first order."""
+    """The room again, with its paths of first order.
+
+    Args:
+        arrays: as `room_arrays` gives them.
+        words: as `room_words` gives them.
+        config: the radar that the room was prepared for.
+        propagation: with which it was.
+    """
     place_m, amplitude = arrays["place_m"].astype(float), arrays["amplitude"].astype(float) @ np.array([1, 1j])
     parts, first = [], 0
     for kind, count in zip(STATIC_KINDS, arrays["count"], strict=True):

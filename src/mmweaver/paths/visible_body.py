@@ -82,7 +82,16 @@ def hulls_of(bodies: list[ScatteringBody], joints_m: list[np.ndarray]) -> list[R
 
 
 def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.ndarray:
-    """Indices of the static paths, of those asked for, that a body blocks before the first or after the last vertex."""
+    """Which static paths a body blocks before the first or after the last vertex.
+
+    Args:
+        hull: of the body.
+        paths: static paths.
+        asked: indices of those that are tested.
+
+    Returns:
+        Indices of the blocked ones.
+    """
     first, last = paths.departure_vertex_m.numpy()[asked], paths.arrival_vertex_m.numpy()[asked]
     blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
     other = np.flatnonzero(np.any(first != last, axis=1))

@@ -8,7 +8,7 @@ import numpy as np
 import torch
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.dsp.windows import SHORTEST_HANN
+from mmweaver.dsp.windows import MIN_HANN_LOOPS
 
 MIXED_POWER = 1.5  # of 1, -1/2, -1/2
 
@@ -19,7 +19,7 @@ def cell_noise(rng: np.random.Generator, config: RadarConfig, num_frames: int) -
     out = np.empty(shape, np.complex64)
     samples = torch.empty(num_sampled_bins(config), config.num_loops, 2 * config.num_antennas)
     generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
-    mixes_loops = config.num_loops >= SHORTEST_HANN
+    mixes_loops = config.num_loops >= MIN_HANN_LOOPS
     power = 2 * MIXED_POWER * (MIXED_POWER if mixes_loops else 1.0)
     for frame in out:  # one at a time stays in the cache
         lines = range_bins(samples.normal_(generator=generator).numpy(), config)

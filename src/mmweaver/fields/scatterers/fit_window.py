@@ -35,7 +35,13 @@ class FitWindow:
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int, hop: int) -> "FitWindow":
-        """Frames `hop` loops apart, or separate frames where hop is 0."""
+        """The working frames of a radar.
+
+        Args:
+            config: the radar.
+            num_frames: of the cube.
+            hop: loops from one frame to the next; 0 for separate frames.
+        """
         window = _long_window(config.num_loops, num_frames, hop) if hop else None
         response = PointResponse(config, window)
         axes = response.axes()

@@ -26,7 +26,7 @@ Array = np.ndarray
 MIN_SHARE = 0.05
 CALIBRATED_EVERY = 4  # stages: gains change slowly
 NOISE_CELLS = 10_000  # of which the median tells the power of the noise
-LARGEST_GROUP = 160  # scatterers that are solved for together
+MAX_GROUP = 160  # scatterers that are solved for together
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,13 @@ class FitRecipe:
 
 
 def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
-    """Layers that approximate the working frames `target` (frame, range, doppler, antenna) in least squares."""
+    """Layers that approximate working frames in least squares.
+
+    Args:
+        target: working frames (frame, range, doppler, antenna) in centred phase.
+        fit_window: of these frames.
+        recipe: budget and effort.
+    """
     with torch.no_grad():
         return Fit(target, fit_window, recipe).run()
 
@@ -121,7 +127,7 @@ class Fit:
             return
         self.points = refined_factors(
             self.points, _matrices(self.received), _matrices(self.residual), self.damping,
-            steps=steps, largest=LARGEST_GROUP,
+            steps=steps, largest=MAX_GROUP,
         )  # fmt: skip
         self.refinements += 1
         if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):

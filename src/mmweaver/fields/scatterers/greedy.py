@@ -12,7 +12,7 @@ from mmweaver.fields.scatterers.point_factors import FactorAxes
 Array = np.ndarray
 BEAMS_A_WAVELENGTH = 2.2  # slightly denser than the array's resolution
 CELLS_A_POINT, CELLS_AT_ONCE = 12, 8192
-LEAST_BEND = 0.5  # of a parabola, relative to its peak
+MIN_BEND = 0.5  # of a parabola, relative to its peak
 ROUNDED = 1e-4
 PEAK_SHARE = 0.9  # of the peak that a new scatterer gets, for neighbours share its energy
 SIDES = (-1, 0, 1)
@@ -108,9 +108,12 @@ class Greedy:
         power.flat[cells], beam.flat[cells] = each[np.arange(len(best)), best], best
 
     def next_points(self, residual: Array, *, count: int, least: float) -> NewPoints:
-        """The `count` best new scatterers over all frames.
+        """The best new scatterers over all frames, local maxima over range and Doppler.
 
-        Candidates are local maxima over range and Doppler that explain more energy than `least`.
+        Args:
+            residual: (frame, range, doppler, antenna).
+            count: how many at most.
+            least: energy that each must explain.
         """
         least = max(least, 0.0)
         power, beam = self.matched_power(residual, count=count, least=least)
@@ -198,4 +201,4 @@ def _offset(values: Array, cells: Array, steer: Array, peak: Array, index: Array
         ((values[cells + side * stride * inside] * steer).sum(axis=1) / np.where(peak, peak, 1)).real * inside
         for side, inside in ((-1, index > 0), (1, index < size - 1))
     )
-    return ((after - before) / np.maximum(2 * (2 - after - before), LEAST_BEND)).clip(-0.5, 0.5)
+    return ((after - before) / np.maximum(2 * (2 - after - before), MIN_BEND)).clip(-0.5, 0.5)

@@ -42,7 +42,16 @@ def values_of_point(response: PointResponse) -> int:
 
 
 def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
-    """Renders points and static layer (frame, range, doppler, antenna) in centred phase."""
+    """Renders points and static layer in centred phase.
+
+    Args:
+        layers: of one fit window.
+        response: of that window.
+        axes: cells to render.
+
+    Returns:
+        (frame, range, doppler, antenna), complex64.
+    """
     cells = response.render(layers.points, axes, static_cells(layers.static, response, axes))
     return cells * layers.calibration if bool((layers.calibration != 1).any()) else cells
 

@@ -19,9 +19,9 @@ from mmweaver.fields.scatterers.point_factors import PointFactors
 
 Array = np.ndarray
 SOLVE = get_lapack_funcs("posv", dtype=np.float32)
-LARGEST_STEP_BINS = 0.5
-LARGEST_STEP_DIRECTION = 0.25
-DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 3e-2, 3e-3, 1e3
+MAX_STEP_BINS = 0.5
+MAX_STEP_DIRECTION = 0.25
+DAMPING_START, DAMPING_MIN, DAMPING_MAX = 3e-2, 3e-3, 1e3
 DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a step that is rejected costs as much as one that is not
 HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
@@ -39,7 +39,7 @@ class Damping:
     def learn(self, frame: int, *, is_better: bool) -> None:
         """Lowers the damping of a frame whose step was accepted, raises that of another."""
         changed = self.value[frame] / DAMPING_DOWN if is_better else self.value[frame] * DAMPING_UP
-        self.value[frame] = min(max(changed, DAMPING_LEAST), DAMPING_MOST)
+        self.value[frame] = min(max(changed, DAMPING_MIN), DAMPING_MAX)
 
 
 def refined(
@@ -52,11 +52,22 @@ def refined(
     steps: int,
     largest: int,
 ) -> tuple[Points, Tensor]:
-    """The points (frame, point) after `steps` steps, and the residual of the target.
+    """Levenberg-Marquardt refinement of all scatterers.
 
-    The target is (frame, range, doppler, antenna) in centred phase, its axes are those of the radar or parts of them.
     Frames of more than `largest` scatterers are split into groups of neighbours in range, solved in turn. A step that
     would raise a frame's error is rejected. Padded points have amplitude zero and stay.
+
+    Args:
+        points: (frame, point).
+        target: (frame, range, doppler, antenna) in centred phase.
+        response: of the radar.
+        axes: of the target, those of the radar or parts of them.
+        damping: of each frame, changed in place.
+        steps: number of steps.
+        largest: scatterers that are solved for together.
+
+    Returns:
+        The points after the steps, and the residual of the target.
     """
     residual = target - response.render(points, axes)
     received, rest = (torch.view_as_real(values.contiguous()).flatten(2).numpy() for values in (target, residual))
@@ -88,7 +99,7 @@ def refined_factors(
             for frame in filled:
                 for group, cells in _groups(points, frame, counts[frame], largest)[half::2]:
                     moves[frame, group] = _step(points, frame, group, rest[frame], cells, float(damping.value[frame]))
-            trial = points.moved(moves, LARGEST_STEP_BINS, LARGEST_STEP_DIRECTION)
+            trial = points.moved(moves, MAX_STEP_BINS, MAX_STEP_DIRECTION)
             for frame in filled:
                 left = received[frame] - trial.rendered(frame, counts[frame])
                 trial_cost = np.vdot(left, left)

@@ -1,0 +1,89 @@
+"""Files of a checked header and checked records, which .mmw and .mmwl are.
+
+    magic number | version u8 | length of header u16 | header | CRC-32 of all before | record, record, ...
+
+All is little-endian. A record ends in the CRC-32 of all of it; a check of 16 bits behind its head tells a damaged
+length from a file that was cut short.
+"""
+
+import struct
+import zlib
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import BinaryIO, ClassVar
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import check_regular, open_regular
+
+PREFIX = struct.Struct("<4sBH")
+CHECK = struct.Struct("<I")
+HEAD_CHECK = struct.Struct("<H")
+
+
+def checked(body: bytes) -> bytes:
+    """Bytes and their CRC-32."""
+    return body + CHECK.pack(zlib.crc32(body))
+
+
+def head_check(head: bytes) -> bytes:
+    """The check of 16 bits behind the head of a record."""
+    return HEAD_CHECK.pack(zlib.crc32(head) & 0xFFFF)
+
+
+class CheckedFile(ABC):
+    """A file whose header and places of records are read and checked at once, records on demand.
+
+    `cut_short` is the number of bytes after the last whole record; 0 where the file is whole.
+    """
+
+    MAGIC: ClassVar[bytes]
+    SUFFIX: ClassVar[str]
+    READABLE: ClassVar[tuple[int, ...]]  # versions
+    MADE_BY: ClassVar[str]  # the command that makes one
+
+    def __init__(self, path: Path | str):
+        """Raises InputError where the file is unreadable, of another kind, or damaged before its first record."""
+        self.path, self.cut_short = Path(path), 0
+        self.num_bytes = check_regular(path)
+        with open_regular(path) as stream:
+            front = stream.read(PREFIX.size)
+            if len(front) < PREFIX.size or front[: len(self.MAGIC)] != self.MAGIC:
+                raise InputError(f"{path} is no {self.SUFFIX} file; make one with: {self.MADE_BY}")
+            _, self.version, size = PREFIX.unpack(front)
+            if self.version not in self.READABLE:
+                raise InputError(
+                    f"{path} is a {self.SUFFIX} file of version {self.version}, or damaged; this program reads"
+                    f" {', '.join(map(str, self.READABLE))}"
+                )
+            body, check = stream.read(size), stream.read(CHECK.size)
+            if len(check) < CHECK.size or CHECK.unpack(check)[0] != zlib.crc32(front + body):
+                raise self.damaged("its header fails its checksum")
+            try:
+                self._read_header(body)
+            except InputError as error:
+                raise self.damaged(str(error)) from None
+            except (zlib.error, ValueError, LookupError, TypeError, OverflowError, AttributeError) as error:
+                raise self.damaged(f"its header is malformed ({error})") from None
+            self._find_records(stream)
+
+    @abstractmethod
+    def _read_header(self, body: bytes) -> None:
+        """Reads the header; whatever it raises becomes one clear line."""
+
+    @abstractmethod
+    def _find_records(self, stream: BinaryIO) -> None:
+        """Finds the records, the first of which begins where the stream is."""
+
+    def read_checked(self, start: int, num_bytes: int, what: str) -> bytes:
+        """Bytes that their CRC-32 follows. Raises InputError where it does not match."""
+        with open_regular(self.path) as stream:
+            stream.seek(start)
+            data = stream.read(num_bytes + CHECK.size)
+        body = data[:num_bytes]
+        if len(data) < num_bytes + CHECK.size or CHECK.unpack(data[num_bytes:])[0] != zlib.crc32(body):
+            raise self.damaged(f"{what} fails its checksum")
+        return body
+
+    def damaged(self, why: str) -> InputError:
+        """The error for damage of this file."""
+        return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
