@@ -55,12 +55,8 @@ def area_lights(placed: tuple[PlacedPiece, ...], lighting: Lighting) -> list[Are
             case "ceiling lamp":
                 low, high, normal, radiance = (x0, y0, -0.05), (x1, y1, -0.05), (0.0, 0.0, -1.0), lighting.ceiling
             case "floor lamp" | "table lamp":
-                low, high, normal, radiance = (
-                    (-0.14, -0.14, top + 0.01),
-                    (0.14, 0.14, top + 0.01),
-                    (0.0,) * 3,
-                    lighting.lamp,
-                )
+                above = top + 0.01
+                low, high, normal, radiance = (-0.14, -0.14, above), (0.14, 0.14, above), (0.0,) * 3, lighting.lamp
             case _:
                 continue
         corners = [low, (high[0], low[1], low[2]), (low[0], high[1], high[2]), normal, (0.0, 0.0, 0.0)]
