@@ -93,7 +93,6 @@ REVIEWED: dict[str, str] = {
             "cannot be shared by □ processes evenly",
             "train some with mmweaver train pose",
             "give a model of mmweaver recognise train by --model",
-            "needs the package moge",
         ),
         CANNOT,
     ),
