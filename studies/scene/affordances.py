@@ -34,7 +34,7 @@ from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
-from studies.scene.room_contact import contact
+from studies.scene.room_contact import contact, signed_distance_m
 from studies.study import Reads
 
 DEVELOP = ("office", "living_room", "bedroom", "dining_room", "corridor", "workshop")
@@ -110,7 +110,7 @@ def _is_same_seat(found: Seat, seat: Seat) -> bool:
 def _is_on_seat(room: ProceduralRoom, found: Seat) -> bool:
     """Whether a place is on a seat, at the height of its surface."""
     piece = np.array(room.boxes.piece)
-    distance = room.boxes.distance_m(found.position_m[None])[0]
+    distance = signed_distance_m(room.boxes, found.position_m[None])[0]
     frame = RadarFrame(room.shell)
     for number, item in enumerate(room.pieces):
         if not item.piece.seats or distance[piece == number].min() > 0.1:

@@ -19,6 +19,14 @@ _SEATED = {"pelvis", "spine1", "spine2", "spine3", "left_hip", "right_hip", "lef
 _ARMS = {"shoulder", "elbow", "wrist"}
 
 
+def signed_distance_m(boxes: Boxes, points_m: np.ndarray) -> np.ndarray:
+    """Distance of each point to each box's surface, (point, box) metres; negative inside."""
+    cosine, sine = np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)
+    x, y, z = np.moveaxis(points_m[:, None] - boxes.centre_m[None], -1, 0)
+    beyond = np.abs(np.stack([cosine * x + sine * y, cosine * y - sine * x, z], -1)) - boxes.half_m
+    return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Contact:
     """Deepest intersection of a motion: of trunk, legs and head, and of the arms, in metres beyond the tolerance; 0 =
@@ -56,7 +64,7 @@ def contact(
     own = _piece_under(boxes, seat_m)
     worst = {"body": (0.0, ""), "arms": (0.0, "")}
     for capsule, points, radius in sampled(pose, _ALONG):
-        depth = radius[:, None] - boxes.distance_m(points) - ALLOWED_M
+        depth = radius[:, None] - signed_distance_m(boxes, points) - ALLOWED_M
         if own is not None and is_moved:
             depth[:, own] = -np.inf
         elif capsule.start in _SEATED and own is not None:

@@ -51,7 +51,7 @@ FEATURES = (
     ("python 'import mmweaver.compression.zarr_codec'", "dataset"),
     ("python 'from mmweaver.models.hub import push_to_hub; push_to_hub(None, None)'", "weaver"),
 )  # fmt: skip
-NOT_IN_AN_EXTRA = {"moge", "liblzfse"}  # one is not on PyPI, one has no wheels; their messages say what to install
+NOT_IN_AN_EXTRA = {"liblzfse"}  # has no wheels; the message says what to install
 
 
 @pytest.fixture(scope="module")

@@ -59,7 +59,8 @@ def polycam(folder: Path, clockwise: int = 0) -> None:
     rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
     save(folder / "keyframes" / "images" / "100.jpg", rgb)
     save(folder / "keyframes" / "depth" / "100.png", depth_m, 0.001)
-    up = ({"t_10": 0.0, "t_11": 1.0}, {"t_10": 1.0, "t_11": 0.0})[clockwise]  # clockwise: up lies to the right
+    turn = ([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, -1, 0], [1, 0, 0], [0, 0, 1]])[clockwise]  # up lies to the right
+    up = {f"t_{i}{j}": float([*turn[i], 0][j]) for i in range(3) for j in range(4)}
     place = folder / "keyframes" / "cameras" / "100.json"
     place.parent.mkdir()
     place.write_text(json.dumps({"fx": fx, "fy": fy, "cx": cx, "cy": cy, **up}))

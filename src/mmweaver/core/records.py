@@ -4,7 +4,8 @@ Frame of reference for every position: the radar's. x right, y away from the rad
 origin at the radar. Radial velocity positive = moving away.
 """
 
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -211,6 +212,29 @@ class Plane:
     axis_v: Vec3
     half_size_m: tuple[float, float]  # along axis_u, axis_v
     material: str
+
+    @property
+    def area_m2(self) -> float:
+        return 4 * self.half_size_m[0] * self.half_size_m[1]
+
+    @property
+    def corners_m(self) -> np.ndarray:
+        """(4, 3), counterclockwise seen from the free side."""
+        u, v = self.half_size_m[0] * self.axis_u, self.half_size_m[1] * self.axis_v
+        return np.stack([self.centre_m - u - v, self.centre_m + u - v, self.centre_m + u + v, self.centre_m - u + v])
+
+    def spanned(self, low_m: Sequence[float], high_m: Sequence[float]) -> "Plane":
+        """The rectangle from `low_m` to `high_m`, (2,) along axis_u and axis_v, from this one's centre."""
+        (left, below), (right, above) = low_m, high_m
+        centre_m = self.centre_m + (left + right) / 2 * self.axis_u + (below + above) / 2 * self.axis_v
+        return replace(self, centre_m=centre_m, half_size_m=(float(right - left) / 2, float(above - below) / 2))
+
+    def moved(self, points: Callable[[Vec3], Vec3], directions: Callable[[Vec3], Vec3]) -> "Plane":
+        """The rectangle in another frame, by what moves its points and what turns its directions."""
+        return replace(
+            self, centre_m=points(self.centre_m), normal=directions(self.normal), axis_u=directions(self.axis_u),
+            axis_v=directions(self.axis_v),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

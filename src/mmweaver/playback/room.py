@@ -52,9 +52,7 @@ def room_playback(
 
 def _plane(plane: Plane) -> dict[str, Any]:
     """Corners in order around the rectangle, and what it is made of."""
-    u, v = np.asarray(plane.axis_u) * plane.half_size_m[0], np.asarray(plane.axis_v) * plane.half_size_m[1]
-    corners = [np.asarray(plane.centre_m) + a * u + b * v for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     return {
-        "kind": plane.kind, "material": plane.material, "corners_m": np.round(corners, 3),
+        "kind": plane.kind, "material": plane.material, "corners_m": np.round(plane.corners_m, 3),
         "reflects": any(word in plane.material for word in _REFLECTORS),
     }  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
-from mmweaver.core.records import FreeSpace, Plane, PoseSequence, Scene
+from mmweaver.core.records import FreeSpace, PoseSequence, Scene
 from mmweaver.core.skeleton import joint
 
 WIDEST_RAD = np.radians(60.0)  # from the boresight, in azimuth
@@ -32,7 +32,7 @@ def scene_seen_from(scene: Scene, pose: RadarPose) -> Scene:
         radar_pose=pose,
         radar_from_camera=pose.from_level @ scene.radar_from_camera,
         vertices_m=pose.seen(scene.vertices_m).astype(scene.vertices_m.dtype),
-        planes=tuple(_moved(plane, pose) for plane in scene.planes),
+        planes=tuple(plane.moved(pose.seen, pose.seen_directions) for plane in scene.planes),
         floor_z_m=scene.floor_z_m - pose.z_m,
         free_space=FreeSpace(x_m=nothing, y_m=nothing, is_free=no_cells, is_seen=no_cells),
         seats=(),
@@ -60,13 +60,3 @@ def unseen_notes(people: tuple[PoseSequence, ...], range_window_m: tuple[float, 
             notes.append(f"{who} is within the radar's range and 60 degrees of its boresight in {seen.sum()} of"
                          f" {len(seen)} frames")  # fmt: skip
     return tuple(notes)
-
-
-def _moved(plane: Plane, pose: RadarPose) -> Plane:
-    return replace(
-        plane,
-        centre_m=pose.seen(plane.centre_m),
-        normal=pose.seen_directions(plane.normal),
-        axis_u=pose.seen_directions(plane.axis_u),
-        axis_v=pose.seen_directions(plane.axis_v),
-    )

@@ -75,15 +75,17 @@ def floor_plane(grid: AlignedGrid, is_floor: GridBool, material: str, *, is_whol
     left, right = min(left, -_MIN_FLOOR_M / 2), max(right, _MIN_FLOOR_M / 2)
     near = min(0.0, _extent([points[:, 1]])[0]) if is_whole else 0.0
     left, right, far = left - _FLOOR_MARGIN_M, right + _FLOOR_MARGIN_M, far + _FLOOR_MARGIN_M
-    return Plane(
+    x, y, z = np.eye(3)
+    plane = Plane(
         kind="floor",
-        centre_m=np.array([(left + right) / 2, (near + far) / 2, grid.floor_z_m]),
-        normal=np.array([0.0, 0.0, 1.0]),
-        axis_u=np.array([1.0, 0.0, 0.0]),
-        axis_v=np.array([0.0, 1.0, 0.0]),
-        half_size_m=((right - left) / 2, (far - near) / 2),
+        centre_m=grid.floor_z_m * z,
+        normal=z,
+        axis_u=x,
+        axis_v=y,
+        half_size_m=(0.0, 0.0),
         material=material,
     )
+    return plane.spanned((left, near), (right, far))
 
 
 def _extent(parts: Sequence[Float[Array, " _"]]) -> tuple[float, float]:

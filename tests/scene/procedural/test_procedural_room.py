@@ -13,6 +13,7 @@ from mmweaver.scene.procedural.arrangement import MIN_FREE_M2, MIN_WALKABLE_M2
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
+from studies.scene.room_contact import signed_distance_m
 
 TOUCH_M = 0.006
 
@@ -74,7 +75,7 @@ def _turn(room: ProceduralRoom) -> np.ndarray:
 def test_meshes_lie_in_their_boxes_and_in_the_room(room: ProceduralRoom):
     used = room.mesh.faces[room.mesh.piece >= 0]
     points = room.vertices_m[np.unique(used)]
-    nearest = np.concatenate([room.boxes.distance_m(some).min(axis=1) for some in np.array_split(points, 20)])
+    nearest = np.concatenate([signed_distance_m(room.boxes, some).min(axis=1) for some in np.array_split(points, 20)])
     assert nearest.max() < 1e-6
     inside = room.mesh.vertices_m
     assert inside.min() > -1e-6

@@ -1,6 +1,7 @@
 """Triangle mesh of a room for the ray caster: the depth grid where it is continuous, and the whole floor."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -39,19 +40,13 @@ def make_mesh(
     return points.reshape(-1, 3)[used], compact.reshape(-1, 3), face_material
 
 
-def rectangle_corners_m(plane: Plane, set_back_m: float = 0.0) -> Float[Array, "4 3"]:
-    """The corners of a rectangle moved against its normal, counterclockwise seen from its free side, metres."""
-    centre_m = plane.centre_m - set_back_m * plane.normal
-    u, v = plane.half_size_m[0] * plane.axis_u, plane.half_size_m[1] * plane.axis_v
-    return np.stack([centre_m - u - v, centre_m + u - v, centre_m + u + v, centre_m - u + v])
-
-
 def rectangle_faces(planes: Sequence[Plane]) -> tuple[Vertices, Faces, PerFace]:
     """Rectangles as two triangles each: vertices in metres, faces, index into MATERIAL_NAMES of each face.
 
     All but the floor lie slightly behind their measured surfaces.
     """
-    corners = [rectangle_corners_m(plane, 0.0 if plane.kind == "floor" else SET_BACK_M) for plane in planes]
+    set_back = [(plane, 0.0 if plane.kind == "floor" else SET_BACK_M) for plane in planes]
+    corners = [replace(plane, centre_m=plane.centre_m - by_m * plane.normal).corners_m for plane, by_m in set_back]
     faces = 4 * np.arange(len(planes))[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
     material = np.repeat([MATERIAL_NAMES.index(plane.material) for plane in planes], 2)
     return np.concatenate(corners), faces.reshape(-1, 3), material

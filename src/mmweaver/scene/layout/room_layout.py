@@ -72,7 +72,7 @@ def estimate_layout(
     seen_ceilings = [plane for plane in planes if plane.kind == "ceiling"]
     ceiling: tuple[Plane, ...] = ()
     if is_whole and seen_ceilings:
-        largest = max(seen_ceilings, key=lambda plane: plane.half_size_m[0] * plane.half_size_m[1])
+        largest = max(seen_ceilings, key=lambda plane: plane.area_m2)
         ceiling = (_span_walls(largest, walls),)
         planes = [plane for plane in planes if plane.kind != "ceiling"]
     kept = tuple(plane for plane in planes if not any(_is_part_of(plane, wall) for wall in walls))
@@ -86,11 +86,7 @@ def _span_walls(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
     ends = [wall.centre_m + side * wall.half_size_m[0] * wall.axis_u for wall in walls for side in (-1, 1)]
     along = np.array(ends) @ np.stack([u, v], axis=1)
     low, high = along.min(axis=0), along.max(axis=0)
-    middle = (low + high) / 2
-    return replace(
-        ceiling, centre_m=middle[0] * u + middle[1] * v + ceiling.centre_m[2] * UP, axis_u=u, axis_v=v,
-        half_size_m=(float(high[0] - low[0]) / 2, float(high[1] - low[1]) / 2),
-    )  # fmt: skip
+    return replace(ceiling, centre_m=ceiling.centre_m[2] * UP, axis_u=u, axis_v=v).spanned(low, high)
 
 
 def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:
@@ -192,7 +188,7 @@ def _wall_material(planes: Sequence[Plane]) -> str:
     area: dict[str, float] = {}
     for plane in planes:
         if plane.kind == "wall":
-            area[plane.material] = area.get(plane.material, 0.0) + plane.half_size_m[0] * plane.half_size_m[1]
+            area[plane.material] = area.get(plane.material, 0.0) + plane.area_m2
     return max(area, key=lambda name: area[name]) if area else DEFAULT_MATERIAL
 
 

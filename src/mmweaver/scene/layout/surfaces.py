@@ -103,7 +103,7 @@ def _vertical_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface
             surface = _vertical_surface(grid, normal, offset, on_plane & (labels == label))
             if surface is not None:
                 surfaces.append(surface)
-    return tuple(sorted(surfaces, key=lambda surface: (surface.plane.kind != "wall", -_area_m2(surface.plane))))
+    return tuple(sorted(surfaces, key=lambda surface: (surface.plane.kind != "wall", -surface.plane.area_m2)))
 
 
 def _strongest_vertical(points: Points, normals: Points) -> tuple[Vec3, float] | None:
@@ -208,7 +208,7 @@ def _horizontal_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surfa
         above_floor = grid.points_m[..., 2] - grid.floor_z_m
         facing &= (above_floor > _MIN_TOP_M) if sign > 0 else (above_floor > _CEILING_M)
         surfaces += _peeled_surfaces(grid, facing, sign)
-    return tuple(sorted(surfaces, key=lambda surface: -_area_m2(surface.plane)))
+    return tuple(sorted(surfaces, key=lambda surface: -surface.plane.area_m2))
 
 
 def _peeled_surfaces(grid: AlignedGrid, facing: GridBool, sign: float) -> list[Surface]:
@@ -276,22 +276,23 @@ def _plane(
 ) -> Plane:
     """The rectangle with these extents (left, right, low, high) along the axes, on the plane n . p = offset; metres."""
     left, right, low, high = extents
-    centre = offset * normal + (left + right) / 2 * axis_u + (low + high) / 2 * axis_v
-    half_size_m = ((right - left) / 2, (high - low) / 2)
-    return Plane(
-        kind=kind, centre_m=centre, normal=normal, axis_u=axis_u, axis_v=axis_v, half_size_m=half_size_m, material=""
+    plane = Plane(
+        kind=kind,
+        centre_m=offset * normal,
+        normal=normal,
+        axis_u=axis_u,
+        axis_v=axis_v,
+        half_size_m=(0.0, 0.0),
+        material="",
     )
+    return plane.spanned((left, low), (right, high))
 
 
 def _fill(grid: AlignedGrid, plane: Plane, cells: GridBool) -> float:
     """Share of the plane's rectangle that cells cover, in squares of 5 cm or of the cells' spacing if that is wider."""
     offsets = grid.points_m[cells] - plane.centre_m
-    spacing = max(0.05, 1.5 * float(np.sqrt(4 * plane.half_size_m[0] * plane.half_size_m[1] / cells.sum())))
+    spacing = max(0.05, 1.5 * float(np.sqrt(plane.area_m2 / cells.sum())))
     u = np.floor((offsets @ plane.axis_u + plane.half_size_m[0]) / spacing).astype(int)
     v = np.floor((offsets @ plane.axis_v + plane.half_size_m[1]) / spacing).astype(int)
     total = np.ceil(2 * plane.half_size_m[0] / spacing) * np.ceil(2 * plane.half_size_m[1] / spacing)
     return len(set(zip(u.tolist(), v.tolist(), strict=True))) / float(total)
-
-
-def _area_m2(plane: Plane) -> float:
-    return 4 * plane.half_size_m[0] * plane.half_size_m[1]

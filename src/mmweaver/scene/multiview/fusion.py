@@ -1,14 +1,12 @@
 """Joins what several photos show of one room: planes, floor, seats, landmarks."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
 from mmweaver.scene.affordances.free_space import MIN_DISTANCE_M
-from mmweaver.scene.layout.mesh import rectangle_corners_m
 from mmweaver.scene.layout.surfaces import AlignedGrid
 from mmweaver.scene.multiview.registration import LevelPose
 from mmweaver.scene.single_view import SingleView
@@ -39,7 +37,7 @@ def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> Align
 def joined_planes(planes: Sequence[Plane]) -> tuple[Plane, ...]:
     """The planes, those that are parts of one joined; the larger says kind, material and axes."""
     joined: list[Plane] = []
-    for plane in sorted(planes, key=lambda one: -one.half_size_m[0] * one.half_size_m[1]):
+    for plane in sorted(planes, key=lambda one: -one.area_m2):
         at = next((index for index, one in enumerate(joined) if _is_one(one, plane)), None)
         if at is None:
             joined.append(plane)
@@ -62,19 +60,14 @@ def _is_one(large: Plane, small: Plane) -> bool:
 
 def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
     """Where the corners of the smaller one lie along the axes of the larger, from its centre."""
-    local = (rectangle_corners_m(small) - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
+    local = (small.corners_m - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
     return local.min(axis=0), local.max(axis=0)
 
 
 def _around(large: Plane, small: Plane) -> Plane:
     low, high = _extent(large, small)
     half = np.array(large.half_size_m)
-    low, high = np.minimum(low, -half), np.maximum(high, half)
-    middle = (low + high) / 2
-    return replace(
-        large, centre_m=large.centre_m + middle[0] * large.axis_u + middle[1] * large.axis_v,
-        half_size_m=(float(high[0] - low[0]) / 2, float(high[1] - low[1]) / 2),
-    )  # fmt: skip
+    return large.spanned(np.minimum(low, -half), np.maximum(high, half))
 
 
 def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> FreeSpace:

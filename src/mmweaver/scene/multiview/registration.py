@@ -51,11 +51,7 @@ class LevelPose:
 
     def plane(self, plane: Plane) -> Plane:
         """A plane in the first camera's level frame."""
-        return Plane(
-            kind=plane.kind, centre_m=self.points(plane.centre_m), normal=self.directions(plane.normal),
-            axis_u=self.directions(plane.axis_u), axis_v=self.directions(plane.axis_v),
-            half_size_m=plane.half_size_m, material=plane.material,
-        )  # fmt: skip
+        return plane.moved(self.points, self.directions)
 
     def seat(self, seat: Seat) -> Seat:
         """A seat in the first camera's level frame."""
@@ -197,7 +193,7 @@ def _shift_m(planes: Sequence[Plane], known: Sequence[Plane], axis: Vec3, spread
             gap_m = float((other.centre_m - plane.centre_m) @ axis)
             if other.normal @ plane.normal > PARALLEL and abs(gap_m) < 3 * spread_m and _overlap(plane, other, axis):
                 gaps_m.append(gap_m)
-                area_m2.append(min(_area_m2(plane), _area_m2(other)))
+                area_m2.append(min(plane.area_m2, other.area_m2))
     shift_m = np.arange(-3 * spread_m, 3 * spread_m, STEP_M)
     if not gaps_m:
         return 0.0
@@ -214,10 +210,6 @@ def _overlap(plane: Plane, other: Plane, axis: Vec3) -> bool:
         for one in (plane, other)
     )
     return bool(abs((other.centre_m - plane.centre_m) @ along) < reach_m + GAP_M)
-
-
-def _area_m2(plane: Plane) -> float:
-    return 4 * plane.half_size_m[0] * plane.half_size_m[1]
 
 
 CELL_M, REACH_M = 0.05, 8.0

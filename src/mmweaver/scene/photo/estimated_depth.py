@@ -13,7 +13,6 @@ from mmweaver.scene.photo.pretrained import load_pretrained
 EXAMPLE = "depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
 AUTO = "auto"  # stands for EXAMPLE, downloaded once and kept in the Hub's cache
 PROMPTED = "prompt_depth_anything"
-MOGE = "Ruicheng/moge-2-vitl-normal"
 PLAUSIBLE_HEIGHT_M = (0.6, 2.2)  # of a hand-held or mounted camera above the floor
 ALWAYS_METRIC = {"zoedepth", "depth_pro"}
 SOMETIMES_METRIC = {"depth_anything", PROMPTED}
@@ -41,8 +40,6 @@ def estimate_depth(
     from PIL import Image
 
     source = EXAMPLE if source == AUTO else source
-    if source.rpartition("/")[2].lower().startswith("moge"):
-        return _estimate_by_moge(rgb, source)
     config, processor, model = load_pretrained(source, "--depth-model", _depth_class)
     height, width = rgb.shape[:2]
     prompt: dict[str, Any] = {}
@@ -80,28 +77,6 @@ def scale_note(camera_height_m: float) -> str | None:
         f"By the estimated depth the camera is {camera_height_m:.2f} m above the floor; most are at {low_m:g} to"
         f" {high_m:g} m, so all distances are probably off by about that ratio."
     )
-
-
-def _estimate_by_moge(rgb: RgbPixels, source: str) -> EstimatedDepth:
-    """By Microsoft's MoGe 2 (package `moge`), which gives points in metres and the camera."""
-    try:
-        import torch
-        from moge.model.v2 import MoGeModel
-    except ImportError:
-        raise InputError(
-            f"--depth-model {source} needs the package moge, which is not on PyPI (github.com/microsoft/MoGe); or take"
-            f" {AUTO}"
-        ) from None
-    try:
-        with torch.inference_mode():
-            picture = torch.from_numpy(rgb.copy()).permute(2, 0, 1).float() / 255
-            said = MoGeModel.from_pretrained(MOGE if "/" not in source else source).infer(picture)
-    except Exception as error:  # a package that this one does not control
-        raise InputError(f"--depth-model {source} cannot process this picture ({error}); try another model") from None
-    depth_m = said["depth"].cpu().numpy().astype(float)
-    measured = np.isfinite(depth_m) & (depth_m > 0.05)
-    focal_px = float(said["intrinsics"][0, 0]) * rgb.shape[1]  # in widths of the picture
-    return EstimatedDepth(depth_m=np.where(measured, depth_m, np.nan), focal_px=focal_px, model=source)
 
 
 def _depth_class(transformers: Any, config: Any) -> Any:

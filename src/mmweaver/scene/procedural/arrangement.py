@@ -13,7 +13,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.scene.procedural.furniture import make_piece
 from mmweaver.scene.procedural.groups import BACK, MIDDLE, FurnitureGroup
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Boxes, Piece, PlacedPiece, bounding_boxes
+from mmweaver.scene.procedural.parts import Boxes, Part, Piece, PlacedPiece, bounding_boxes
 from mmweaver.scene.procedural.room_kinds import RoomKind
 
 HEAD_M, STEP_OVER_M = 1.9, 0.03  # what stands between these heights obstructs a walker
@@ -35,30 +35,6 @@ class Shell:
     fixed: tuple[PlacedPiece, ...]  # lamps and, once placed, doors and windows
     radar_m: tuple[float, float, float]
     radar_yaw_rad: float  # from +y towards -x
-
-
-@dataclass(frozen=True, kw_only=True)
-class FreeFloor:
-    """Squares of the floor in the room's frame: which are free, and which are in the radar's window and the picture."""
-
-    x_m: Float[Array, " x"]
-    y_m: Float[Array, " y"]
-    is_free: Bool[Array, "y x"]
-    in_view: Bool[Array, "y x"]
-
-    @property
-    def free_m2(self) -> float:
-        """Area of the free floor in view, m2."""
-        return float((self.is_free & self.in_view).sum() * CELL_M**2)
-
-    @property
-    def walkable_m2(self) -> float:
-        """Area of the largest connected part of it for the middle of a body, m2."""
-        from scipy import ndimage
-
-        inner = np.asarray(ndimage.distance_transform_edt(np.pad(self.is_free, 1)))[1:-1, 1:-1] * CELL_M > BODY_RADIUS_M
-        labels = np.asarray(ndimage.label(inner & self.in_view)[0])  # type: ignore[index]
-        return float(np.bincount(labels.ravel())[1:].max(initial=0) * CELL_M**2)
 
 
 def sample_shell(kind: RoomKind, palette: Palette, rng: np.random.Generator, layout: np.random.Generator) -> Shell:
@@ -114,11 +90,11 @@ def place_openings(shell: Shell, rng: np.random.Generator) -> Shell:
 
 def arrange(
     kind: RoomKind, shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator
-) -> tuple[Shell, tuple[PlacedPiece, ...], FreeFloor]:
+) -> tuple[Shell, tuple[PlacedPiece, ...], tuple[float, float]]:
     """Places door and windows, then the groups of furniture (with whether each is required), keeping floor free.
 
-    After several failed attempts the radar is moved, and then the room widened. Raises RuntimeError where all attempts
-    fail, which has not been observed.
+    Also returns the areas of `free_floor_m2`. After several failed attempts the radar is moved, and then the room
+    widened. Raises RuntimeError where all attempts fail, which has not been observed.
     """
     for attempt in range(_MAX_ATTEMPTS):
         if attempt >= _ATTEMPTS_PER_SHELL:
@@ -129,23 +105,31 @@ def arrange(
         placed = _try_once(furnished, wanted, rng, omit_share=min(attempt / 40, 1.0))
         if placed is None or not _has_furniture_in_view(furnished, placed):
             continue
-        floor = free_floor(furnished, placed)
-        if floor.free_m2 >= MIN_FREE_M2 and floor.walkable_m2 >= MIN_WALKABLE_M2:
-            return furnished, placed, floor
+        free_m2, walkable_m2 = free_floor_m2(furnished, placed)
+        if free_m2 >= MIN_FREE_M2 and walkable_m2 >= MIN_WALKABLE_M2:
+            return furnished, placed, (free_m2, walkable_m2)
     raise RuntimeError(f"no arrangement of a {kind.name} leaves enough floor to walk")
 
 
-def free_floor(shell: Shell, placed: Sequence[PlacedPiece]) -> FreeFloor:
-    """Squares without anything up to head height, more than half a metre from the radar."""
+def free_floor_m2(shell: Shell, placed: Sequence[PlacedPiece]) -> tuple[float, float]:
+    """Area of the free floor in the radar's window and the picture, and of its largest part for the middle of a body.
+
+    Free is what has nothing up to head height and is more than half a metre from the radar; m2.
+    """
+    from scipy import ndimage
+
     width, depth, _ = shell.size_m
     x_m = np.arange(CELL_M / 2, width, CELL_M)
     y_m = np.arange(CELL_M / 2, depth, CELL_M)
-    is_free = ~covered(bounding_boxes([*shell.fixed, *placed]), x_m, y_m)
     x, y = np.meshgrid(x_m - shell.radar_m[0], y_m - shell.radar_m[1])
     distance = np.hypot(x, y)
     bearing = np.arctan2(-x, y) - shell.radar_yaw_rad
     in_view = (distance > WINDOW_M[0]) & (distance < WINDOW_M[1]) & (np.abs(bearing) < HALF_VIEW_RAD)
-    return FreeFloor(x_m=x_m, y_m=y_m, is_free=is_free & (distance > 0.5), in_view=in_view)
+    is_free = ~covered(bounding_boxes([*shell.fixed, *placed]), x_m, y_m) & (distance > 0.5)
+    inner = np.asarray(ndimage.distance_transform_edt(np.pad(is_free, 1)))[1:-1, 1:-1] * CELL_M > BODY_RADIUS_M
+    labels = np.asarray(ndimage.label(inner & in_view)[0])  # type: ignore[index]
+    largest = np.bincount(labels.ravel())[1:].max(initial=0)
+    return float((is_free & in_view).sum() * CELL_M**2), float(largest * CELL_M**2)
 
 
 def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> Bool[Array, "y x"]:
@@ -167,16 +151,14 @@ def _try_once(
 ) -> tuple[PlacedPiece, ...] | None:
     """One attempt: the placed pieces; None where a required group found no place."""
     placed: list[PlacedPiece] = []
-    taken = _concatenated(bounding_boxes(shell.fixed), _clear_zones(shell))
     for group, is_required in wanted:
         if not is_required and rng.random() < omit_share:
             continue
+        taken = bounding_boxes([*shell.fixed, *_clear_zones(shell), *placed])
         found = _best_place(shell, group, taken, rng)
         if found is None and is_required:
             return None
-        if found is not None:
-            taken = _concatenated(taken, bounding_boxes(found))
-            placed += found
+        placed += found or ()
     return tuple(placed)
 
 
@@ -231,16 +213,21 @@ def _fits(boxes: Boxes, size_m: tuple[float, float, float]) -> bool:
     return bool(inside and (corners[..., 1] < size_m[1] + 1e-6).all() and top < size_m[2])
 
 
-def _clear_zones(shell: Shell) -> Boxes:
+def _clear_zones(shell: Shell) -> list[PlacedPiece]:
     """Zones without furniture: in front of doors, and around and in front of the radar."""
-    zones = [(shell.radar_m[0], shell.radar_m[1] + 0.35, 0.45, 0.85, 0.0)]
+    x, y, _ = shell.radar_m
+    zones = [_zone(0.45, 0.85, PlacedPiece(piece=shell.lamp, x_m=x, y_m=y + 0.35))]
     for item in shell.fixed:
         if item.piece.landmark == "door":
             ahead = item.points(np.array([[0.0, -0.42, 0.0]]))[0]
-            zones.append((float(ahead[0]), float(ahead[1]), 0.45, 0.33, item.yaw_rad))
-    x, y, a, b, yaw_rad = np.array(zones, float).T
-    middle, half = np.full(len(zones), 1.03), np.full(len(zones), 0.97)
-    return Boxes(centre_m=np.stack([x, y, middle], axis=1), half_m=np.stack([a, b, half], axis=1), yaw_rad=yaw_rad)
+            zones.append(_zone(0.45, 0.33, replace(item, x_m=float(ahead[0]), y_m=float(ahead[1]))))
+    return zones
+
+
+def _zone(x: float, y: float, place: PlacedPiece) -> PlacedPiece:
+    """A box of these half sizes in place of the piece."""
+    part = Part((-x, -y, 0.06), (x, y, 2.0), place.piece.parts[0].appearance)
+    return replace(place, piece=Piece(name="clear", parts=(part,)))
 
 
 def _has_furniture_in_view(shell: Shell, placed: Sequence[PlacedPiece]) -> bool:
@@ -251,9 +238,3 @@ def _has_furniture_in_view(shell: Shell, placed: Sequence[PlacedPiece]) -> bool:
         if not item.piece.on_wall and np.hypot(x, y) < 3.2 and abs(bearing) < HALF_VIEW_RAD:
             return True
     return False
-
-
-def _concatenated(one: Boxes, other: Boxes) -> Boxes:
-    pairs = ((getattr(one, name), getattr(other, name)) for name in ("centre_m", "half_m", "yaw_rad"))
-    centre_m, half_m, yaw_rad = map(np.concatenate, pairs)
-    return Boxes(centre_m=centre_m, half_m=half_m, yaw_rad=yaw_rad)

@@ -8,13 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
-from mmweaver.core.shapes import Array, PerFace, Vec3
+from mmweaver.core.shapes import Array, Vec3
 from mmweaver.scene.layout.height_map import grid_axes
-from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.procedural.arrangement import Shell, covered
-from mmweaver.scene.procedural.meshing import Mesh
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Boxes, PlacedPiece
+from mmweaver.scene.procedural.parts import Boxes, Part, PlacedPiece
 
 _MIN_FACE_M2 = 0.15  # of furniture, to count as a flat rectangle of the room
 _MIN_DISTANCE_M = 0.5  # of a body from the radar
@@ -62,12 +60,6 @@ class RadarFrame:
         )
 
 
-def face_materials(mesh: Mesh) -> PerFace:
-    """Index into MATERIAL_NAMES of every face."""
-    index = np.array([MATERIAL_NAMES.index(appearance.material) for appearance in mesh.appearances])
-    return index[mesh.appearance]
-
-
 def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, frame: RadarFrame) -> tuple[Plane, ...]:
     """Floor, ceiling, walls, and the large faces of box-shaped furniture, as tops and panels."""
     w, d, h = shell.size_m
@@ -81,40 +73,33 @@ def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, f
         ("wall", (w / 2, 0.0, h / 2), y, x, (w / 2, h / 2)),
     )
     found = [frame.plane(*row, palette[row[0]].material) for row in shell_planes]
-    for item in placed:
-        for part in item.piece.parts:
-            if part.shape == "box":
-                found += _faces(item, np.array(part.low_m), np.array(part.high_m), part.appearance.material, frame)
-    return tuple(found)
+    boxes = ((item, part) for item in placed for part in item.piece.parts if part.shape == "box")
+    return (*found, *(face for item, part in boxes for face in _faces(item, part, frame)))
 
 
-def _faces(item: PlacedPiece, low: Vec3, high: Vec3, material: str, frame: RadarFrame) -> Iterator[Plane]:
-    """The large faces, except the lower one, of a box from `low` to `high` in the piece's frame, metres."""
+def _faces(item: PlacedPiece, part: Part, frame: RadarFrame) -> Iterator[Plane]:
+    """The large faces of a box, except the lower one."""
+    low, high, unit = np.array(part.low_m), np.array(part.high_m), np.eye(3)
     half, middle = (high - low) / 2, (low + high) / 2
-    for axis, sign, along_axis in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
-        size = (float(half[along_axis]), float(half[3 - axis - along_axis]))
-        if 4 * size[0] * size[1] < _MIN_FACE_M2:
-            continue
-        normal, along = sign * np.eye(3)[axis], np.eye(3)[along_axis]
-        ends = item.points(np.stack([middle + sign * half[axis] * np.eye(3)[axis], normal, along, np.zeros(3)]))
-        kind = "top" if axis == 2 else "panel"
-        yield frame.plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, material)
+    for axis, sign, along in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
+        size = (float(half[along]), float(half[3 - axis - along]))
+        if 4 * size[0] * size[1] >= _MIN_FACE_M2:
+            ends = item.points(
+                np.stack([middle + sign * half[axis] * unit[axis], sign * unit[axis], unit[along], 0 * low])
+            )
+            kind = "top" if axis == 2 else "panel"
+            yield frame.plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, part.appearance.material)
 
 
 def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, ...]:
     """All seats of the furniture."""
-    seats = []
-    for item in placed:
-        for seat in item.piece.seats:
-            place = item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]
-            seats.append(
-                Seat(
-                    position_m=frame.points(place),
-                    facing_rad=frame.angle(item.yaw_rad - np.pi / 2),
-                    size_m=(seat.width_m, seat.depth_m),
-                )
-            )
-    return tuple(seats)
+    return tuple(
+        Seat(
+            position_m=frame.points(item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]),
+            facing_rad=frame.angle(item.yaw_rad - np.pi / 2), size_m=(seat.width_m, seat.depth_m),
+        )
+        for item in placed for seat in item.piece.seats
+    )  # fmt: skip
 
 
 def landmarks_of(placed: tuple[PlacedPiece, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:

@@ -47,34 +47,27 @@ def area_lights(placed: tuple[PlacedPiece, ...], lighting: Lighting) -> list[Are
     """The windows, ceiling lamps and lamp shades of a room as area lights."""
     lamps = []
     for item in placed:
-        name, low, high = item.piece.name, item.piece.low_m, item.piece.high_m
-        if name == "window":
-            pane = item.piece.parts[0]
-            corners = [
-                (pane.low_m[0], -0.06, pane.low_m[2]),
-                (pane.high_m[0], -0.06, pane.low_m[2]),
-                (pane.low_m[0], -0.06, pane.high_m[2]),
-            ]
-            lamps.append(_area_light(item, corners, (0.0, -1.0, 0.0), lighting.window))
-        elif name == "ceiling lamp":
-            corners = [(low[0], low[1], -0.05), (high[0], low[1], -0.05), (low[0], high[1], -0.05)]
-            lamps.append(_area_light(item, corners, (0.0, 0.0, -1.0), lighting.ceiling))
-        elif name in ("floor lamp", "table lamp"):
-            top, wide = float(high[2]) + 0.01, 0.14
-            corners = [(-wide, -wide, top), (wide, -wide, top), (-wide, wide, top)]
-            lamps.append(_area_light(item, corners, (0.0, 0.0, 0.0), lighting.lamp))
+        (x0, y0, _), (x1, y1, top) = item.piece.low_m, item.piece.high_m
+        match item.piece.name:
+            case "window":
+                (x0, _, z0), (x1, _, z1) = item.piece.parts[0].low_m, item.piece.parts[0].high_m
+                low, high, normal, radiance = (x0, -0.06, z0), (x1, -0.06, z1), (0.0, -1.0, 0.0), lighting.window
+            case "ceiling lamp":
+                low, high, normal, radiance = (x0, y0, -0.05), (x1, y1, -0.05), (0.0, 0.0, -1.0), lighting.ceiling
+            case "floor lamp" | "table lamp":
+                above = top + 0.01
+                low, high, normal, radiance = (-0.14, -0.14, above), (0.14, 0.14, above), (0.0,) * 3, lighting.lamp
+            case _:
+                continue
+        corners = [low, (high[0], low[1], low[2]), (low[0], high[1], high[2]), normal, (0.0, 0.0, 0.0)]
+        ends = item.points(np.array(corners, float))
+        lamps.append(
+            AreaLight(
+                corner_m=ends[0], edges_m=ends[1:3] - ends[0], normal=ends[3] - ends[4],
+                radiance=np.array(radiance, float),
+            )
+        )  # fmt: skip
     return lamps
-
-
-def _area_light(item: PlacedPiece, corners: list, normal: Colour, radiance: Colour) -> AreaLight:
-    points = item.points(np.array(corners, float))
-    ends = item.points(np.array([normal, (0.0, 0.0, 0.0)], float))
-    return AreaLight(
-        corner_m=points[0],
-        edges_m=np.stack([points[1] - points[0], points[2] - points[0]]),
-        normal=ends[0] - ends[1],
-        radiance=np.array(radiance, float),
-    )
 
 
 def irradiance(

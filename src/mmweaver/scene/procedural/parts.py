@@ -145,24 +145,15 @@ class Boxes:
         """
         gap = np.abs(self.centre_m[:, None, 2] - other.centre_m[None, :, 2])
         is_separate = gap >= self.half_m[:, None, 2] + other.half_m[None, :, 2] - slack_m
-        here, there = self.corners_m(), other.corners_m()
+        shape = (len(self), len(other), 2, 2)
         for axes in (_axes(self.yaw_rad)[:, None], _axes(other.yaw_rad)[None, :]):
-            for k in range(2):
-                axis = axes[..., k, :]
-                one = np.einsum("acx,abx->abc", here, np.broadcast_to(axis, (len(self), len(other), 2)))
-                two = np.einsum("bcx,abx->abc", there, np.broadcast_to(axis, (len(self), len(other), 2)))
-                is_separate |= one.max(-1) - slack_m <= two.min(-1)
-                is_separate |= two.max(-1) - slack_m <= one.min(-1)
+            one, two = (
+                np.einsum(f"{box}cx,abkx->abkc", boxes.corners_m(), np.broadcast_to(axes, shape))
+                for box, boxes in (("a", self), ("b", other))
+            )
+            gaps = np.maximum(one.min(-1) - two.max(-1), two.min(-1) - one.max(-1))
+            is_separate |= (gaps >= -slack_m).any(-1)
         return ~is_separate
-
-    def distance_m(self, points_m: Float[Array, "point 3"]) -> Float[Array, "point box"]:
-        """Signed distance of each point to each box's surface, metres; negative inside."""
-        offset = points_m[:, None] - self.centre_m[None]
-        cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        x, y, z = np.moveaxis(offset, -1, 0)
-        local = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], -1)
-        beyond = np.abs(local) - self.half_m
-        return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0)
 
 
 def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:

@@ -1,7 +1,7 @@
 """A furnished room from its kind, layout and seed. Read this file first: `make_room` names the steps in order."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from jaxtyping import Float
@@ -16,14 +16,7 @@ from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.photo.camera_file import d455_intrinsics
 from mmweaver.scene.procedural.arrangement import Shell, arrange, sample_shell
 from mmweaver.scene.procedural.depth_noise import measured_depth
-from mmweaver.scene.procedural.ground_truth import (
-    RadarFrame,
-    face_materials,
-    free_space_of,
-    landmarks_of,
-    planes_of,
-    seats_of,
-)  # fmt: skip
+from mmweaver.scene.procedural.ground_truth import RadarFrame, free_space_of, landmarks_of, planes_of, seats_of
 from mmweaver.scene.procedural.groups import FurnitureGroup, sample_group
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.meshing import Mesh, make_room_mesh
@@ -153,31 +146,32 @@ def make_room_of(room_kind: RoomKind, layout: int, seed: int) -> ProceduralRoom:
         raise InputError(f"the layout must be 0 to {MAX_LAYOUTS - 1}, not {layout}")
     if seed < 0:
         raise InputError(f"the seed must be 0 or above, not {seed}")
-    palette = sample_palette(stream(seed, "procedural", kind, "palette"), room_kind.walls, room_kind.floors)
-    shell = sample_shell(
-        room_kind, palette, stream(seed, "procedural", kind, "shell"), stream(seed, "procedural", kind, layout, "radar")
-    )
-    wanted = _sample_furniture(room_kind, palette, seed)
-    shell, placed, floor = arrange(room_kind, shell, wanted, stream(seed, "procedural", kind, layout, "arrangement"))
+    draws = partial(stream, seed, "procedural", kind)
+    palette = sample_palette(draws("palette"), room_kind.walls, room_kind.floors)
+    shell = sample_shell(room_kind, palette, draws("shell"), draws(layout, "radar"))
+    wanted = _sample_furniture(room_kind, palette, draws("furniture"))
+    shell, placed, (free_m2, walkable_m2) = arrange(room_kind, shell, wanted, draws(layout, "arrangement"))
     pieces = (*shell.fixed, *placed)
     mesh, frame = make_room_mesh(shell.size_m, pieces, palette), RadarFrame(shell)
     boxes = frame.boxes(part_boxes(pieces))
     free = free_space_of(shell, boxes, frame)
+    materials = np.array([MATERIAL_NAMES.index(appearance.material) for appearance in mesh.appearances])
     return ProceduralRoom(
         kind=kind, layout=layout, seed=seed,
-        vertices_m=frame.points(mesh.vertices_m), faces=mesh.faces, face_material=face_materials(mesh),
+        vertices_m=frame.points(mesh.vertices_m), faces=mesh.faces, face_material=materials[mesh.appearance],
         material_names=MATERIAL_NAMES, boxes=boxes, planes=planes_of(shell, pieces, palette, frame),
         floor_z_m=-shell.radar_m[2], seats=seats_of(pieces, frame), landmarks=landmarks_of(pieces, free, frame),
-        free_space=free, free_m2=floor.free_m2, walkable_m2=floor.walkable_m2,
+        free_space=free, free_m2=free_m2, walkable_m2=walkable_m2,
         intrinsics=d455_intrinsics(640, 480),
-        radar_from_camera=_camera_rotation(shell, stream(seed, "procedural", kind, layout, "camera")),
+        radar_from_camera=_camera_rotation(shell, draws(layout, "camera")),
         pieces=pieces, shell=shell, mesh=mesh,
     )  # fmt: skip
 
 
-def _sample_furniture(room_kind: RoomKind, palette: Palette, seed: int) -> list[tuple[FurnitureGroup, bool]]:
+def _sample_furniture(
+    room_kind: RoomKind, palette: Palette, rng: np.random.Generator
+) -> list[tuple[FurnitureGroup, bool]]:
     """The room's groups and whether each is required, in the order in which they are placed: required ones first."""
-    rng = stream(seed, "procedural", room_kind.name, "furniture")
     wanted = [(sample_group(make, palette, rng), True) for make in room_kind.required]
     for share, make in room_kind.optional:
         group = sample_group(make, palette, rng)

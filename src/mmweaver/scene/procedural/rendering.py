@@ -96,12 +96,8 @@ def _reflectance_and_emission(
     flat_index = appearance.ravel()
     points, normals = view.points_m.reshape(-1, 3), view.normals.reshape(-1, 3)
     colour, emission = np.zeros(points.shape, np.float32), np.zeros(points.shape, np.float32)
-    order = np.argsort(flat_index, kind="stable")
-    bounds = np.searchsorted(flat_index[order], np.arange(len(mesh.appearances) + 1))
-    for index, one in enumerate(mesh.appearances):
-        chosen = order[bounds[index] : bounds[index + 1]]
-        if not len(chosen):
-            continue
+    for index in np.unique(flat_index):
+        one, chosen = mesh.appearances[index], np.flatnonzero(flat_index == index)
         plane = _surface_coordinates(points[chosen], normals[chosen])
         colour[chosen] = albedo(one, plane.astype(np.float32))
         if one.emission:

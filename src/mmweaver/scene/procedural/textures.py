@@ -1,6 +1,7 @@
 """Procedural textures: reflectance from surface coordinates, by value noise on a lattice."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,15 @@ def _boards(plane: Plane2, colour: np.ndarray) -> Shade:
     return shade * (1 + grain) * np.where(seam, 0.55, 1.0)
 
 
-def _tiled(plane: Plane2, size: tuple[float, float], joint_m: float, spread: float, joint: float, bond: bool) -> Shade:
+def _tiled(
+    plane: Plane2,
+    colour: np.ndarray,
+    size: tuple[float, float],
+    joint_m: float,
+    spread: float,
+    joint: float,
+    bond: bool,
+) -> Shade:
     row = np.floor(plane[:, 1] / size[1])
     shifted = plane[:, 0] / size[0] + (0.5 * (row % 2) if bond else 0.0)
     column = np.floor(shifted)
@@ -74,14 +83,6 @@ def _tiled(plane: Plane2, size: tuple[float, float], joint_m: float, spread: flo
     )
     shade = 1 - spread + 2 * spread * _random(column, row)
     return np.where(inside, shade * (1 + 0.05 * lattice_noise(plane, 0.04)), joint)
-
-
-def _tiles(plane: Plane2, colour: np.ndarray) -> Shade:
-    return _tiled(plane, (0.3, 0.3), 0.004, 0.05, 0.7, bond=False)
-
-
-def _brick(plane: Plane2, colour: np.ndarray) -> Shade:
-    return _tiled(plane, (0.24, 0.075), 0.006, 0.25, 1.6, bond=True)
 
 
 def _panels(plane: Plane2, colour: np.ndarray) -> Shade:
@@ -140,6 +141,8 @@ def _keys(plane: Plane2, colour: np.ndarray) -> Shade:
 
 _NOISE = TABLES["noise"]
 PATTERNS: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
-    "boards": _boards, "tiles": _tiles, "brick": _brick, "panels": _panels, "books": _books, "screen": _screen,
+    "boards": _boards, "tiles": partial(_tiled, size=(0.3, 0.3), joint_m=0.004, spread=0.05, joint=0.7, bond=False),
+    "brick": partial(_tiled, size=(0.24, 0.075), joint_m=0.006, spread=0.25, joint=1.6, bond=True),
+    "panels": _panels, "books": _books, "screen": _screen,
     "scribbles": _scribbles, "picture": _picture, "sky": _sky, "keys": _keys,
 }  # fmt: skip

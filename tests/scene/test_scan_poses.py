@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.scene.multiview.scan_poses import scan_pose, spread_out
+from mmweaver.scene.scan_folders import scan_pose, spread_out
 
 # a camera 1 m along x that looks along -x, upright; y is up in the worlds of phones, z in those of data sets
 PLACE = (1.0, 0.0, 0.0)
@@ -31,7 +31,7 @@ def test_every_format_gives_the_same_camera(tmp_path: Path):
     said = {f"t_{i}{j}": float(np.column_stack([arkit, PLACE])[i, j]) for i in range(3) for j in range(4)}
     (tmp_path / "keyframes" / "cameras" / "3.json").write_text(json.dumps(said))
     frames = {"TUM RGB-D": ("5.01.png", Z_UP), "Stray Scanner": ("000007.png", Y_UP), "Record3D": ("0.jpg", Y_UP),
-              "Polycam": ("3.jpg", Y_UP)}  # fmt: skip
+              "Polycam": ("keyframes/images/3.jpg", Y_UP)}  # fmt: skip
     for kind, (name, rotation) in frames.items():
         pose = scan_pose(tmp_path, kind, tmp_path / name)
         assert pose is not None
