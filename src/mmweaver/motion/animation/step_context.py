@@ -15,6 +15,7 @@ from mmweaver.motion.animation.habits import Habits
 from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
 from mmweaver.motion.animation.library.movement_primitives import (
     Curve,
+    Number,
     PerTime,
     Span,
     mix_arm,
@@ -200,7 +201,7 @@ class StepContext:
             values += change
 
     def keyed(
-        self, u: PerTime, at: Sequence[float], gain: float = 1.0, side: int | None = None, **values: Sequence[float]
+        self, u: PerTime, at: Sequence[Number], gain: Number = 1, side: int | None = None, **values: Sequence[Number]
     ) -> None:
         """Adds smooth keyframes to channels: gain times `values` at `at` of a progress u (n,)."""
         for name, keys in values.items():
@@ -245,7 +246,7 @@ class StepContext:
             depth, pelvis_pitch=0.6 * lean_rad, spine_pitch=0.7 * lean_rad, head_pitch=-0.5 * lean_rad, knee_out=0.2
         )
 
-    def arm(self, angles: Sequence[float] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
+    def arm(self, angles: Sequence[Number] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
         """Blends arms, both by default, to angles of flexion, abduction, twist and elbow as `weight` (n,) goes to 1."""
         for side in sides or BOTH:
             mix_arm(self.controls, side, np.asarray(angles), weight)
@@ -264,7 +265,7 @@ class StepContext:
         self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: tuple[float, float, float]
     ) -> None:
         """The same in metres; the elbow points in the direction `elbow`."""
-        self.arm(reach(self.body, self._points(target), elbow), weight, *np.atleast_1d(side))
+        self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
     def _points(self, target: Place) -> Float[np.ndarray, "n 3"]:
         if isinstance(target, np.ndarray):

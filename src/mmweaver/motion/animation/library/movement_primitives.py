@@ -14,10 +14,11 @@ if TYPE_CHECKING:
     from mmweaver.motion.animation.step_context import StepContext
 
 PerTime = Float[np.ndarray, " n"]
-Curve = PerTime | float  # a function of time, or the same value at all times
+Number = float | int
+Curve = Float[np.ndarray, "..."] | Number  # a function of time, or the same value at all times
 
 
-def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
+def spline_through(time_s: PerTime, times: Sequence[Number], values: Sequence[Number]) -> PerTime:
     """A quintic spline (n,) through keyframes (times, values), at rest at both ends and constant beyond; C2."""
     from scipy.interpolate import make_interp_spline
 
@@ -34,15 +35,15 @@ class Span:
     begin_s: float
     lasts_s: float
 
-    def at(self, share: float) -> float:
+    def at(self, share: Number) -> float:
         """Time in seconds after this share of the duration."""
         return self.begin_s + share * self.lasts_s
 
-    def plateau(self, begin: float, end: float, up: float, down: float) -> PerTime:
+    def plateau(self, begin: Number, end: Number, up: Number, down: Number) -> PerTime:
         """`profiles.plateau` from share `begin` to share `end`, with ramps of these shares."""
         return plateau(self.time_s, self.at(begin), self.at(end), up * self.lasts_s, down * self.lasts_s)
 
-    def keys(self, shares: Sequence[float], values: Sequence[float]) -> PerTime:
+    def keys(self, shares: Sequence[Number], values: Sequence[Number]) -> PerTime:
         """`spline_through` keyframes at shares of the duration."""
         return spline_through(self.time_s, [self.at(share) for share in shares], values)
 

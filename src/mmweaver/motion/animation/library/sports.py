@@ -90,7 +90,7 @@ def boxing(act: StepContext) -> None:
     for k, span in enumerate(act.repeats(punch.lasts_s, 0.9 * punch.lasts_s, 1.4)):
         side = _fist(act, punch, k)
         at = [span.at(share) for share in (BEGINS, 0.5 * (BEGINS + THERE), THERE, 0.76, BACK)]
-        fists[side] += np.stack([spline_through(act.time_s, at, way) for way in ways.T], axis=1)
+        fists[side] += np.stack([spline_through(act.time_s, at, way) for way in ways.T.tolist()], axis=1)
         hit = act.plateau(at[0], at[-1], at[2] - at[0], at[-1] - at[2])
         out[side] += hit
         _turn_shoulder(act, punch, side, hit, at)
