@@ -10,21 +10,13 @@ from jaxtyping import Float
 from mmweaver.core.registry import Registry
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls
+from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, mix_arm
 from mmweaver.motion.animation.habits import Habits
 from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
-from mmweaver.motion.animation.library.movement_primitives import (
-    Curve,
-    Number,
-    PerTime,
-    Span,
-    mix_arm,
-    sides,
-    spline_through,
-)
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.spans import Curve, Number, PerTime, Span, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH, upright
 from mmweaver.motion.language.plan import Step
 
@@ -107,9 +99,15 @@ class StepContext:
         """`profiles.wander` at the times of the motion."""
         return wander(self.time_s, self.rng, slow_hz=slow_hz, fast_hz=fast_hz)
 
+    def sides(self) -> tuple[int, ...]:
+        """The arms that move: as the sentence says, else five times out of six the one that the person usually uses."""
+        usual = self.step.usual_hand or "right"
+        chosen = self.hand or (usual if self.rng.random() < 5 / 6 else {"right": "left"}.get(usual, "right"))
+        return {"left": (LEFT,), "right": (RIGHT,), "both": BOTH}[chosen]
+
     def one_side(self) -> int:
         """The one arm that moves; of both, the right."""
-        return sides(self)[-1]
+        return self.sides()[-1]
 
     @property
     def named_side(self) -> int:
@@ -119,7 +117,7 @@ class StepContext:
     @property
     def named_arms(self) -> tuple[int, ...]:
         """The arms that the sentence names, else both."""
-        return sides(self) if self.hand else BOTH
+        return self.sides() if self.hand else BOTH
 
     def leg_side(self) -> int:
         """The leg that moves: as the sentence says, else by the seed, the right one five times out of six."""

@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime
 from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
+from mmweaver.motion.animation.spans import PerTime
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE, TOES_OUT_RAD
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

@@ -7,8 +7,8 @@ squats and front lunges after a look at its first subject (studies/motion/mars_e
 import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides
 from mmweaver.motion.animation.profiles import bump, reached, rise
+from mmweaver.motion.animation.spans import PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture, posture
 
 
@@ -301,10 +301,10 @@ def limb_extension(act: StepContext) -> None:
 @gesture("arm_extension")
 def arm_extension(act: StepContext) -> None:
     """The straight arm goes up at the side until the hand is as high as the head, and comes down, again and again."""
-    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), sides(act)
+    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), act.sides()
     for side in arms:
         _raise_arm_aside(act, side, up, top)
-        act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(sides(act)) == 1))
+        act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(act.sides()) == 1))
 
 
 def _raise_arm_aside(act: StepContext, side: int, up: PerTime, top: float) -> None:

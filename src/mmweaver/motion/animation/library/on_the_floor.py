@@ -7,8 +7,8 @@ where the feet stood; on the back the body lies behind it, on the belly ahead of
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, spline_through
 from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.spans import PerTime, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 

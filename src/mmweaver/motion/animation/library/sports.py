@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides, spline_through
 from mmweaver.motion.animation.profiles import plateau
+from mmweaver.motion.animation.spans import PerTime, Span, spline_through
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 Keys = tuple[tuple[float, ...], ...]
@@ -130,7 +130,7 @@ def punching(act: StepContext) -> None:
     rate, _ = act.cycles(1.1, 1.7, 2.0 if one_arm else 2.3, 0.9, 2.6)
     period = 1 / rate
     count = act.count or int(np.ceil(act.duration_s / period - 0.2))
-    arms = sides(act) if one_arm else BOTH
+    arms = act.sides() if one_arm else BOTH
     first, out = int(rng.integers(2)), [np.zeros_like(act.time_s), np.zeros_like(act.time_s)]
     # Who hurries strikes more often, but a fist that is there and back sooner would pass what fists reach (100 m/s2).
     shortest_s = 0.34 if act.speed <= 0 else min(QUICK_STRIKE_S, 0.95 * period * len(arms))
@@ -229,7 +229,7 @@ def carrying(act: StepContext) -> None:
 @gesture("cradle")
 def cradling(act: StepContext) -> None:
     """A baby before the chest: its head in the crook of one elbow, the other hand under it; the trunk rocks it."""
-    head = 1 - sides(act)[0]  # most people keep the hand they use free
+    head = 1 - act.sides()[0]  # most people keep the hand they use free
     rate, _ = act.cycles(0.25, 0.4, 0.6, 0.2, 0.9)
     act.hand_to(head, (0.15, -0.03, -0.03), 1.0, (-0.3, 0.5, -1.0))
     act.hand_to(1 - head, (0.165, 0.0, -0.1), 1.0, (-0.5, 0.4, -1.0))
@@ -240,7 +240,7 @@ def cradling(act: StepContext) -> None:
 @gesture("reach")
 def reaching(act: StepContext) -> None:
     """A hand reaches for something ahead at table height, or up, and comes back with it."""
-    hands = sides(act)
+    hands = act.sides()
     if act.style == "high":
         _reach_up(act)
         return
@@ -254,7 +254,7 @@ def reaching(act: StepContext) -> None:
 
 def _reach_up(act: StepContext) -> None:
     """A hand reaches up ahead of the head, the trunk stretches after it."""
-    hands, up = sides(act), act.uniform(2.5, 2.85)
+    hands, up = act.sides(), act.uniform(2.5, 2.85)
     for span in act.repeats(1.9, 1.2, 2.8):
         out = span.plateau(0, 1, 0.36, 0.36)
         for side in hands:
