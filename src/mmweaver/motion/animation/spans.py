@@ -2,15 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.animation.profiles import plateau
 
 PerTime = Float[np.ndarray, " n"]
 Number = float | int
 Curve = Float[np.ndarray, "..."] | Number  # a function of time, or the same value at all times
+MOVEMENTS: dict[str, dict[str, Any]] = read_toml(Path(__file__).with_name("library") / "movements.toml")
 
 
 def spline_through(time_s: PerTime, times: Sequence[Number], values: Sequence[Number]) -> PerTime:
@@ -41,3 +45,8 @@ class Span:
     def keys(self, shares: Sequence[Number], values: Sequence[Number]) -> PerTime:
         """`spline_through` keyframes at shares of the duration."""
         return spline_through(self.time_s, [self.at(share) for share in shares], values)
+
+    def rows(self, movement: str, *names: str) -> list[PerTime]:
+        """Keyframes of a movement in `movements.toml`, smoothly interpolated."""
+        record = MOVEMENTS[movement]
+        return [self.keys(record["at"], record[name]) for name in names]

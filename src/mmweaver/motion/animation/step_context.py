@@ -16,7 +16,7 @@ from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.animation.spans import Curve, Number, PerTime, Span, spline_through
+from mmweaver.motion.animation.spans import MOVEMENTS, Curve, Number, PerTime, Span, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH, upright
 from mmweaver.motion.language.plan import Step
 
@@ -198,12 +198,10 @@ class StepContext:
                 values = values[:, side]
             values += change
 
-    def keyed(
-        self, u: PerTime, at: Sequence[Number], gain: Number = 1, side: int | None = None, **values: Sequence[Number]
-    ) -> None:
-        """Adds smooth keyframes to channels: gain times `values` at `at` of a progress u (n,)."""
-        for name, keys in values.items():
-            self.add(spline_through(u, at, keys), side, **{name: gain})
+    def keyed(self, u: PerTime, movement: str, part: str, gain: Number = 1, side: int | None = None) -> None:
+        """Adds a part's keyframes (`movements.toml`) to channels, over a progress u (n,)."""
+        for channel, values in MOVEMENTS[movement][part].items():
+            self.add(spline_through(u, MOVEMENTS[movement]["at"], values), side, **{channel: gain})
 
     def pelvis(self, ahead: Curve = 0.0, left: Curve = 0.0, up: Curve = 0.0) -> None:
         """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""

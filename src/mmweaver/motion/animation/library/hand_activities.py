@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine, rise
-from mmweaver.motion.animation.spans import PerTime, spline_through
+from mmweaver.motion.animation.spans import PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
@@ -210,15 +210,10 @@ def vacuuming(act: StepContext) -> None:
 def taking_jacket_off(act: StepContext) -> None:
     """Both hands open the jacket at the chest and pull it back over the shoulders; one sleeve comes off, the other."""
     span = act.repeats(0.92 * act.duration_s, 2.0, 6.0)[0]
-    at, first = [span.at(share) for share in (0.0, 0.22, 0.45, 0.62, 0.8, 1.0)], act.sides()[0]
-    ways = (
-        [0.03, 0.14, 0.02, -0.13, -0.12, 0.05],
-        [0.12, 0.05, 0.17, 0.1, 0.05, 0.12],
-        [-0.2, 0.08, 0.06, -0.12, -0.14, -0.2],
-    )
+    first = act.sides()[0]
     for side in BOTH:
-        t = act.time_s - (0.0 if side == first else 0.06 * span.lasts_s)
-        target = [spline_through(t, at, way) for way in ways]
+        late = Span(act.time_s - (0.0 if side == first else 0.06 * span.lasts_s), span.begin_s, span.lasts_s)
+        target = late.rows("jacket_off", "ahead", "out", "up")
         act.hand_to(side, target, span.plateau(0, 1, 0.18, 0.18), (-0.4, 0.8, -0.6))
     act.add(span.plateau(0.3, 0.9, 0.2, 0.2), spine_pitch=0.12, spine_yaw=OUTWARD[first] * 0.3)
 
