@@ -252,14 +252,12 @@ class StepContext:
         side: int | tuple[int, ...],
         target: Place,
         weight: Curve = 1.0,
-        elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0),
+        elbow: Sequence[float] = (-0.3, 0.5, -1.0),
     ) -> None:
         """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
-    def hand_to_m(
-        self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: tuple[float, float, float]
-    ) -> None:
+    def hand_to_m(self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: Sequence[float]) -> None:
         """The same in metres; the elbow points in the direction `elbow`."""
         self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
