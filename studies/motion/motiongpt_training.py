@@ -17,13 +17,12 @@ from jaxtyping import Float
 
 from mmweaver.motion.mocap.humanml3d import CONTACTS, ROTATIONS, VELOCITIES
 from mmweaver.motion.motiongpt.language_model import add_motion_tokens
-from mmweaver.motion.motiongpt.motiongpt_weights import save_weights
-from mmweaver.motion.motiongpt.text_tokenizer import plain_words, train_words
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
 from studies.manifest import StudyRun
 from studies.motion.motion_language import LanguageRecipe, train_language
 from studies.motion.motion_tokenizer import TokenizerRecipe, train_tokenizer
 from studies.motion.motiongpt_data import SentenceExample, cmu_examples, library_examples
+from studies.motion.motiongpt_weights import plain_words, save_weights, train_words
 from studies.study import Reads
 
 Array = np.ndarray

@@ -8,9 +8,10 @@ import pytest
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.clip_resampling import resampled_clip
-from mmweaver.motion.mocap.humanml3d import CONTACTS, features_from_joints, joints_from_features
+from mmweaver.motion.mocap.humanml3d import CONTACTS, joints_from_features
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
+from studies.motion.humanml3d_features import features_from_joints
 from studies.motion.motiongpt_data import wide_room
 from studies.physics.empty_room_cube import empty_room
 

@@ -15,7 +15,7 @@ from mmweaver.motion.motiongpt.checkpoint import (
     t5_sizes,
     tokenizer_config,
 )
-from mmweaver.motion.motiongpt.motiongpt_weights import state_of
+from studies.motion.motiongpt_weights import state_of
 
 
 class Anything:

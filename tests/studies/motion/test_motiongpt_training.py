@@ -10,7 +10,6 @@ import pytest
 pytest.importorskip("transformers")
 
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT, small_file
-from mmweaver.motion.motiongpt.motiongpt_weights import save_weights
 from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
 from studies.manifest import StudyRun
 from studies.motion import motiongpt_scores
@@ -19,6 +18,7 @@ from studies.motion.motion_tokenizer import TokenizerRecipe
 from studies.motion.motiongpt_data import ACTIVITIES, library_examples
 from studies.motion.motiongpt_pictures import draw_strips
 from studies.motion.motiongpt_training import MotiongptRecipe, statistics, train
+from studies.motion.motiongpt_weights import save_weights
 
 TINY = MotiongptRecipe(
     tokenizer=TokenizerRecipe(steps=3, batch=4, frames=32), language=LanguageRecipe(steps=3, batch=4), seeds=range(2),

@@ -1,5 +1,7 @@
 """Arm angles that put a wrist at a given position: two-bone inverse kinematics in the chest's frame."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float
 
@@ -13,7 +15,7 @@ Array = np.ndarray
 
 
 def reach(
-    body: SkeletonProportions, target_m: Float[Array, "n 3"], elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0)
+    body: SkeletonProportions, target_m: Float[Array, "n 3"], elbow: Sequence[float] = (-0.3, 0.5, -1.0)
 ) -> Float[Array, "n 4"]:
     """Angles (n, 4) in radians of an arm whose wrist is at `target_m`, relative to spine3 in the chest's frame.
 

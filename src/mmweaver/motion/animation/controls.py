@@ -72,6 +72,11 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     return Controls(**values)
 
 
+def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Float[Array, "..."] | float) -> None:
+    """Blends an arm's angles to `arm`, (4,) or (n, 4), as `weight` (n,) goes to 1."""
+    controls.arm_rad[:, side] += np.asarray(weight)[..., None] * (arm - controls.arm_rad[:, side])
+
+
 def whole_turns(gap_rad: Array) -> Array:
     """The whole turns in differences of angles, in radians."""
     return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))

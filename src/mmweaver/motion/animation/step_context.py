@@ -10,20 +10,13 @@ from jaxtyping import Float
 from mmweaver.core.registry import Registry
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
-from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls
+from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, mix_arm
 from mmweaver.motion.animation.habits import Habits
 from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
-from mmweaver.motion.animation.library.movement_primitives import (
-    Curve,
-    PerTime,
-    Span,
-    mix_arm,
-    sides,
-    spline_through,
-)
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.spans import MOVEMENTS, Curve, Number, PerTime, Span, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH, upright
 from mmweaver.motion.language.plan import Step
 
@@ -106,9 +99,15 @@ class StepContext:
         """`profiles.wander` at the times of the motion."""
         return wander(self.time_s, self.rng, slow_hz=slow_hz, fast_hz=fast_hz)
 
+    def sides(self) -> tuple[int, ...]:
+        """The arms that move: as the sentence says, else five times out of six the one that the person usually uses."""
+        usual = self.step.usual_hand or "right"
+        chosen = self.hand or (usual if self.rng.random() < 5 / 6 else {"right": "left"}.get(usual, "right"))
+        return {"left": (LEFT,), "right": (RIGHT,), "both": BOTH}[chosen]
+
     def one_side(self) -> int:
         """The one arm that moves; of both, the right."""
-        return sides(self)[-1]
+        return self.sides()[-1]
 
     @property
     def named_side(self) -> int:
@@ -118,7 +117,7 @@ class StepContext:
     @property
     def named_arms(self) -> tuple[int, ...]:
         """The arms that the sentence names, else both."""
-        return sides(self) if self.hand else BOTH
+        return self.sides() if self.hand else BOTH
 
     def leg_side(self) -> int:
         """The leg that moves: as the sentence says, else by the seed, the right one five times out of six."""
@@ -199,12 +198,10 @@ class StepContext:
                 values = values[:, side]
             values += change
 
-    def keyed(
-        self, u: PerTime, at: Sequence[float], gain: float = 1.0, side: int | None = None, **values: Sequence[float]
-    ) -> None:
-        """Adds smooth keyframes to channels: gain times `values` at `at` of a progress u (n,)."""
-        for name, keys in values.items():
-            self.add(spline_through(u, at, keys), side, **{name: gain})
+    def keyed(self, u: PerTime, movement: str, part: str, gain: Number = 1, side: int | None = None) -> None:
+        """Adds a part's keyframes (`movements.toml`) to channels, over a progress u (n,)."""
+        for channel, values in MOVEMENTS[movement][part].items():
+            self.add(spline_through(u, MOVEMENTS[movement]["at"], values), side, **{channel: gain})
 
     def pelvis(self, ahead: Curve = 0.0, left: Curve = 0.0, up: Curve = 0.0) -> None:
         """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""
@@ -245,7 +242,7 @@ class StepContext:
             depth, pelvis_pitch=0.6 * lean_rad, spine_pitch=0.7 * lean_rad, head_pitch=-0.5 * lean_rad, knee_out=0.2
         )
 
-    def arm(self, angles: Sequence[float] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
+    def arm(self, angles: Sequence[Number] | Float[np.ndarray, "n 4"], weight: Curve = 1.0, *sides: int) -> None:
         """Blends arms, both by default, to angles of flexion, abduction, twist and elbow as `weight` (n,) goes to 1."""
         for side in sides or BOTH:
             mix_arm(self.controls, side, np.asarray(angles), weight)
@@ -255,16 +252,14 @@ class StepContext:
         side: int | tuple[int, ...],
         target: Place,
         weight: Curve = 1.0,
-        elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0),
+        elbow: Sequence[float] = (-0.3, 0.5, -1.0),
     ) -> None:
         """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
-    def hand_to_m(
-        self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: tuple[float, float, float]
-    ) -> None:
+    def hand_to_m(self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: Sequence[float]) -> None:
         """The same in metres; the elbow points in the direction `elbow`."""
-        self.arm(reach(self.body, self._points(target), elbow), weight, *np.atleast_1d(side))
+        self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
     def _points(self, target: Place) -> Float[np.ndarray, "n 3"]:
         if isinstance(target, np.ndarray):

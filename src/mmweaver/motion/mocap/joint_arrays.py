@@ -11,18 +11,14 @@ from mmweaver.core.safe_files.array_checks import ArrayChecks, real_numbers
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS
 from mmweaver.motion.mocap.clip import RawMotion
 from mmweaver.motion.mocap.humanml3d import FPS, NUM_FEATURES, joints_from_features
+from mmweaver.motion.mocap.joint_names import SKELETONS
 from mmweaver.motion.mocap.smpl import is_smpl, rate_of, read_smpl
 
 Array = np.ndarray
 JOINT_KEYS = ("joints_m", "joints", "positions", "keypoints3d", "pos")
 NAME_KEYS = ("joint_names", "names")
 CMU_FPS = 120.0
-# Of the 38 joints of CMU's skeleton; duplicates, fingers and the inner ends of the clavicles are left out.
-CMU_NAMES = {
-    0: "hips", 2: "left_upleg", 3: "left_leg", 4: "left_foot", 5: "left_toebase", 8: "right_upleg", 9: "right_leg",
-    10: "right_foot", 11: "right_toebase", 14: "spine1", 15: "spine2", 17: "neck", 18: "head", 21: "left_arm",
-    22: "left_forearm", 23: "left_hand", 30: "right_arm", 31: "right_forearm", 32: "right_hand",
-}  # fmt: skip
+CMU_NAMES = {int(index): name for index, name in SKELETONS["cmu"].items()}
 NORMALISED_BELOW_M = 0.25  # mean height of the root below which features must be normalised ones
 
 

@@ -6,11 +6,13 @@ an arm, a "foot" is the ankle unless the file has an ankle.
 """
 
 import re
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, joint
 from mmweaver.motion.mocap.clip import RawMotion
 
@@ -18,21 +20,11 @@ Array = np.ndarray
 PREFIX = re.compile(r"^(mixamorig\d*|bip0*1?|valvebiped|character\d*|skeleton|def|jnt|joint(?=root))[ _.:-]*", re.I)
 TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
-SIDED: dict[str, tuple[str, ...]] = {
-    "hip": ("hip", "upleg", "thigh", "upperleg"),
-    "knee": ("knee", "leg", "lowerleg", "lowleg", "shin", "calf"),
-    "ankle": ("ankle", "foot"),
-    "foot": ("toebase", "toe", "toes", "ball", "forefoot", "foot"),
-    "collar": ("collar", "clavicle", "innershoulder", "shoulder"),
-    "shoulder": ("upperarm", "uparm", "arm", "shldr", "shoulder"),
-    "elbow": ("elbow", "forearm", "lowerarm", "lowarm"),
-    "wrist": ("wrist", "hand"),
-}
-SPINE = {"spine", "chest", "upperchest", "torso", "abdomen", "lowerback", "upperback", "waist", "thorax", "lowertorso"}
+SKELETONS = read_toml(Path(__file__).with_name("skeletons.toml"))
+SIDED = {ours: words.split() for ours, words in SKELETONS["sided"].items()}
+SIDED_WORDS = {word for words in SIDED.values() for word in words}
+SPINE, PELVIS = SKELETONS["spine"].split(), SKELETONS["pelvis"].split()
 VERTEBRAE = re.compile(r"^[lt]\d+$", re.I)  # L5, L3, T12, T8
-PELVIS = ("pelvis", "hips", "hip", "root")
-# Where the three spine joints of the mean SMPL body lie between pelvis and neck.
-SPINE_SHARES = (0.21, 0.47, 0.58)
 FINGERS = re.compile(r"thumb|index|middle|ring|pinky|finger|twist|ik|pole|metacarp|hold|prop", re.I)
 
 
@@ -50,7 +42,7 @@ def parts_of(name: str) -> tuple[str, str, int]:
     words = [token for token in tokens if token not in SIDES and not token.isdigit()]
     numbers = [int(token) for token in tokens if token.isdigit()]
     part = "".join(words)
-    if not side and part[:1] in ("l", "r") and part[1:] in {word for known in SIDED.values() for word in known}:
+    if not side and part[:1] in ("l", "r") and part[1:] in SIDED_WORDS:
         side, part = SIDES[part[0]], part[1:]  # lhip, rknee
     return side, part, numbers[-1] if numbers else 0
 
@@ -63,35 +55,26 @@ def to_22(raw: RawMotion, source: str) -> Float[Array, "frame 22 3"]:
     lowered = [name.lower() for name in raw.names]
     if set(JOINT_NAMES) <= set(lowered):
         return np.asarray(raw.positions[:, [lowered.index(name) for name in JOINT_NAMES]])
-    found = _limbs(raw.names)
-    known = {name: raw.positions[:, index] for name, index in found.items()}
-    neck = _first(raw.names, ("neck",))
-    head = _first(raw.names, ("head",))
-    pelvis = next((index for word in PELVIS if (index := _first(raw.names, (word,))) is not None), None)
-    missing = [
-        f"{side}_{part}"
-        for side in ("left", "right")
-        for part in SIDED
-        if part not in ("collar", "foot") and f"{side}_{part}" not in known
-    ] + ([] if head is not None else ["head"])
+    known = {name: raw.positions[:, index] for name, index in _limbs(raw.names).items()}
+    for name, words in (("neck", ["neck"]), ("head", ["head"]), ("pelvis", PELVIS)):
+        index = next((index for word in words if (index := _first(raw.names, word)) is not None), None)
+        known |= {} if index is None else {name: raw.positions[:, index]}
+    needed = [f"{side}_{part}" for side in ("left", "right") for part in SIDED if part not in ("collar", "foot")]
+    missing = [name for name in (*needed, "head") if name not in known]
     if missing:
         theirs = ", ".join(raw.names[:12]) + (", ..." if len(raw.names) > 12 else "")
         raise InputError(
             f"{source}: no joint is known as {', '.join(missing[:6])}{' and more' if len(missing) > 6 else ''}; the"
             f" file's joints are {theirs}; rename them as core/skeleton.py does"
         )
+    shoulders = 0.5 * (known["left_shoulder"] + known["right_shoulder"])
+    known.setdefault("pelvis", 0.5 * (known["left_hip"] + known["right_hip"]))
+    known.setdefault("neck", shoulders + 0.3 * (known["head"] - shoulders))
     joints = np.full((len(raw.positions), NUM_JOINTS, 3), np.nan)
     for name, place in known.items():
         joints[:, joint(name)] = place
-    hips = 0.5 * (known["left_hip"] + known["right_hip"])
-    shoulders = 0.5 * (known["left_shoulder"] + known["right_shoulder"])
-    joints[:, 0] = hips if pelvis is None else raw.positions[:, pelvis]
-    joints[:, joint("head")] = raw.positions[:, head]
-    joints[:, joint("neck")] = (
-        raw.positions[:, neck] if neck is not None else shoulders + 0.3 * (joints[:, joint("head")] - shoulders)
-    )
-    chain = [raw.positions[:, k] for k in _spine(raw.names)]
-    _fill_spine(joints, chain)
+    spine = [k for k, (side, part, _) in enumerate(map(parts_of, raw.names)) if not side and part in SPINE]
+    _fill_spine(joints, [raw.positions[:, k] for k in spine])
     _fill_ends(joints, known)
     return joints
 
@@ -107,29 +90,19 @@ def _limbs(names: tuple[str, ...]) -> dict[str, int]:
     for side in ("left", "right"):
         has = {part for one, part in parts if one == side}
         arm_named = bool(has & {"upperarm", "uparm", "arm", "shldr"})
+        # a shoulder is the collar if there is an arm, a foot the ankle unless there is an ankle
+        other = [("shoulder" if arm_named else "collar", "shoulder"), ("" if "ankle" in has else "foot", "foot")]
         for ours, words in SIDED.items():
-            for word in words:
-                if word not in has:
-                    continue
-                if ours == "collar" and word == "shoulder" and not arm_named:
-                    continue
-                if ours == "shoulder" and word == "shoulder" and arm_named:
-                    continue
-                if ours == "foot" and word == "foot" and "ankle" not in has:
-                    continue
+            word = next((word for word in words if word in has and (ours, word) not in other), None)
+            if word:
                 found[f"{side}_{ours}"] = parts[side, word]
-                break
     return found
 
 
-def _first(names: tuple[str, ...], words: tuple[str, ...]) -> int | None:
-    """Index of the unsided joint with one of these names and the lowest number; None if there is none."""
-    hits = [(parts_of(name)[2], k) for k, name in enumerate(names) if parts_of(name)[:2] in {("", w) for w in words}]
+def _first(names: tuple[str, ...], word: str) -> int | None:
+    """Index of the unsided joint of that name with the lowest number; None if there is none."""
+    hits = [(parts_of(name)[2], k) for k, name in enumerate(names) if parts_of(name)[:2] == ("", word)]
     return min(hits)[1] if hits else None
-
-
-def _spine(names: tuple[str, ...]) -> list[int]:
-    return [k for k, name in enumerate(names) if parts_of(name)[0] == "" and parts_of(name)[1] in SPINE]
 
 
 def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "frame 3"]]) -> None:
@@ -137,7 +110,7 @@ def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "fr
     knots = np.stack([joints[:, 0], *chain, joints[:, joint("neck")]], axis=1)  # (frame, knot, 3)
     lengths = np.nanmedian(np.linalg.norm(np.diff(knots, axis=1), axis=-1), axis=0)
     distances = np.concatenate([[0.0], np.cumsum(lengths)])
-    for name, share in zip(("spine1", "spine2", "spine3"), SPINE_SHARES, strict=True):
+    for name, share in zip(("spine1", "spine2", "spine3"), SKELETONS["spine_shares"], strict=True):
         at = share * distances[-1]
         k = int(np.clip(np.searchsorted(distances, at, side="right") - 1, 0, len(lengths) - 1))
         part = (at - distances[k]) / lengths[k] if lengths[k] > 0 else 0.0
@@ -146,15 +119,13 @@ def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "fr
 
 def _fill_ends(joints: Float[Array, "frame 22 3"], known: dict[str, Array]) -> None:
     """Puts collars halfway to the shoulders, and balls of the feet ahead of the ankles, where the file has none."""
-    spine3 = joints[:, joint("spine3")]
+    across = known["left_hip"] - known["right_hip"]
     for side in ("left", "right"):
         if f"{side}_collar" not in known:
-            joints[:, joint(f"{side}_collar")] = 0.5 * (spine3 + joints[:, joint(f"{side}_shoulder")])
+            joints[:, joint(f"{side}_collar")] = 0.5 * (joints[:, joint("spine3")] + known[f"{side}_shoulder"])
         if f"{side}_foot" not in known:
-            knee, ankle = joints[:, joint(f"{side}_knee")], joints[:, joint(f"{side}_ankle")]
-            shank = ankle - knee
-            across = joints[:, joint("left_hip")] - joints[:, joint("right_hip")]
+            ankle = known[f"{side}_ankle"]
+            shank = ankle - known[f"{side}_knee"]
             ahead = np.cross(across, -shank)
-            norm = np.linalg.norm(ahead, axis=-1, keepdims=True)
-            length = np.linalg.norm(shank, axis=-1, keepdims=True)
+            norm, length = (np.linalg.norm(one, axis=-1, keepdims=True) for one in (ahead, shank))
             joints[:, joint(f"{side}_foot")] = ankle + 0.32 * length * ahead / np.maximum(norm, 1e-9) + 0.14 * shank

@@ -28,19 +28,6 @@ def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
         ) from None
 
 
-def train_words(sentences: list[str]) -> "PreTrainedTokenizerBase":
-    """A tokenizer of whole words, for a small model."""
-    from tokenizers import Tokenizer, models, normalizers, pre_tokenizers
-
-    normal = normalizers.Lowercase()
-    split = pre_tokenizers.Whitespace()
-    known = {word for sentence in sentences for word, _ in split.pre_tokenize_str(normal.normalize_str(sentence))}
-    names = ["<pad>", "</s>", "<unk>", *sorted(known)]
-    model = Tokenizer(models.WordLevel({name: k for k, name in enumerate(names)}, unk_token="<unk>"))
-    model.normalizer, model.pre_tokenizer = normal, split
-    return wrapped(model.to_str())
-
-
 def wrapped(description: str) -> "PreTrainedTokenizerBase":
     """A tokenizer from its JSON; texts end with </s>, as for T5."""
     from tokenizers import Tokenizer, processors
@@ -49,12 +36,6 @@ def wrapped(description: str) -> "PreTrainedTokenizerBase":
     model: Any = Tokenizer.from_str(description)
     model.post_processor = processors.TemplateProcessing(single="$A </s>", special_tokens=[("</s>", 1)])
     return PreTrainedTokenizerFast(tokenizer_object=model, pad_token="<pad>", eos_token="</s>", unk_token="<unk>")
-
-
-def plain_words(words: "PreTrainedTokenizerBase") -> str:
-    """The tokenizer as JSON, to be stored with the weights."""
-    backend: Any = words
-    return backend.backend_tokenizer.to_str()
 
 
 def unknown_words(words: "PreTrainedTokenizerBase", text: str) -> tuple[str, ...]:

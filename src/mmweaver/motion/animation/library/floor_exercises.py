@@ -10,9 +10,9 @@ from jaxtyping import Float
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.kinematics import ankle_from_foot, chest_of
-from mmweaver.motion.animation.library.movement_primitives import PerTime, spline_through
 from mmweaver.motion.animation.library.on_the_floor import KNEELING_M, lying
 from mmweaver.motion.animation.profiles import cap, plateau, raised_cosine, rise
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
@@ -101,14 +101,9 @@ def _crawled(act: StepContext) -> tuple[PerTime, PerTime]:
     return gone_m, rise((after_m - before_m) / (2 * _LIFTING_S) / 0.12)
 
 
-AHEAD = 1.08  # of the height: how far on the body stands up again after a roll
+_ROLL, _FEET = MOVEMENTS["forward_roll"], MOVEMENTS["forward_roll_feet"]
+AHEAD = _ROLL["ahead"][-1]  # of the height: how far on the body stands up again after a roll
 UPRIGHT_AGAIN = 0.82  # share of a roll after which trunk and feet have turned once
-_AT = (0.0, 0.27, 0.4, 0.47, 0.53, 0.6, 0.67, 0.73, 0.82, 1.0)  # shares of a roll
-_PELVIS_AHEAD = (0.0, 0.03, 0.16, 0.32, 0.5, 0.67, 0.79, 0.88, 1.0, AHEAD)  # of the height
-_PELVIS_UP = (0.0, 0.29, 0.38, 0.37, 0.24, 0.1, 0.085, 0.11, 0.25, 0.0)  # 0: as in standing
-_FOOT_AT = (0.36, 0.45, 0.52, 0.58, 0.64, 0.7, 0.75)
-_FOOT_AHEAD = (0.0, -0.02, 0.22, 0.68, 0.98, 1.07, AHEAD)
-_FOOT_UP = (0.0, 0.15, 0.55, 0.52, 0.3, 0.06, 0.0)
 _HANDS = (0.46, 0.12, 0.03)  # where they lie: ahead, outward, up
 
 
@@ -128,8 +123,9 @@ def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float)
     """One roll over `share` (n,) 0 to 1, after the body has gone `gone_m` ahead."""
     h, stand = act.height_m, act.body.pelvis_height_m(STAND_STRETCH)
     stretch, whole = length_m / (AHEAD * h), 2 * np.pi * (share >= UPRIGHT_AGAIN)
-    heights = [(z * h or stand) - stand for z in _PELVIS_UP]
-    act.pelvis(stretch * h * spline_through(share, _AT, _PELVIS_AHEAD), 0.0, spline_through(share, _AT, heights))
+    heights = [(z * h or stand) - stand for z in _ROLL["up"]]
+    ahead = stretch * h * spline_through(share, _ROLL["at"], _ROLL["ahead"])
+    act.pelvis(ahead, 0.0, spline_through(share, _ROLL["at"], heights))
     over = 1.0 * rise(share / 0.27) + (2 * np.pi - 1.0) * rise((share - 0.26) / (UPRIGHT_AGAIN - 0.26)) - whole
     act.add(1, pelvis_pitch=over, knee_up=-over + 0.25 * np.pi * plateau(share, 0.1, 0.9, 0.2, 0.2))
     act.add(plateau(share, 0.08, 0.95, 0.3, 0.3), spine_pitch=1.0)
@@ -138,9 +134,9 @@ def _roll_once(act: StepContext, share: PerTime, length_m: float, gone_m: float)
     # Both feet push off, go over the head with the legs, and come down together.
     pitch = 2 * np.pi * rise((share - 0.33) / (UPRIGHT_AGAIN - 0.03 - 0.33))
     pivot = ankle_from_foot(act.body, np.zeros(len(share)), pitch) - [0.0, 0.0, act.body.ankle_height_m]
-    pushing = 1 - plateau(share, _FOOT_AT[0], _FOOT_AT[-1], 0.05, 0.05)  # on the ball until it leaves the floor
-    ahead = stretch * h * spline_through(share, _FOOT_AT, _FOOT_AHEAD) - pivot[:, 0] + pushing * pivot[:, 0]
-    up = h * spline_through(share, _FOOT_AT, _FOOT_UP) - pivot[:, 2] + pushing * pivot[:, 2]
+    pushing = 1 - plateau(share, _FEET["at"][0], _FEET["at"][-1], 0.05, 0.05)  # on the ball until it leaves the floor
+    ahead = stretch * h * spline_through(share, _FEET["at"], _FEET["ahead"]) - pivot[:, 0] + pushing * pivot[:, 0]
+    up = h * spline_through(share, _FEET["at"], _FEET["up"]) - pivot[:, 2] + pushing * pivot[:, 2]
     act.add(1, foot_pitch=pitch - whole)
     for side in BOTH:
         act.move_foot(side, ahead, 0.0, up)

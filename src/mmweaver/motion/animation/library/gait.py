@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime
 from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE, TOES_OUT_RAD
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
@@ -37,7 +37,7 @@ class Style:
     toe_off_rad: float
     heel_rises: float  # share of the stance after which the heel leaves the floor
     folded: float  # share of the swing after which the foot points down most
-    swing_ramps: tuple[float, float]  # shares of the swing in which the foot accelerates and decelerates
+    swing_ramps: list[float]  # shares of the swing in which the foot accelerates and decelerates
     toe_lift_m: float  # of the ball of the foot, early in the swing of a full step
     lift_m: float  # of the swinging sole in a full step
     spot_lift_m: float  # of the sole in a step on the spot
@@ -69,33 +69,21 @@ def walking_style(act: StepContext, speed_mps: float) -> Style:
     leg_m, reach_m = act.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
+        **MOVEMENTS["walk"],
         steps_hz=float(steps_hz),
-        double_support=-0.045,
         half_stance_m=0.034 * height_m,
         toes_out_rad=0.09 + rng.normal(0, 0.02),
         ahead_m=-0.005 * share,
         heel_strike_rad=0.32 * share**0.5,
         toe_off_rad=0.85 * share**0.6,
-        heel_rises=0.88,
-        folded=0.27,
-        swing_ramps=(0.52, 0.28),
-        toe_lift_m=0.057,
-        lift_m=0.03,
-        spot_lift_m=0.0,
         arm_swing_rad=0.19 * vigour,
-        arm_back_rad=0.0,
         elbow_rad=0.42 + rng.normal(0, 0.1),
         elbow_swing_rad=0.18 * vigour,
         lean_rad=0.035 + rng.normal(0, 0.015),
         bob_m=0.27 * drop_m,
-        highest=0.51,
         surge_mps=0.19 * share**0.5,
-        surge_sharp=0.3,
-        fastest=0.04,
-        sink=0.972,
         pelvis_yaw_rad=0.09 * share,
         twist_rad=0.16 * share,
-        sway_m=0.018,
         lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )
 
@@ -105,33 +93,21 @@ def jogging_style(act: StepContext, speed_mps: float) -> Style:
     steps_hz, share = act.tempo(2.35, 2.6, 2.9, 0.08), min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(act.rng.normal(0, 0.12))
     return Style(
+        **MOVEMENTS["jog"],
         steps_hz=steps_hz,
         double_support=-0.57 - 0.2 * max(share - 0.8, 0.0),
         half_stance_m=0.036 * act.height_m,
-        toes_out_rad=0.08,
         ahead_m=0.055 * share,
         heel_strike_rad=0.12 * share,
         toe_off_rad=0.85 + 0.27 * share,
-        heel_rises=0.49,
-        folded=0.24,
-        swing_ramps=(0.56, 0.34),
         toe_lift_m=0.08 * share,
         lift_m=0.03 + 0.03 * share,
         spot_lift_m=0.13 * vigour,
         arm_swing_rad=(0.19 + 0.05 * share) * vigour,
-        arm_back_rad=0.3,
         elbow_rad=1.8 + act.rng.normal(0, 0.15),
-        elbow_swing_rad=0.1,
         lean_rad=0.07 + 0.07 * share,
         bob_m=(1.0 + 0.28 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
-        highest=0.62,
         surge_mps=0.22 * share,
-        surge_sharp=0.0,
-        fastest=0.47,
-        sink=0.965,
-        pelvis_yaw_rad=0.03,
-        twist_rad=0.3,
-        sway_m=0.005,
         lopsided=float(np.clip(act.rng.normal(0, 0.06), -0.12, 0.12)),
     )
 
@@ -163,16 +139,12 @@ def turning(act: StepContext) -> None:
 @posture("march", stands=False)
 def marching(act: StepContext) -> None:
     """High knees on the spot, each arm swinging with the opposite leg."""
-    style = walking_style(act, 1.3)
     style = replace(
-        style,
+        walking_style(act, 1.3),
         steps_hz=act.tempo(1.5, 1.85, 2.2),
-        double_support=0.12,
         spot_lift_m=act.uniform(0.13, 0.2),
         arm_swing_rad=act.uniform(0.35, 0.6),
-        elbow_rad=0.7,
-        bob_m=0.01,
-        sink=0.988,
+        **MOVEMENTS["march"],
     )
     steps_along_path(act, style, jog=True, on_spot=True)
 

@@ -6,8 +6,8 @@ Each changes the controls of the posture under it; the legs are kept.
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, sides, spline_through
 from mmweaver.motion.animation.profiles import larger, raised_cosine, reached, rise, travel
+from mmweaver.motion.animation.spans import PerTime, spline_through
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
@@ -18,7 +18,7 @@ def waving(act: StepContext) -> None:
     rate, end = act.cycles(1.0, 1.6, 2.2, 0.8, 2.5)
     swing = act.uniform(0.35, 0.5) * min(1.0, 1.5 / rate)
     on = _until(act, end + 0.25)
-    for side in sides(act):
+    for side in act.sides():
         phase = act.phase(rate) + (rng.uniform(0, 0.6) if side else 0.0)
         abduction, flexion = rng.uniform(0.95, 1.4), rng.uniform(0.2, 0.8)
         nod, late = act.uniform(0.06, 0.3) * min(1.0, 1.5 / rate), rng.uniform(-0.6, 0.6)
@@ -60,17 +60,17 @@ def raising(act: StepContext) -> None:
         begin = act.start_s + k * each
         up += act.plateau(begin, max(begin + each - 0.02, begin + 2 * move), move, move)
     sideways, top = rng.random() < 0.3, act.uniform(2.75, 2.98)
-    for side in sides(act):
+    for side in act.sides():
         elbow = rng.uniform(0.12, 0.25)
         act.arm((0.12, top, 0.0, elbow) if sideways else (top, 0.08, 0.0, elbow), up, side)
         act.add(np.sin(np.pi * up), side, elbow=0.8 * (not sideways))
-        act.add(up, spine_roll=-0.05 * OUTWARD[side] * (len(sides(act)) == 1))
+        act.add(up, spine_roll=-0.05 * OUTWARD[side] * (len(act.sides()) == 1))
 
 
 @gesture("drink")
 def drinking(act: StepContext) -> None:
     """A cup in front of the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
-    side, h = sides(act)[0], act.height_m
+    side, h = act.sides()[0], act.height_m
     sip_s = act.tempo(3.4, 2.6, 1.9)
     count = act.count or max(1, int(act.duration_s / sip_s + 0.3))
     sip_s = float(np.clip(act.duration_s / count, 1.3, 4.5))
@@ -240,7 +240,7 @@ def lowering(act: StepContext) -> None:
 
 def _lift_arm(act: StepContext, up: PerTime) -> None:
     top, bent = act.uniform(2.75, 3.0), act.uniform(0.05, 0.2)
-    for side in sides(act):
+    for side in act.sides():
         arm = act.controls.arm_rad[:, side].copy()
         arm[:, 0] += up * (top - arm[:, 0])
         arm[:, 1] += up * (0.1 - arm[:, 1])
@@ -264,7 +264,7 @@ def pulling_hand(act: StepContext) -> None:
 def _stretch_arm(act: StepContext, out: PerTime) -> None:
     """A hand between the chest (0) and as far ahead as it reaches (1); the shoulder goes along."""
     near, far = np.array([0.09, 0.06, 0.03]), np.array([0.297, 0.08, 0.07])
-    for side in sides(act):
+    for side in act.sides():
         act.hand_to(side, near + out[:, None] * (far - near), 1.0, (-0.2, 0.6, -1.0))
         act.add(out, spine_yaw=-OUTWARD[side] * 0.3)
 
@@ -283,7 +283,7 @@ def drawing_circle(act: StepContext) -> None:
 def drawing_z(act: StepContext) -> None:
     """The straight arm draws a large Z before the body: across, down to the other side, and across again."""
     span, at = act.repeats(0.85 * act.duration_s, 1.1, 3.5)[0], (0.0, 0.3, 0.65, 1.0)
-    aside = span.keys(at, [-1.0, 1.0, -1.0, 1.0]) * -OUTWARD[sides(act)[0]]
+    aside = span.keys(at, [-1.0, 1.0, -1.0, 1.0]) * -OUTWARD[act.sides()[0]]
     _draw(act, aside, span.keys(at, [1.0, 1.0, -1.0, -1.0]), 0.17)
 
 
@@ -294,7 +294,7 @@ def _draw(act: StepContext, aside: PerTime, up: PerTime, half: float) -> None:
     """
     size = act.vary(half, 0.12)
     on = rise((act.time_s - act.start_s + 0.4) / 0.5) if not act.first else np.ones_like(aside)
-    side = sides(act)[0]
+    side = act.sides()[0]
     out = -OUTWARD[side] * aside
     ahead = np.sqrt(larger(0.28**2 - size**2 * (out**2 + up**2), 0.06**2, 0.01))
     ahead += 0.08 * (np.hypot(out, 0.3) - out) / 2
@@ -311,7 +311,7 @@ def swiping(act: StepContext) -> None:
         stroke += rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35)
     first, last = swipes[0], swipes[-1]
     on = act.plateau(first.begin_s, last.at(1), 0.3 * first.lasts_s, 0.3 * last.lasts_s)
-    along, side = act.vary(0.13, 0.12) * (2 * stroke - 1), sides(act)[0]
+    along, side = act.vary(0.13, 0.12) * (2 * stroke - 1), act.sides()[0]
     outward = 1.0 if act.direction == ("right" if side == RIGHT else "left") else -1.0  # inward where no side is named
     vertical = {"up": 1.0, "down": -1.0}.get(act.style, 0.0)
     out = 0.05 + (0.0 if vertical else outward) * along
@@ -323,7 +323,7 @@ def yawning(act: StepContext) -> None:
     """The hand goes to the mouth and stays, the head tilts back and the body leans."""
     up = _once(act, 1.5, 1.0, 0.7)
     act.add(up, head_pitch=-act.vary(0.22), spine_pitch=-act.vary(0.08, 0.3))
-    side = sides(act)[0]
+    side = act.sides()[0]
     target = act.mouth_m(side) + np.array([0.03, 0.03, -0.015]) * act.height_m
     act.hand_to_m(side, target, up, (-0.2, 0.8, -1.0))
 
@@ -335,5 +335,5 @@ def knocking_from_elbow(act: StepContext) -> None:
     up = np.zeros_like(act.time_s)
     for span in act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]:
         up += span.plateau(0, 1, 0.5, 0.5)
-    for side in sides(act):
+    for side in act.sides():
         act.add(up, side, elbow=act.vary(1.9, 0.08), flexion=0.15)

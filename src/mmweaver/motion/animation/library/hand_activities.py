@@ -3,8 +3,8 @@
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, sides, spline_through
 from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine, rise
+from mmweaver.motion.animation.spans import PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
@@ -56,7 +56,7 @@ def phoning(act: StepContext) -> None:
 @gesture("text")
 def texting(act: StepContext) -> None:
     """A phone in one or both hands in front of the chest, head down; thumbs move the wrists by millimetres."""
-    hands = sides(act) if act.hand else (BOTH if act.rng.random() < 0.5 else (RIGHT,))
+    hands = act.sides() if act.hand else (BOTH if act.rng.random() < 0.5 else (RIGHT,))
     act.add(1, head_pitch=0.4)
     for side in hands:
         act.hand_to(side, (0.15, 0.022, 0.0 + 0.0015 * act.wander(1.5, 4.0)), 1.0, (-0.5, 0.4, -1.0))
@@ -138,7 +138,7 @@ def knocking(act: StepContext) -> None:
     count, begin = act.count or max(2, int((act.duration_s - 2 * up_s) * rate)), act.start_s + up_s
     end = begin + count / rate
     beat = act.plateau(begin, end, 0.15, 0.15) * raised_cosine(2 * np.pi * rate * (act.time_s - begin))
-    hands, up = sides(act) if act.hand == "both" else (side,), act.plateau(act.start_s, end + up_s, up_s, up_s)
+    hands, up = act.sides() if act.hand == "both" else (side,), act.plateau(act.start_s, end + up_s, up_s, up_s)
     act.hand_to(hands, (0.185 + 0.05 * beat, 0.06, 0.11 + 0.012 * beat), up)
 
 
@@ -191,7 +191,7 @@ def sweeping(act: StepContext) -> None:
     """Both hands on a broom's stick, one above the other; strokes across the body, the trunk turning along."""
     rate, _ = act.cycles(0.45, 0.7, 1.0, 0.3, 1.3)
     stroke = np.sin(act.phase(rate)) * act.vary(1.0, 0.15)
-    low = sides(act)[0]
+    low = act.sides()[0]
     act.add(1, spine_pitch=0.28, spine_yaw=0.22 * stroke * OUTWARD[low], head_pitch=0.25)
     act.hand_to(low, (0.2 + 0.02 * stroke, 0.04 + 0.09 * stroke, -0.13))
     act.hand_to(1 - low, (0.15, 0.02 - 0.03 * stroke, 0.02))
@@ -201,7 +201,7 @@ def sweeping(act: StepContext) -> None:
 def vacuuming(act: StepContext) -> None:
     """One hand pushes the nozzle ahead and draws it back; the trunk and the weight go with it."""
     rate, _ = act.cycles(0.35, 0.5, 0.75, 0.25, 1.0)
-    out, side = raised_cosine(act.phase(rate)), sides(act)[0]
+    out, side = raised_cosine(act.phase(rate)), act.sides()[0]
     act.add(1, spine_pitch=0.22 + 0.2 * out, spine_yaw=0.15 * np.sin(act.phase(0.12)), head_pitch=0.2)
     act.hand_to(side, (0.12 + act.vary(0.16, 0.1) * out, 0.05, -0.14 + 0.03 * out))
 
@@ -210,15 +210,10 @@ def vacuuming(act: StepContext) -> None:
 def taking_jacket_off(act: StepContext) -> None:
     """Both hands open the jacket at the chest and pull it back over the shoulders; one sleeve comes off, the other."""
     span = act.repeats(0.92 * act.duration_s, 2.0, 6.0)[0]
-    at, first = [span.at(share) for share in (0.0, 0.22, 0.45, 0.62, 0.8, 1.0)], sides(act)[0]
-    ways = (
-        [0.03, 0.14, 0.02, -0.13, -0.12, 0.05],
-        [0.12, 0.05, 0.17, 0.1, 0.05, 0.12],
-        [-0.2, 0.08, 0.06, -0.12, -0.14, -0.2],
-    )
+    first = act.sides()[0]
     for side in BOTH:
-        t = act.time_s - (0.0 if side == first else 0.06 * span.lasts_s)
-        target = [spline_through(t, at, way) for way in ways]
+        late = Span(act.time_s - (0.0 if side == first else 0.06 * span.lasts_s), span.begin_s, span.lasts_s)
+        target = late.rows("jacket_off", "ahead", "out", "up")
         act.hand_to(side, target, span.plateau(0, 1, 0.18, 0.18), (-0.4, 0.8, -0.6))
     act.add(span.plateau(0.3, 0.9, 0.2, 0.2), spine_pitch=0.12, spine_yaw=OUTWARD[first] * 0.3)
 
@@ -233,7 +228,7 @@ def coughing(act: StepContext) -> None:
             at = begin + k * (act.duration_s - 0.4) / fits + 0.38 * cough
             jerk += act.vary(1.0, 0.2) * bump((act.time_s - at) / 0.3)
     act.add(1, spine_pitch=0.08 + 0.17 * jerk, head_pitch=0.12 + 0.15 * jerk)
-    side = sides(act)[0]
+    side = act.sides()[0]
     target = act.mouth_m(side) + np.array([0.035, 0.02, -0.02]) * act.height_m
     act.hand_to_m(side, target, _raised(act), (-0.2, 0.8, -1.0))
 

@@ -7,8 +7,8 @@ squats and front lunges after a look at its first subject (studies/motion/mars_e
 import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides
 from mmweaver.motion.animation.profiles import bump, reached, rise
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture, posture
 
 
@@ -24,7 +24,7 @@ def kicking(act: StepContext) -> None:
     lean, way = 1.0, [0.0, -0.08, -0.16, 0.95 * reach, 0.12, 0.0]
     if act.style == "back":
         lean, way = -0.75, [0.0, 0.0, 0.03, -0.75 * reach, -0.1, 0.0]
-    at = (0.0, 0.2, 0.36, 0.6, 0.78, 1.0)
+    at = MOVEMENTS["kick"]["at"]
     for span in act.repeats(1.35, 1.0, 1.9):
         ahead, up = span.keys(at, way), span.keys(at, [0.0, 0.045, 0.1, high, 0.14, 0.0])
         over, swing = span.plateau(-0.12, 1.1, 0.32, 0.34), span.plateau(0.32, 0.9, 0.28, 0.3)
@@ -32,7 +32,7 @@ def kicking(act: StepContext) -> None:
         act.lean_over(1 - side, over)
         act.lift_weight(side, span.plateau(0, 1, 0.16, 0.16))
         act.pelvis(up=-0.012 * h * over)
-        act.add(span.keys(at, [0.0, 0.5, 0.8, -0.25, 0.1, 0.0]), side, foot_pitch=1)
+        act.add(span.rows("kick", "pitch")[0], side, foot_pitch=1)
         act.add(swing, pelvis_pitch=-0.22 * lean, spine_pitch=0.12 * lean, pelvis_yaw=-OUTWARD[side] * 0.25)
         act.add(swing, 1 - side, flexion=0.7)
         act.add(swing, side, flexion=-0.45)
@@ -43,36 +43,24 @@ def kicking(act: StepContext) -> None:
 def roundhouse(act: StepContext) -> None:
     """The leg swings around the side to the front, the body turning with it on the ball of the other foot, and back."""
     high = act.uniform(0.42, 0.56) + (0.14 if act.style == "high" else 0.0)
-    way = (
-        (0.0, -0.1, -0.06, 0.4, 0.33, 0.08, 0.0),
-        (0.0, 0.04, 0.25, 0.04, -0.08, 0.04, 0.0),
-        (0.0, 0.07, 0.32, high, 0.9 * high, 0.22, 0.0),
-    )
-    _kick_turned(act, way, turn_rad=act.uniform(1.2, 1.5))
+    _kick_turned(act, "roundhouse", (0.0, 0.07, 0.32, high, 0.9 * high, 0.22, 0.0), act.uniform(1.2, 1.5))
 
 
 @posture("side_kick", stands=False)
 def side_kick(act: StepContext) -> None:
     """The knee comes up, then the foot shoots out to the own side, the trunk leaning away from it."""
     high = act.uniform(0.3, 0.42)
-    way = (
-        (0.0, 0.06, 0.1, 0.02, 0.02, 0.08, 0.0),
-        (0.0, 0.0, 0.05, 0.36, 0.36, 0.08, 0.0),
-        (0.0, 0.08, 0.25, high, 0.95 * high, 0.22, 0.0),
-    )
-    _kick_turned(act, way, turn_rad=0.3)
+    _kick_turned(act, "side_kick", (0.0, 0.08, 0.25, high, 0.95 * high, 0.22, 0.0), 0.3)
 
 
-def _kick_turned(act: StepContext, way: tuple[tuple[float, ...], ...], *, turn_rad: float) -> None:
-    """A kick over the standing foot that turns: standing, drawn back, knee up, hit, through, knee up, standing.
-
-    `way` is that of the foot, ahead, outward and up, in body heights.
-    """
+def _kick_turned(act: StepContext, movement: str, ups: tuple[float, ...], turn_rad: float) -> None:
+    """A kick over the standing foot, which turns; the kicking foot goes through heights `ups`."""
     act.stand()
     h, side = act.height_m, act.leg_side()
     away = -OUTWARD[side]  # the sign of a turn towards the standing leg
     for span in act.repeats(1.65, 1.3, 2.3):
-        ahead, out, up = (span.keys((0.0, 0.17, 0.35, 0.54, 0.66, 0.83, 1.0), values) for values in way)
+        ahead, out = span.rows(movement, "ahead", "out")
+        up = span.keys(MOVEMENTS[movement]["at"], ups)
         over, swing = span.plateau(-0.12, 1.1, 0.3, 0.32), span.plateau(0.14, 0.96, 0.4, 0.36)
         act.move_foot(side, ahead * h, out * h, np.maximum(up, 0.0) * h)
         act.lean_over(1 - side, over)
@@ -301,10 +289,10 @@ def limb_extension(act: StepContext) -> None:
 @gesture("arm_extension")
 def arm_extension(act: StepContext) -> None:
     """The straight arm goes up at the side until the hand is as high as the head, and comes down, again and again."""
-    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), sides(act)
+    up, top, arms = _there_and_back(act, 4.0, 1.1, 6.0), act.vary(2.0, 0.07), act.sides()
     for side in arms:
         _raise_arm_aside(act, side, up, top)
-        act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(sides(act)) == 1))
+        act.add(up, spine_roll=OUTWARD[side] * 0.04 * (len(act.sides()) == 1))
 
 
 def _raise_arm_aside(act: StepContext, side: int, up: PerTime, top: float) -> None:

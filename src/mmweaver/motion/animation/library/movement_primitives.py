@@ -1,59 +1,7 @@
-"""Building blocks that need no step: repetitions as spans of time, smooth keyframes, arms blended to angles."""
+"""The names that plug-ins of 0.2 import; `StepContext` has these as methods."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from mmweaver.motion.animation.controls import mix_arm
+from mmweaver.motion.animation.step_context import StepContext
 
-import numpy as np
-from jaxtyping import Float
-
-from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.profiles import plateau
-
-if TYPE_CHECKING:
-    from mmweaver.motion.animation.step_context import StepContext
-
-PerTime = Float[np.ndarray, " n"]
-Curve = PerTime | float  # a function of time, or the same value at all times
-
-
-def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
-    """A quintic spline (n,) through keyframes (times, values), at rest at both ends and constant beyond; C2."""
-    from scipy.interpolate import make_interp_spline
-
-    rest = [(1, 0.0), (2, 0.0)]
-    curve = make_interp_spline(np.asarray(times), np.asarray(values, dtype=float), k=5, bc_type=(rest, rest))
-    return np.asarray(curve(np.clip(time_s, times[0], times[-1])))
-
-
-@dataclass(frozen=True)
-class Span:
-    """One repetition of a movement; its methods take shares of its duration."""
-
-    time_s: PerTime
-    begin_s: float
-    lasts_s: float
-
-    def at(self, share: float) -> float:
-        """Time in seconds after this share of the duration."""
-        return self.begin_s + share * self.lasts_s
-
-    def plateau(self, begin: float, end: float, up: float, down: float) -> PerTime:
-        """`profiles.plateau` from share `begin` to share `end`, with ramps of these shares."""
-        return plateau(self.time_s, self.at(begin), self.at(end), up * self.lasts_s, down * self.lasts_s)
-
-    def keys(self, shares: Sequence[float], values: Sequence[float]) -> PerTime:
-        """`spline_through` keyframes at shares of the duration."""
-        return spline_through(self.time_s, [self.at(share) for share in shares], values)
-
-
-def mix_arm(controls: Controls, side: int, arm: Float[np.ndarray, "*n 4"], weight: Curve) -> None:
-    """Blends an arm's angles to `arm`, (4,) or (n, 4), as `weight` (n,) goes to 1."""
-    controls.arm_rad[:, side] += np.asarray(weight)[..., None] * (arm - controls.arm_rad[:, side])
-
-
-def sides(context: "StepContext") -> tuple[int, ...]:
-    """The arms that move: as the sentence says, else five times out of six the one that the person usually uses."""
-    usual = context.step.usual_hand or "right"
-    chosen = context.hand or (usual if context.rng.random() < 5 / 6 else {"right": "left"}.get(usual, "right"))
-    return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
+__all__ = ["mix_arm", "sides"]
+sides = StepContext.sides

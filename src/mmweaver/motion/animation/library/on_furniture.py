@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT, blend
-from mmweaver.motion.animation.library.movement_primitives import PerTime, spline_through
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, lie_down_on_side, roll
 from mmweaver.motion.animation.library.sitting import sitting
 from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
@@ -47,7 +47,7 @@ def _lie_along_seat(act: StepContext, u: PerTime) -> None:
     """u (n,) = 0 sitting, 1 lying on the back with the head to the own left, knees bent, soles on the seat."""
     sitting(act)
     controls, h, u = act.controls, act.height_m, np.clip(u, 0.0, 1.0)
-    at, down = [0.0, 0.3, 0.55, 0.8, 1.0], rise(u)
+    record, down = MOVEMENTS["lie_on_seat"], rise(u)
     feet_rad = controls.heading_rad - 0.5 * np.pi  # the direction in which the feet end up
     along = np.stack([np.cos(feet_rad), np.sin(feet_rad)], axis=1)
     left = np.stack([-np.sin(feet_rad), np.cos(feet_rad)], axis=1)
@@ -55,11 +55,9 @@ def _lie_along_seat(act: StepContext, u: PerTime) -> None:
     controls.pelvis_m[:, :2] += _TOWARDS_FEET * h * down[:, None] * along
     lying_m = act.seat_height_m + PELVIS_OVER_SEAT * h
     act.pelvis(up=down * (lying_m - controls.pelvis_m[:, 2]) + 0.02 * h * bump(u))
-    pitch, bend = [0.0, -0.25, -0.75, -1.2, -1.5], [0.0, 0.1, 0.35, 0.25, 0.05]
-    act.add(1, pelvis_pitch=spline_through(u, at, pitch) - down * controls.pelvis_rad[:, 1])
-    act.add(1, spine_pitch=spline_through(u, at, bend) - down * controls.spine_rad[:, 1])
-    act.keyed(u, at, -1, spine_roll=[0.0, 0.35, 0.25, 0.1, 0.0])
-    act.keyed(u, at, head_pitch=[0.0, 0.15, 0.4, 0.3, 0.1])
+    for channel, now in (("pelvis_pitch", controls.pelvis_rad[:, 1]), ("spine_pitch", controls.spine_rad[:, 1])):
+        act.add(1, **{channel: spline_through(u, record["at"], record[channel]) - down * now})
+    act.keyed(u, "lie_on_seat", "trunk")
     act.add(rise(u / 0.7), knee_up=0.5 * np.pi)
     controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
     act.bend_knees(rise(4 * u))

@@ -7,16 +7,23 @@ where the feet stood; on the back the body lies behind it, on the belly ahead of
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, spline_through
 from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
 from mmweaver.motion.animation.standing import STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-KNEELING_M = 0.316  # of the height: of the pelvis above the floor, thighs vertical
-LYING_M = 0.075  # of the height: of the pelvis above the floor
-BACK_BEHIND_M = 0.36  # of the height: from the root back to the pelvis, lying on the back
-SIDE_AWAY_M = 0.34  # of the height: from the root sideways to the pelvis, lying on the side
-BELLY_AHEAD_M = 0.648  # of the height: from the root ahead to the pelvis, lying on the belly
+# In body heights: of the pelvis above the floor, kneeling with the thighs vertical, and lying
+KNEELING_M, LYING_M = 0.316, 0.075
+# and from the root to the pelvis, lying: back on the back, sideways on a side, ahead on the belly.
+BACK_BEHIND_M = -MOVEMENTS["lie_on_back"]["ahead"][
+    -1
+]  # of the height: from the root back to the pelvis, lying on the back
+SIDE_AWAY_M = MOVEMENTS["lie_on_side"]["aside"][
+    -1
+]  # of the height: from the root sideways to the pelvis, lying on the side
+BELLY_AHEAD_M = MOVEMENTS["lie_on_belly"]["ahead"][
+    -1
+]  # of the height: from the root ahead to the pelvis, lying on the belly
 _KNEELING_S = (1.3, 2.8, 2.2, 1.5, 0.9)
 
 
@@ -116,62 +123,46 @@ def _lie_down(act: StepContext, u: PerTime, *, falls: bool = False) -> None:
         (_lie_down_on_belly if act.style == "front" else _lie_down_on_back)(act, np.clip(u, 0.0, 1.0), falls)
 
 
-def _lower_pelvis(act: StepContext, u: PerTime, at: list[float], heights: list[float], ahead: list[float]) -> None:
-    """Moves the pelvis through heights in metres, the first that of standing, and ahead, in body heights."""
-    act.controls.pelvis_m[:, 2] += spline_through(u, at, heights) - heights[0]
-    act.pelvis(spline_through(u, at, ahead) * act.height_m)
+def _lower_pelvis(act: StepContext, u: PerTime, movement: str, heights: list[float]) -> PerTime:
+    """Moves the pelvis through heights in metres, from standing to lying, and returns how far down it is."""
+    record, stand = MOVEMENTS[movement], act.body.pelvis_height_m(STAND_STRETCH)
+    act.controls.pelvis_m[:, 2] += spline_through(u, record["at"], [stand, *heights]) - stand
+    if "ahead" in record:
+        act.pelvis(spline_through(u, record["at"], record["ahead"]) * act.height_m)
+    return rise(u / 0.6)
 
 
 def lie_down_on_side(act: StepContext, u: PerTime) -> None:
     """To one's own left or right: that knee gives way, the hip and then the trunk land, knees bent, an arm ahead."""
-    h, side = act.height_m, LEFT if act.style == "left" else RIGHT
-    left, stand = OUTWARD[side], act.body.pelvis_height_m(STAND_STRETCH)
-    at, u = [0.0, 0.3, 0.6, 0.8, 1.0], np.clip(u, 0.0, 1.0)
-    _lower_pelvis(act, u, at, [stand, stand - 0.1 * h, 0.17 * h, 0.115 * h, LYING_M * h + 0.025 * h], [0.0] * 5)
-    act.pelvis(left=left * spline_through(u, at, [0.0, 0.08, 0.27, 0.32, SIDE_AWAY_M]) * h)
-    act.keyed(u, at, -left, pelvis_roll=[0.0, 0.3, 0.85, 1.25, 1.45], spine_roll=[0.0, 0.25, 0.1, 0.1, 0.05])
-    act.keyed(u, at, spine_pitch=[0.0, 0.2, 0.35, 0.25, 0.2], head_pitch=[0.0, 0.0, 0.25, 0.2, 0.1])
+    h, side, movement = act.height_m, LEFT if act.style == "left" else RIGHT, "lie_on_side"
+    left, u = OUTWARD[side], np.clip(u, 0.0, 1.0)
+    stand = act.body.pelvis_height_m(STAND_STRETCH)
+    down = _lower_pelvis(act, u, movement, [stand - 0.1 * h, 0.17 * h, 0.115 * h, LYING_M * h + 0.025 * h])
+    act.pelvis(left=left * spline_through(u, MOVEMENTS[movement]["at"], MOVEMENTS[movement]["aside"]) * h)
     act.bend_knees(rise(3 * u))
-    act.controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
-    act.keyed(u, at, 1, side, flexion=[0.0, 0.3, 1.0, 1.4, 1.5], abduction=[0.0, 0.7, 0.45, 0.0, -0.17])
-    act.keyed(u, at, 1, 1 - side, flexion=[0.0, 0.5, 0.8, 0.7, 0.6])
-    act.keyed(u, at, elbow=[0.0, 0.3, 0.5, 0.5, 0.5])
+    act.controls.knee_out_rad[:] *= 1 - down[:, None]
+    act.keyed(u, movement, "roll", left)
+    act.keyed(u, movement, "lower_arm", 1, side)
+    act.keyed(u, movement, "upper_arm", 1, 1 - side)
+    for part in ("trunk", "arms"):
+        act.keyed(u, movement, part)
 
 
 def _lie_down_on_back(act: StepContext, u: PerTime, falls: bool) -> None:
     """Down over the heels to sit on the floor, then the trunk leans back; knees bent, soles on the floor."""
-    h, stand, low = act.height_m, act.body.pelvis_height_m(STAND_STRETCH), 0.086 * act.height_m
-    at = [0.0, 0.3, 0.55, 0.75, 1.0]
-    heights = [stand, stand - 0.2 * h, low + 0.02 * h, low, LYING_M * h]
-    _lower_pelvis(act, u, at, heights, [0.0, -0.13, -0.32, -0.35, -BACK_BEHIND_M])
-    act.keyed(u, at, pelvis_pitch=[0.0, 0.3, -0.25, -1.0, -1.5] if falls else [0.0, 0.55, 0.1, -0.75, -1.5])
-    act.keyed(u, at, spine_pitch=[0.0, 0.55, 0.75, 0.5, 0.05], head_pitch=[0.0, 0.0, 0.25, 0.45, 0.0])
-    act.add(rise(u / 0.6), knee_up=0.5 * np.pi)
-    act.controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
-    act.keyed(
-        u,
-        at,
-        flexion=[0.0, 0.7, 0.6, 0.0, -0.03] if falls else [0.0, 0.7, 0.15, -0.1, -0.03],
-        abduction=[0.0, 0.6 if falls else 0.25, 0.55, 0.4, 0.22],
-        elbow=[0.0, 0.2, 0.1, 0.0, -0.05],
-    )
+    h, low, stand = act.height_m, 0.086 * act.height_m, act.body.pelvis_height_m(STAND_STRETCH)
+    down = _lower_pelvis(act, u, "lie_on_back", [stand - 0.2 * h, low + 0.02 * h, low, LYING_M * h])
+    for part in ("trunk", "falls" if falls else "lies"):
+        act.keyed(u, "lie_on_back", part)
+    act.add(down, knee_up=0.5 * np.pi)
+    act.controls.knee_out_rad[:] *= 1 - down[:, None]
 
 
 def _lie_down_on_belly(act: StepContext, u: PerTime, falls: bool) -> None:
     """Forward: the knees give way, the trunk tips over the toes, the arms reach ahead, the body lies stretched out."""
-    h, stand = act.height_m, act.body.pelvis_height_m(STAND_STRETCH)
-    at = [0.0, 0.3, 0.52, 0.78, 1.0]
-    heights = [stand, 0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h]
-    _lower_pelvis(act, u, at, heights, [0.0, 0.1, 0.35, 0.605, BELLY_AHEAD_M])
-    act.keyed(u, at, pelvis_pitch=[0.0, 0.3, 0.62, 1.25, 1.5], spine_pitch=[0.0, 0.25, 0.2, 0.0, -0.05])
-    act.keyed(u, at, -1, head_pitch=[0.0, 0.2, 0.4, 0.5, 0.35], knee_up=[0.0, 0.0, 0.2, 0.9, 1.45])
-    act.keyed(u, at, foot_pitch=[0.0, 0.8, 1.4, 2.0, 2.2])
+    h = act.height_m
+    _lower_pelvis(act, u, "lie_on_belly", [0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h])
+    for part in ("trunk", "falls" if falls else "lies"):
+        act.keyed(u, "lie_on_belly", part)
     act.controls.foot_m[:, :, 2] += (0.012 * h * rise(u))[:, None]
     act.bend_knees(rise(3 * u))
-    act.keyed(
-        u,
-        at,
-        flexion=[0.0, 0.8, 1.5, 2.3, 2.95] if falls else [0.0, 0.7, 1.35, 2.2, 2.95],
-        abduction=[0.0, 0.1, 0.2, 0.3, 0.3],
-        elbow=[0.0, 0.3, 0.3, 0.1, -0.1],
-    )

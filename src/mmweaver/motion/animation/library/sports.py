@@ -1,16 +1,14 @@
 """Arm activities that involve the trunk: boxing, throwing, tennis, golf, pushing, pulling, carrying, reaching."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides, spline_through
 from mmweaver.motion.animation.profiles import plateau
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
-Keys = tuple[tuple[float, ...], ...]
 BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: it leaves the guard, hits, is in the guard again
 QUICK_STRIKE_S = 0.46  # of a fist, from the guard and back
 _GUARD = (0.15, 0.06, 0.11)  # of a fist: ahead, outward and up of spine3, in body heights
@@ -20,58 +18,17 @@ _GUARD = (0.15, 0.06, 0.11)  # of a fist: ahead, outward and up of spine3, in bo
 class Punch:
     """The way of a fist by its places (ahead, outward, up; body heights), and what the trunk does with it."""
 
-    on_the_way: tuple[float, float, float]
-    hits: tuple[float, float, float]
+    on_the_way: list[float]
+    hits: list[float]
     turn_rad: float  # of the trunk, with the fist
     dip: float  # of the body before it hits, in body heights
-    elbow: tuple[float, float, float]  # where it points
+    elbow: list[float]  # where it points
     leads: bool  # the hand in front by default
     in_turn: bool  # several alternate
     lasts_s: float  # usually, from guard to guard
 
 
-PUNCHES = {
-    "jab": Punch(  # straight, of the hand in front, the trunk hardly turned
-        on_the_way=(0.215, 0.055, 0.115),
-        hits=(0.265, 0.04, 0.11),
-        turn_rad=0.35,
-        dip=0.0,
-        elbow=(-0.1, 0.4, -1.0),
-        leads=True,
-        in_turn=False,
-        lasts_s=0.58,
-    ),
-    "cross": Punch(  # straight, of the hand behind, the trunk turned after it
-        on_the_way=(0.21, 0.045, 0.115),
-        hits=(0.265, 0.01, 0.11),
-        turn_rad=0.6,
-        dip=0.008,
-        elbow=(-0.1, 0.45, -1.0),
-        leads=False,
-        in_turn=False,
-        lasts_s=0.68,
-    ),
-    "hook": Punch(  # around the side with a bent arm, the elbow as high as the fist
-        on_the_way=(0.165, 0.15, 0.095),
-        hits=(0.21, 0.02, 0.115),
-        turn_rad=0.6,
-        dip=0.01,
-        elbow=(-0.2, 1.0, -0.15),
-        leads=True,
-        in_turn=True,
-        lasts_s=0.88,
-    ),
-    "uppercut": Punch(  # from below up to the chin, out of the knees
-        on_the_way=(0.14, 0.07, -0.01),
-        hits=(0.195, 0.02, 0.14),
-        turn_rad=0.5,
-        dip=0.03,
-        elbow=(-0.4, 0.3, -1.0),
-        leads=False,
-        in_turn=True,
-        lasts_s=0.9,
-    ),
-}
+PUNCHES = {name: Punch(**MOVEMENTS[name]) for name in ("jab", "cross", "hook", "uppercut")}
 
 
 @gesture("jab")
@@ -90,7 +47,7 @@ def boxing(act: StepContext) -> None:
     for k, span in enumerate(act.repeats(punch.lasts_s, 0.9 * punch.lasts_s, 1.4)):
         side = _fist(act, punch, k)
         at = [span.at(share) for share in (BEGINS, 0.5 * (BEGINS + THERE), THERE, 0.76, BACK)]
-        fists[side] += np.stack([spline_through(act.time_s, at, way) for way in ways.T], axis=1)
+        fists[side] += np.stack([spline_through(act.time_s, at, way) for way in ways.T.tolist()], axis=1)
         hit = act.plateau(at[0], at[-1], at[2] - at[0], at[-1] - at[2])
         out[side] += hit
         _turn_shoulder(act, punch, side, hit, at)
@@ -130,7 +87,7 @@ def punching(act: StepContext) -> None:
     rate, _ = act.cycles(1.1, 1.7, 2.0 if one_arm else 2.3, 0.9, 2.6)
     period = 1 / rate
     count = act.count or int(np.ceil(act.duration_s / period - 0.2))
-    arms = sides(act) if one_arm else BOTH
+    arms = act.sides() if one_arm else BOTH
     first, out = int(rng.integers(2)), [np.zeros_like(act.time_s), np.zeros_like(act.time_s)]
     # Who hurries strikes more often, but a fist that is there and back sooner would pass what fists reach (100 m/s2).
     shortest_s = 0.34 if act.speed <= 0 else min(QUICK_STRIKE_S, 0.95 * period * len(arms))
@@ -159,39 +116,21 @@ def punching(act: StepContext) -> None:
         act.hand_to(side, target, 1.0, (-0.15, 0.45 + 3 * hook, -1.0))
 
 
-def _key_arm(act: StepContext, span: Span, side: int, keys: Keys, weight: PerTime) -> None:
-    """Blends an arm to keyframes of (share of the time, flexion, abduction, twist, elbow)."""
-    at, *angles = zip(*keys, strict=True)
-    act.arm(np.stack([span.keys(at, values) for values in angles], axis=1), weight, side)
-
-
-# Keyframes of a throw, overarm and underarm: share of its time, then flexion, abduction, twist, elbow.
-_OVER = (
-    (0.0, -0.02, 0.13, 0.0, 0.22),
-    (0.4, -0.1, 1.35, 1.35, 1.6),
-    (0.66, 1.45, 0.45, 0.4, 0.5),
-    (0.8, 0.85, 0.1, 0.1, 0.5),
-    (1.0, -0.02, 0.13, 0.0, 0.22),
-)
-_UNDER = (
-    (0.0, -0.02, 0.13, 0.0, 0.22),
-    (0.4, -0.75, 0.25, 0.0, 0.2),
-    (0.66, 1.05, 0.15, 0.0, 0.3),
-    (0.8, 1.5, 0.15, 0.0, 0.5),
-    (1.0, -0.02, 0.13, 0.0, 0.22),
-)
+def _key_arm(act: StepContext, span: Span, side: int, movement: str, weight: PerTime) -> None:
+    """Blends an arm to the keyframes of a movement."""
+    act.arm(np.stack(span.rows(movement, "flexion", "abduction", "twist", "elbow"), axis=1), weight, side)
 
 
 @gesture("throw")
 def throwing(act: StepContext) -> None:
     """The hand goes back next to the ear and the trunk turns with it, then both move forward and follow through."""
-    side, at = act.one_side(), (0.0, 0.4, 0.66, 0.8, 1.0)
-    keys = _UNDER if act.style == "under" or act.rng.random() < 0.2 else _OVER
+    side = act.one_side()
+    movement = "throw_under" if act.style == "under" or act.rng.random() < 0.2 else "throw_over"
     for span in act.repeats(1.6, 1.3, 2.3):
-        _key_arm(act, span, side, keys, span.plateau(0, 1, 0.2, 0.2))
-        turn = OUTWARD[side] * (act.vary(0.5) * span.keys(at, [0.0, 1.0, -0.7, -0.8, 0.0]))
-        act.add(turn, spine_yaw=1, pelvis_yaw=0.25, head_yaw=-0.9)
-        act.add(span.keys(at, [0.0, -0.08, 0.14, 0.2, 0.0]), spine_pitch=1)
+        _key_arm(act, span, side, movement, span.plateau(0, 1, 0.2, 0.2))
+        turn, pitch = span.rows(movement, "turn", "pitch")
+        act.add(OUTWARD[side] * (act.vary(0.5) * turn), spine_yaw=1, pelvis_yaw=0.25, head_yaw=-0.9)
+        act.add(pitch, spine_pitch=1)
 
 
 @gesture("push")
@@ -229,7 +168,7 @@ def carrying(act: StepContext) -> None:
 @gesture("cradle")
 def cradling(act: StepContext) -> None:
     """A baby before the chest: its head in the crook of one elbow, the other hand under it; the trunk rocks it."""
-    head = 1 - sides(act)[0]  # most people keep the hand they use free
+    head = 1 - act.sides()[0]  # most people keep the hand they use free
     rate, _ = act.cycles(0.25, 0.4, 0.6, 0.2, 0.9)
     act.hand_to(head, (0.15, -0.03, -0.03), 1.0, (-0.3, 0.5, -1.0))
     act.hand_to(1 - head, (0.165, 0.0, -0.1), 1.0, (-0.5, 0.4, -1.0))
@@ -240,7 +179,7 @@ def cradling(act: StepContext) -> None:
 @gesture("reach")
 def reaching(act: StepContext) -> None:
     """A hand reaches for something ahead at table height, or up, and comes back with it."""
-    hands = sides(act)
+    hands = act.sides()
     if act.style == "high":
         _reach_up(act)
         return
@@ -254,7 +193,7 @@ def reaching(act: StepContext) -> None:
 
 def _reach_up(act: StepContext) -> None:
     """A hand reaches up ahead of the head, the trunk stretches after it."""
-    hands, up = sides(act), act.uniform(2.5, 2.85)
+    hands, up = act.sides(), act.uniform(2.5, 2.85)
     for span in act.repeats(1.9, 1.2, 2.8):
         out = span.plateau(0, 1, 0.36, 0.36)
         for side in hands:
@@ -265,25 +204,6 @@ def _reach_up(act: StepContext) -> None:
         act.add(out, head_pitch=-0.3)
 
 
-# Keyframes of the arm far from the backswing, and of the near one; the follow-through mirrors them.
-_FAR = (
-    (0.0, 0.45, -0.1, 0.0, 0.15),
-    (0.18, 0.45, -0.1, 0.0, 0.1),
-    (0.48, 1.35, -0.55, 0.0, 0.2),
-    (0.66, 0.45, -0.12, 0.0, 0.1),
-    (0.84, 1.1, 0.2, 0.0, 1.2),
-    (1.0, 0.45, -0.1, 0.0, 0.15),
-)
-_NEAR = (
-    (0.0, 0.45, -0.1, 0.0, 0.15),
-    (0.18, 0.45, -0.1, 0.0, 0.1),
-    (0.48, 1.1, 0.2, 0.0, 1.2),
-    (0.66, 0.45, -0.12, 0.0, 0.1),
-    (0.84, 1.35, -0.55, 0.0, 0.2),
-    (1.0, 0.45, -0.1, 0.0, 0.15),
-)
-
-
 @gesture("golf")
 def golf_swing(act: StepContext) -> None:
     """Both hands together in front of the trunk: up over one shoulder, down, and up over the other."""
@@ -291,9 +211,8 @@ def golf_swing(act: StepContext) -> None:
     for span in act.repeats(2.1, 1.6, 3.0):
         on = _stroke_weight(span, 0.1, 0.2)
         for side in BOTH:
-            _key_arm(act, span, side, _NEAR if side == near else _FAR, on)
-        turn = OUTWARD[near] * span.keys((0.0, 0.18, 0.48, 0.66, 0.84, 1.0), [0.0, 0.0, 0.85, 0.0, -0.85, 0.0])
-        act.add(turn, spine_yaw=1, pelvis_yaw=0.3, head_yaw=-1)
+            _key_arm(act, span, side, "golf_near" if side == near else "golf_far", on)
+        act.add(OUTWARD[near] * span.rows("golf_near", "turn")[0], spine_yaw=1, pelvis_yaw=0.3, head_yaw=-1)
         act.add(on, spine_pitch=0.35)
 
 
@@ -303,76 +222,44 @@ def _stroke_weight(span: Span, around_s: float, ramp: float) -> PerTime:
     return plateau(span.time_s, span.begin_s - around_s, span.at(1) + around_s, ramp_s, ramp_s)
 
 
-# Keyframes of tennis strokes of a racket, which is not shown: shares of its time; ready, swung back, ball, followed
-# through, ready; then places of the hand: ahead, outward and up of spine3, in body heights.
-_AT = (0.0, 0.36, 0.6, 0.76, 1.0)
-_READY = (0.17, 0.02, -0.03)
-_FOREHAND = (_READY, (-0.02, 0.29, 0.0), (0.22, 0.2, -0.02), (0.17, -0.09, 0.13), _READY)
-_BACKHAND = (_READY, (0.12, -0.15, -0.02), (0.26, 0.06, -0.02), (0.13, 0.27, 0.13), _READY)
-_BOTH = np.array([0.0, 0.045, 0.03])  # of the second hand on the same grip, from the first
-
-
 @gesture("forehand")
-def forehand(act: StepContext) -> None:
-    """The hand swings back at its own side, forward past the hip, and ends over the other shoulder."""
-    _swing_racket(act, _FOREHAND, (0.02, 0.17, 0.03), turn_rad=-0.9)
-
-
 @gesture("backhand")
-def backhand(act: StepContext) -> None:
-    """The hand swings back across the body, forward, and out to its own side."""
-    _swing_racket(act, _BACKHAND, (-0.16, 0.2, -0.05), turn_rad=0.85)
+def swinging_racket(act: StepContext) -> None:
+    """The hand swings back at its own side or across the body, forward past the hip, and to the other side.
 
-
-def _swing_racket(act: StepContext, places: Keys, balance: Sequence[float], turn_rad: float) -> None:
-    """One hand through `places` at the times _AT; the trunk turns by `turn_rad` (outward positive: away) before it.
-
-    The other hand is on the same grip, or goes from in front of the body out by `balance` as the ball is hit.
+    The other hand is on the same grip, or goes out from in front of the body as the ball is hit.
     """
-    side, h = act.one_side(), act.height_m
+    side, h, stroke = act.one_side(), act.height_m, act.step.upper
+    record = MOVEMENTS[stroke]
     for span in act.repeats(1.7, 1.4, 2.4):
         on = _stroke_weight(span, 0.15, 0.22)
-        hand = np.stack([span.keys(_AT, values) for values in zip(*places, strict=True)], axis=1)
+        hand = np.stack(span.rows(stroke, "hand_ahead", "hand_out", "hand_up"), axis=1)
+        swing, turn, ahead = span.rows(stroke, "swing", "turn", "ahead")
         act.hand_to(side, hand, on, (-0.6, 0.15, -1.0))
-        swing = span.keys(_AT, [0.0, 0.5, 1.0, 0.8, 0.0])
-        other = [start + way * swing for start, way in zip((0.17, 0.03, -0.03), balance, strict=True)]
-        act.hand_to(1 - side, hand * [1, -1, 1] + _BOTH if act.hand == "both" else other, on, (-0.5, 0.6, -1.0))
-        turn = OUTWARD[side] * act.vary(-turn_rad, 0.1) * span.keys(_AT, [0.0, 1.0, -0.1, -0.7, 0.0])
+        other = [start + way * swing for start, way in zip((0.17, 0.03, -0.03), record["balance"], strict=True)]
+        grip = hand * [1, -1, 1] + np.array([0.0, 0.045, 0.03])
+        act.hand_to(1 - side, grip if act.hand == "both" else other, on, (-0.5, 0.6, -1.0))
+        turn = OUTWARD[side] * act.vary(record["turn_rad"], 0.1) * turn
         act.add(turn, spine_yaw=0.7, pelvis_yaw=0.3, head_yaw=-0.9)
         low = span.plateau(0, 1, 0.35, 0.35)
-        act.pelvis(span.keys(_AT, [0.0, -0.03, 0.02, 0.03, 0.0]) * h, 0.0, -0.02 * h * low)
+        act.pelvis(ahead * h, 0.0, -0.02 * h * low)
         act.bend_knees(0.5 * low)
         act.add(low, spine_pitch=0.12)
-
-
-# Keyframes of a serve: shares of its time, then flexion, abduction, twist and elbow of the arm with the racket.
-_SERVE = (
-    (0.0, 0.3, 0.15, 0.0, 0.6),
-    (0.3, -0.35, 0.55, 0.2, 0.5),
-    (0.5, 0.0, 1.5, 1.3, 1.7),
-    (0.66, 2.75, 0.25, 0.3, 0.25),
-    (0.8, 0.95, -0.15, 0.1, 0.35),
-    (1.0, 0.3, 0.15, 0.0, 0.6),
-)
 
 
 @gesture("tennis_serve")
 def serving(act: StepContext) -> None:
     """One hand throws the ball up and stays up; the other swings back, over the head and down across the body."""
-    side, h, at = act.one_side(), act.height_m, (0.0, 0.3, 0.5, 0.66, 0.8, 1.0)
+    side, h, movement = act.one_side(), act.height_m, "tennis_serve"
     for span in act.repeats(2.2, 1.8, 3.0):
         on, up = _stroke_weight(span, 0.1, 0.2), span.plateau(0.08, 0.72, 0.3, 0.24)
-        _key_arm(act, span, side, _SERVE, on)
+        turn, pitch, ahead, dip = span.rows(movement, "turn", "pitch", "ahead", "dip")
+        _key_arm(act, span, side, movement, on)
         toss = np.zeros((len(up), 4))
         toss[:, 0], toss[:, 1], toss[:, 3] = 0.3 + 2.3 * up, 0.1, 0.5 - 0.35 * up
         act.arm(toss, on, 1 - side)
-        turn = -OUTWARD[side] * act.vary(0.6, 0.1) * span.keys(at, [0.0, -0.6, -1.0, 0.5, 0.8, 0.0])
-        act.add(turn, spine_yaw=1, pelvis_yaw=0.3, head_yaw=-1)
-        act.add(span.keys(at, [0.0, -0.05, -0.22, 0.08, 0.3, 0.0]), spine_pitch=1)
+        act.add(-OUTWARD[side] * act.vary(0.6, 0.1) * turn, spine_yaw=1, pelvis_yaw=0.3, head_yaw=-1)
+        act.add(pitch, spine_pitch=1)
         act.add(up, head_pitch=-0.35)
-        ahead, dip = (
-            span.keys(at, keys)
-            for keys in ([0.0, -0.01, 0.02, 0.035, 0.03, 0.0], [0.0, -0.01, -0.045, 0.0, -0.01, 0.0])
-        )
         act.pelvis(ahead * h, 0.0, dip * h)
         act.bend_knees(0.6 * plateau(act.time_s, span.begin_s, span.at(1), 0.3, 0.3))

@@ -4,8 +4,8 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
-from mmweaver.motion.animation.library.movement_primitives import PerTime, Span, sides
 from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine
+from mmweaver.motion.animation.spans import PerTime, Span
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 _BEYOND_S = 10.0  # longer than it takes to come up
@@ -84,7 +84,7 @@ def twisting(act: StepContext) -> None:
 @posture("pick_up")
 def picking_up(act: StepContext) -> None:
     """Knees and hips bend, the hand reaches the floor in front of the feet and brings something up to the belly."""
-    arms, spans = sides(act), act.repeats(2.3, 1.6, 3.4)
+    arms, spans = act.sides(), act.repeats(2.3, 1.6, 3.4)
     for span in spans:
         _reach_floor(act, span.plateau(0, 0.92, 0.44, 0.44), arms)
     _hold(act, act.plateau(spans[-1].at(0.5), act.end_s + 0.2, 0.7, 0.5), arms)
@@ -93,7 +93,7 @@ def picking_up(act: StepContext) -> None:
 @posture("put_down")
 def putting_down(act: StepContext) -> None:
     """Something held in front of the body is put on the floor, and the body comes up without it."""
-    arms, spans = sides(act), act.repeats(2.3, 1.6, 3.4)
+    arms, spans = act.sides(), act.repeats(2.3, 1.6, 3.4)
     for span in spans:
         _reach_floor(act, span.plateau(0, 1, 0.44, 0.44), arms)
     _hold(act, act.plateau(act.start_s - 0.4, spans[-1].at(0.5), 0.5, 0.7), arms)

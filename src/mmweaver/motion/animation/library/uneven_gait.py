@@ -7,6 +7,7 @@ import numpy as np
 from mmweaver.motion.animation.controls import RIGHT
 from mmweaver.motion.animation.library.gait import cruise_mps, steps_along_path, walking_style
 from mmweaver.motion.animation.profiles import bump
+from mmweaver.motion.animation.spans import MOVEMENTS
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 from mmweaver.motion.language.plan import FALLING_ON
 
@@ -22,16 +23,7 @@ def sidestepping(act: StepContext) -> None:
         walking_style(act, max(speed, 0.4)),
         steps_hz=steps_hz,
         half_stance_m=0.05 * act.height_m + 0.5 * speed / steps_hz,
-        ahead_m=0.0,
-        heel_strike_rad=0.0,
-        toe_off_rad=0.0,
-        arm_swing_rad=0.03,
-        elbow_swing_rad=0.0,
-        pelvis_yaw_rad=0.0,
-        lift_m=0.045,
-        bob_m=0.008,
-        sink=0.978,
-        sway_m=0.03,
+        **MOVEMENTS["sidestep"],
     )
     steps_along_path(act, style)
 
@@ -48,7 +40,7 @@ def limping(act: StepContext) -> None:
         arm_swing_rad=0.5 * style.arm_swing_rad,
         toe_off_rad=0.7 * style.toe_off_rad,
         lean_rad=style.lean_rad + 0.06,
-        sink=0.978,
+        **MOVEMENTS["limp"],
     )
     steps_along_path(act, style)
 
@@ -61,10 +53,9 @@ def staggering(act: StepContext) -> None:
         style,
         steps_hz=0.9 * style.steps_hz,
         weave_m=act.uniform(0.05, 0.09),
-        sink=0.972,
         half_stance_m=1.9 * style.half_stance_m,
         uneven=act.uniform(-0.15, 0.15),
-        bob_m=0.02,
+        **MOVEMENTS["stagger"],
     )
     steps_along_path(act, style)
     act.add(act.wander(0.25, 0.7), spine_roll=0.12)
@@ -83,26 +74,10 @@ def walking_lunges(act: StepContext) -> None:
     style = replace(
         walking_style(act, 0.8),
         steps_hz=steps_hz,
-        double_support=0.34,
-        ahead_m=0.0,
-        heel_strike_rad=0.2,
-        toe_off_rad=1.7,
-        heel_rises=0.42,
-        folded=0.2,
         half_stance_m=0.045 * h,
-        arm_swing_rad=0.08,
-        elbow_swing_rad=0.0,
         bob_m=0.075 * h,
-        highest=0.72,
-        sink=0.985,
         surge_mps=0.75 * speed,
-        surge_sharp=0.0,
-        fastest=0.62,
-        lift_m=0.06,
-        sway_m=0.022,
-        lean_rad=0.06,
-        pelvis_yaw_rad=0.03,
-        twist_rad=0.05,
+        **MOVEMENTS["walking_lunge"],
     )
     steps_along_path(act, style)
 
@@ -115,15 +90,9 @@ def stumbling(act: StepContext) -> None:
     style = replace(
         style,
         steps_hz=act.tempo(2.3, 2.7, 3.0),
-        double_support=0.05,
-        arm_swing_rad=0.1,
-        toe_off_rad=0.35,
-        heel_strike_rad=0.05,
-        lift_m=0.05,
-        bob_m=0.01,
-        sink=0.965,
         half_stance_m=1.5 * style.half_stance_m,
         spot_lift_m=0.05 if on_spot else style.spot_lift_m,
+        **MOVEMENTS["stumble"],
     )
     steps_along_path(act, style, jog=on_spot, on_spot=on_spot)
     jolt, lasts_s = act.uniform(0.25, 0.45), max(min(act.duration_s, 1.5), 0.9)

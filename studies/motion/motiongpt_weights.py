@@ -1,7 +1,7 @@
-"""Saving a MotionGPT: as a self-contained safetensors file of this project, or in the published format."""
+"""Saving a MotionGPT: as a self-contained safetensors file of this project, or in the published format; its words."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -11,10 +11,11 @@ from torch import Tensor
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.tensor_files import write_tensors
 from mmweaver.motion.motiongpt.checkpoint import LANGUAGE, MEAN, STD, VAE, VOCABULARY
+from mmweaver.motion.motiongpt.text_tokenizer import wrapped
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
 if TYPE_CHECKING:
-    from transformers import T5ForConditionalGeneration
+    from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
 
 SAME = ("encoder.embed_tokens.weight", "decoder.embed_tokens.weight")  # of shared.weight
 
@@ -46,3 +47,22 @@ def save_published(path: Path, tokenizer: MotionTokenizer, language: "T5ForCondi
     """A torch archive in MotionGPT's layout: everything under `state_dict`."""
     with atomic_file(path) as temporary:
         torch.save({"state_dict": state_of(tokenizer, language)}, temporary)
+
+
+def train_words(sentences: list[str]) -> "PreTrainedTokenizerBase":
+    """A tokenizer of whole words, for a small model."""
+    from tokenizers import Tokenizer, models, normalizers, pre_tokenizers
+
+    normal = normalizers.Lowercase()
+    split = pre_tokenizers.Whitespace()
+    known = {word for sentence in sentences for word, _ in split.pre_tokenize_str(normal.normalize_str(sentence))}
+    names = ["<pad>", "</s>", "<unk>", *sorted(known)]
+    model = Tokenizer(models.WordLevel({name: k for k, name in enumerate(names)}, unk_token="<unk>"))
+    model.normalizer, model.pre_tokenizer = normal, split
+    return wrapped(model.to_str())
+
+
+def plain_words(words: "PreTrainedTokenizerBase") -> str:
+    """The tokenizer as JSON, to be stored with the weights."""
+    backend: Any = words
+    return backend.backend_tokenizer.to_str()

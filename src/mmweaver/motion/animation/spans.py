@@ -1,0 +1,52 @@
+"""Repetitions as spans of time, and smooth keyframes within them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.safe_files.safe_text import read_toml
+from mmweaver.motion.animation.profiles import plateau
+
+PerTime = Float[np.ndarray, " n"]
+Number = float | int
+Curve = Float[np.ndarray, "..."] | Number  # a function of time, or the same value at all times
+MOVEMENTS: dict[str, dict[str, Any]] = read_toml(Path(__file__).with_name("library") / "movements.toml")
+
+
+def spline_through(time_s: PerTime, times: Sequence[Number], values: Sequence[Number]) -> PerTime:
+    """A quintic spline (n,) through keyframes (times, values), at rest at both ends and constant beyond; C2."""
+    from scipy.interpolate import make_interp_spline
+
+    rest = [(1, 0.0), (2, 0.0)]
+    curve = make_interp_spline(np.asarray(times), np.asarray(values, dtype=float), k=5, bc_type=(rest, rest))
+    return np.asarray(curve(np.clip(time_s, times[0], times[-1])))
+
+
+@dataclass(frozen=True)
+class Span:
+    """One repetition of a movement; its methods take shares of its duration."""
+
+    time_s: PerTime
+    begin_s: float
+    lasts_s: float
+
+    def at(self, share: Number) -> float:
+        """Time in seconds after this share of the duration."""
+        return self.begin_s + share * self.lasts_s
+
+    def plateau(self, begin: Number, end: Number, up: Number, down: Number) -> PerTime:
+        """`profiles.plateau` from share `begin` to share `end`, with ramps of these shares."""
+        return plateau(self.time_s, self.at(begin), self.at(end), up * self.lasts_s, down * self.lasts_s)
+
+    def keys(self, shares: Sequence[Number], values: Sequence[Number]) -> PerTime:
+        """`spline_through` keyframes at shares of the duration."""
+        return spline_through(self.time_s, [self.at(share) for share in shares], values)
+
+    def rows(self, movement: str, *names: str) -> list[PerTime]:
+        """Keyframes of a movement in `movements.toml`, smoothly interpolated."""
+        record = MOVEMENTS[movement]
+        return [self.keys(record["at"], record[name]) for name in names]
