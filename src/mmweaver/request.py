@@ -233,7 +233,8 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     steps = list(plan.steps)
     walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=round(length_m, 2), direction="", target="", place=None, arc_deg=0.0, count=0,
+        walk, route_m=points, distance_m=round(length_m, 2), direction=None, target="", place=None, arc_deg=0.0,
+        count=0,
     )  # fmt: skip
     notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
     if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:

@@ -8,7 +8,7 @@ from mmweaver.motion.animation.assemble import assembled_controls, solved
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Shape, Step
 from mmweaver.motion.language.step_names import in_turn, with_what_is_shown
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
@@ -151,7 +151,7 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
     steps, notes = [], []
     for step in plan.steps:
         aimless = _runs_anywhere(step)
-        steps.append(replace(step, direction="spot") if aimless else step)
+        steps.append(replace(step, direction=Shape.SPOT) if aimless else step)
         if aimless:
             notes.append(
                 f"for {step.clause!r} there are {longest_m:.1f} m of straight free floor, {RUN_ROOM_M:g} m are needed:"

@@ -3,7 +3,7 @@
 import pytest
 
 from mmweaver.motion.language.explanations import add_explanations
-from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Step
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Side, Step, Way
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.step_names import with_what_is_shown
 
@@ -19,10 +19,10 @@ def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' 
     [
         ("a person waves", Step(upper="wave")),
         ("she kneels down", Step(lower="kneel_down")),
-        ("walks three steps forward", Step(lower="walk", direction="forwards", count=3)),
+        ("walks three steps forward", Step(lower="walk", direction=Way.FORWARDS, count=3)),
         ("raises the left arm overhead and lowers it", Step(upper="raise", hand="left")),
-        ("walks to the couch", Step(lower="walk", seat="couch", direction="seat")),
-        ("turns left", Step(lower="turn", direction="left")),
+        ("walks to the couch", Step(lower="walk", seat="couch", direction=Way.SEAT)),
+        ("turns left", Step(lower="turn", direction=Side.LEFT)),
         ("claps twice", Step(upper="clap", count=2)),
     ],
 )
@@ -37,7 +37,7 @@ def test_words_that_say_just_what_is_shown_need_no_others(words: str, step: Step
         ("raises an arm", [Step(upper="raise")], "raising one hand overhead and lowering it once"),
         ("waves twice", [Step(upper="wave")], "waving with one hand repeatedly"),
         ("waves with the left hand", [Step(upper="wave", hand="right")], "waving with the right hand repeatedly"),
-        ("walks to his left", [Step(lower="walk", direction="right")], "walking to the right in the photo"),
+        ("walks to his left", [Step(lower="walk", direction=Side.RIGHT)], "walking to the right in the photo"),
         ("walks", [Step(lower="walk", count=2)], "walking two steps"),
         ("walks", [Step(lower="walk", speed=1)], "walking quickly"),
         ("kneels", [Step(lower="kneel", style="knee")], "kneeling on one knee"),

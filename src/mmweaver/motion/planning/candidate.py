@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.records import Scene
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import MotionPlan, Shape, Side, Step, Way
 from mmweaver.motion.planning.approaches import (
     CLOSEST_FEET_M,
     Approach,
@@ -68,7 +68,7 @@ _SAME_PLACE_M = 0.1
 _SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
 _PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chairs are tried pulled out, how far
-_STRAIGHT = ("left", "right", "towards", "away", "")
+_STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, None)
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
 _RUN_OF_USUAL = 1.0  # a run, which is not slowed down as far as a walk
@@ -201,9 +201,9 @@ class CandidateSampler:
     def _seat_ahead(self, trajectory: Trajectory, step: Step, following: Step | None) -> Approach | None:
         """How a walk ends at a seat; None where it does not, or no way fits."""
         sits_down = following is not None and following.lower == "sit_down"
-        if not sits_down and step.direction != "seat":
+        if not sits_down and step.direction != Way.SEAT:
             return None
-        named = step.seat if step.direction == "seat" else ""
+        named = step.seat if step.direction == Way.SEAT else ""
         ways = self._ways_of((following.seat if following and sits_down else "") or named)
         return approach_from(trajectory, step, ways, _direction_rad(trajectory, step))
 
@@ -291,7 +291,7 @@ class CandidateSampler:
             spot = start_for_target(first, self.floor, self.rng)
             if spot is not None:
                 return spot
-        to_seat = first.direction == "seat" or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
+        to_seat = first.direction == Way.SEAT or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
         if first.moves and seats and to_seat and self.rng.random() < 0.7:
             spot = self._start_of_walk_to_seat(first)
             if spot is not None:
@@ -398,11 +398,11 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, fi
     if target is not None:
         walk_to_seat(trajectory, step, target, first=first)
         return
-    trajectory.cost += 3.0 * (step.direction == "seat")
-    if step.direction == "circle":
+    trajectory.cost += 3.0 * (step.direction == Way.SEAT)
+    if step.direction == Shape.CIRCLE:
         walk_circle(trajectory, step, first=first, last=last)
     elif direction is None:
-        if step.direction == "seat" and not any("stool" in note or "no seat" in note for note in trajectory.notes):
+        if step.direction == Way.SEAT and not any("stool" in note or "no seat" in note for note in trajectory.notes):
             trajectory.notes.append(
                 f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room"
             )
@@ -415,17 +415,17 @@ def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
     """The direction that the sentence gives, with a few degrees of variation; None where it gives none."""
     x, y = trajectory.position_m
     jitter = float(np.clip(trajectory.rng.normal(0, 0.06), -0.15, 0.15))
-    if step.direction in ("left", "right"):
-        return jitter + (np.pi if step.direction == "left" else 0.0)
-    if step.direction == "towards":
+    if isinstance(step.direction, Side):
+        return jitter + (np.pi if step.direction == Side.LEFT else 0.0)
+    if step.direction == Way.TOWARDS:
         return float(np.arctan2(-y, -x)) + 0.3 * jitter
-    if step.direction == "away":
+    if step.direction == Way.AWAY:
         return float(np.arctan2(y, x)) + 0.3 * jitter
-    if step.direction == "forwards" and trajectory.moves[:-1]:
+    if step.direction == Way.FORWARDS and trajectory.moves[:-1]:
         return trajectory.heading_rad
-    if step.direction == "backwards":
+    if step.direction == Way.BACKWARDS:
         return trajectory.heading_rad + np.pi
-    if step.direction == "back":
+    if step.direction == Way.BACK:
         back_to = trajectory.last_direction_rad
         return back_to + np.pi if back_to is not None else trajectory.heading_rad + np.pi
     return None

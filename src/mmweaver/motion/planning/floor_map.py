@@ -11,6 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.language.places import Place
+from mmweaver.motion.language.plan import Direction
 
 Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
@@ -238,14 +239,14 @@ class FloorMap:
         return np.all(self.can_stand(starts_m[:, None] + steps[..., None] * ways[:, None]), axis=1)
 
     @cached_property
-    def _starts(self) -> dict[str, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
+    def _starts(self) -> dict[Direction | None, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
         return {}
 
-    def straight_starts(self, direction: str) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
+    def straight_starts(self, direction: Direction | None) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
         """Walkable places (x, y), and how far in metres one can go straight from each; at most `_FARTHEST_M`.
 
-        `direction` is left, right, towards or away (from the radar), or "" for the best of several. Kept, as most walks
-        of a room need the same few.
+        `direction` is left, right, towards or away (from the radar), or None for the best of several. Kept, as most
+        walks of a room need the same few.
         """
         if direction not in self._starts:
             cells = self.walkable_m

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.library.uneven_gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
-from mmweaver.motion.language.plan import HOPPING, Step
+from mmweaver.motion.language.plan import HOPPING, Shape, Step, Way
 from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 
@@ -58,7 +58,7 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
         low, high = ((0.25, 0.35), (0.4, 0.6), (0.6, 0.75))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
-    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0) * step.pace
+    return float(rng.uniform(low, high)) * (0.7 if step.direction == Way.BACKWARDS else 1.0) * step.pace
 
 
 def slowest_mps(step: Step, speed_mps: float) -> float:
@@ -150,7 +150,7 @@ class Trajectory:
 
 def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
     """Turns the body along the direction (against it when going backwards); returns when the first stride can begin."""
-    heading = direction_rad + np.pi if step.direction == "backwards" else direction_rad
+    heading = direction_rad + np.pi if step.direction == Way.BACKWARDS else direction_rad
     if first:
         trajectory.start_heading_rad = trajectory.heading_rad = heading
         return start_s
@@ -276,7 +276,7 @@ def _pacing_m(step: Step, speed_mps: float) -> float:
     """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
     lasts_s, crawls = step.end_s - step.start_s, step.lower == "crawl"
     least_s, most_s = _TO_AND_FRO_ON_KNEES_WITHIN_S if crawls else _TO_AND_FRO_WITHIN_S
-    if step.direction != "pacing" or not least_s < lasts_s < most_s:
+    if step.direction != Shape.PACING or not least_s < lasts_s < most_s:
         return 0.0
     turning_s = np.pi / CRAWLING_TURN_RADPS if crawls else 0.0
     return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - turning_s - 1.2) / 2)
@@ -317,7 +317,7 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
     rng = trajectory.rng
-    side = float(np.sign(step.arc_deg)) if step.arc_deg and step.style != "either" else float(rng.choice([-1.0, 1.0]))
+    side = float(np.sign(step.arc_deg)) if step.arc_deg and not step.either_side else float(rng.choice([-1.0, 1.0]))
     chosen = first and not trajectory.heading_is_given
     direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)

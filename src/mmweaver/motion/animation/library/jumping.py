@@ -178,7 +178,7 @@ def _jumps(context: StepContext) -> tuple[Controls, list[Hop]]:
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
-    fewest = 2 if context.step.style == "several" else 1
+    fewest = 2 if context.step.several else 1
     count = context.step.count or max(fewest, int((context.duration_s - edge_s - flight_s) / between_s + 1.25))
     spare = max(context.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
     slower = min(0.5 * spare, 0.4)  # spare time slows down crouching and recovery
@@ -269,7 +269,7 @@ def squatting(context: StepContext) -> Controls:
     """
     controls, time_s, rng, body = upright(context), context.time_s, context.rng, context.body
     period = 1 / context.tempo(0.3, 0.38, 0.6)
-    fewest = 2 if context.step.style == "several" else 1
+    fewest = 2 if context.step.several else 1
     count = context.step.count or max(fewest, round(context.duration_s / period))
     period = float(np.clip(context.duration_s / count, 1.05, 3.6))
     wider = float(rng.uniform(0.04, 0.095)) * body.height_m  # how much farther out each foot stands

@@ -23,6 +23,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
 from mmweaver.motion.animation.library.standing import upright
 from mmweaver.motion.animation.profiles import bump, plateau, rise
 from mmweaver.motion.animation.step_context import StepContext
+from mmweaver.motion.language.plan import Shape
 
 
 def kicking(context: StepContext) -> Controls:
@@ -231,7 +232,7 @@ def marching(context: StepContext) -> Controls:
         spot_lift_m=float(context.rng.uniform(0.13, 0.2)),
         arm_swing_rad=float(context.rng.uniform(0.35, 0.6)), elbow_rad=0.7, bob_m=0.01, sink=0.988,
     )  # fmt: skip
-    spot = replace(context, step=replace(context.step, direction="spot"))
+    spot = replace(context, step=replace(context.step, direction=Shape.SPOT))
     return gait.stepping(spot, style, jog=True)
 
 

@@ -48,7 +48,7 @@ def repeats(context: StepContext, natural_s: float, least_s: float, most_s: floa
 
     Several without a number are two, or more where the time allows it.
     """
-    of_the_body = context.step.style == "several" and not context.step.upper
+    of_the_body = context.step.several and not context.step.upper
     several = max(2, int(context.duration_s / natural_s)) if of_the_body else 1
     count = context.step.count or several
     slower = (1.35, 1.0, 0.8)[context.step.speed + 1]
