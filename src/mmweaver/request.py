@@ -15,7 +15,7 @@ from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_place import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
@@ -242,7 +242,7 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
     return replace(
-        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=with_what_is_shown(clauses, steps)
+        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=add_shown_text(clauses, steps)
     )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.motion.planning.more_room import ASSUMED_FLOOR
+from mmweaver.motion.planning.constraint_relaxation import ASSUMED_FLOOR
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct

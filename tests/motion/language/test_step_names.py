@@ -12,7 +12,7 @@ from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Side, Step, Way
-from mmweaver.motion.language.step_names import doing, in_turn, steps_of_each, with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text, doing, in_turn, steps_of_each
 from mmweaver.motion.language.timing import plan_motion
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")
@@ -77,7 +77,7 @@ def test_a_step_that_no_clause_names_counts_with_the_next_one() -> None:
 
 def test_a_clause_that_shares_its_step_shows_that_and_one_that_is_not_done_nothing() -> None:
     lost, shared = ClauseRecord("waves", NOT_DONE, "no activity in it is known"), ClauseRecord("at a walk")
-    records = with_what_is_shown([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
+    records = add_shown_text([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
     assert [record.shown for record in records] == ["walking", "walking", ""]
 
 
@@ -134,5 +134,5 @@ def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> Non
 
 def test_steps_with_others_between_them_are_not_in_a_row() -> None:
     walks, bows = replace(WALK, clauses=(0,)), Step(lower="bow", clauses=(1,))
-    records = with_what_is_shown([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
+    records = add_shown_text([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
     assert [record.shown for record in records] == ["walking, later walking", "then bowing once"]

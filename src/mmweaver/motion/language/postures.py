@@ -168,7 +168,7 @@ def _styled(steps: list[Step]) -> list[Step]:
     return steps
 
 
-def carried_over(steps: list[Step]) -> list[Step]:
+def inherit_state(steps: list[Step]) -> list[Step]:
     """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
 
     A raised hand is the one to wave; what was picked up is put down with the same hands.

@@ -29,12 +29,12 @@ from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Side, Step, Way
 from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
-from mmweaver.motion.language.postures import carried_over, insert_transitions
+from mmweaver.motion.language.postures import inherit_state, insert_transitions
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.simultaneous import going_on, sequence_steps
 from mmweaver.motion.language.spelling import correct_spelling
-from mmweaver.motion.language.step_names import with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.words import Word, words_of
@@ -103,11 +103,11 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
         steps = [first]
     else:
         more = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-        steps = carried_over(insert_transitions([*plan.steps, *more]))
+        steps = inherit_state(insert_transitions([*plan.steps, *more]))
     again = ClauseRecord(repeated.words)
     if any(clause.status == NOT_DONE for clause in plan.clauses):
         again = again.lowered_to(APPROXIMATED, "what is not shown once is not shown again")
-    clauses = with_what_is_shown((*plan.clauses, again), steps)
+    clauses = add_shown_text((*plan.clauses, again), steps)
     said = {before.sentence: now.sentence for before, now in zip(plan.clauses, clauses, strict=False)}
     notes = [said.get(note, note) for note in plan.notes] + [again.sentence] * (again.status != DONE)
     return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses, notes=tuple(notes))
@@ -132,7 +132,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
     sequence = sequence_steps(parsed_clauses, leaving)
-    steps = carried_over(insert_transitions(going_on(sequence)))
+    steps = inherit_state(insert_transitions(going_on(sequence)))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = persist_postures(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:

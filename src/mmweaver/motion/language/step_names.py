@@ -22,7 +22,7 @@ SPEEDS_SAID = {-1: " slowly", 0: "", 1: " quickly"}
 _SMALL_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven")
 
 
-def how_often(step: Step, key: str) -> str:
+def frequency_text(step: Step, key: str) -> str:
     """How often an activity is repeated, where it can be."""
     activity = BY_KEY[key]
     if activity.counted_s is None or key in PACES or step.style in ("held", "released"):
@@ -79,7 +79,7 @@ def body_phrase(step: Step) -> str:
     if step.lower in ("pick_up", "put_down"):
         name += hand_suffix(hand_of(step, step.lower))
     paces = f" {steps_said(step.count)}" if step.lower in PACES and step.count and not step.upper else ""
-    return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{how_often(step, step.lower)}"
+    return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{frequency_text(step, step.lower)}"
 
 
 def _way(step: Step) -> str:
@@ -196,7 +196,7 @@ def hand_phrase(step: Step, part: Step) -> str:
     elif hand and key not in ("arms_out", "hips"):
         name += hand_suffix(hand) + " in turn" * (hand == "both" and key in _IN_TURN)
     speed = (part.speed or step.speed) if step.lower == "stand" else 0
-    return f"{name}{_HEIGHTS.get(part.style, '')}{SPEEDS_SAID[speed]}{how_often(part, key)}"
+    return f"{name}{_HEIGHTS.get(part.style, '')}{SPEEDS_SAID[speed]}{frequency_text(part, key)}"
 
 
 def hand_suffix(hand: str) -> str:
@@ -212,7 +212,7 @@ def hand_of(part: Step, key: str) -> str:
     return (part.hand or "both") if key in _BOTH else ""
 
 
-def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
+def add_shown_text(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
     """The records with what each clause is shown as: 'then waving' where that begins after another step.
 
     Records that said so of other steps, before these were cut or placed, say it of these.

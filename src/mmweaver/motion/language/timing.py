@@ -7,7 +7,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Shape, Step
 from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import PACES, with_what_is_shown
+from mmweaver.motion.language.step_names import PACES, add_shown_text
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
@@ -165,7 +165,7 @@ def _record_cut(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -
             record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
         record(step, NOT_DONE, f"the {given} s are over before it")
-    return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
+    return replace(plan, notes=tuple(notes), clauses=add_shown_text(clauses, kept))
 
 
 def _seconds_text(seconds: float) -> str:

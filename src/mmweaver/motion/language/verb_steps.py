@@ -61,7 +61,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
-        step = _in_place(step, words)
+        step = _stationary_step(step, words)
     else:
         step = replace(step, direction=None, arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     if "repeatedly" in texts and not (step.count or step.seconds or step.lower in GAITS):
@@ -143,7 +143,7 @@ def _forward_roll(step: Step, words: list[Word], at: int) -> Step:
     return replace(step, direction=Way.FORWARDS, hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 
-def _in_place(step: Step, words: list[Word]) -> Step:
+def _stationary_step(step: Step, words: list[Word]) -> Step:
     facing = facing_of(words) or step.facing
     if step.upper in AIMED:
         facing = step.facing or (step.direction if isinstance(step.direction, Side) else "")

@@ -47,12 +47,12 @@ _LITTLE_M = 0.05  # how far people shift on a seat, to a side, ahead or back
 _SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # of one sitter, and between places on a couch that are tried
 _LONGEST_NARROW_M, _GATE_STEP_M = 1.2, 0.1
 _OFF_FRONT_RAD = (0.0, 0.5)  # how far from along the seat's front the narrow way may lead
-_WAYS_A_SEAT, _MOST_STARTS = 4, 200
+_WAYS_A_SEAT, _MAX_STARTS = 4, 200
 _SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
 _WALK_MPS = (0.45, 1.6)
-_USUAL_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
+_DEFAULT_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
 _DEEPEST_M, _MARGIN_M, _DEEP_COST_PER_M = 0.03, 0.02, 30.0  # how deep it may get into what is near a seat
-_MOST_TESTED = 24  # ways to sit on one seat that are tested closely
+_MAX_TESTED = 24  # ways to sit on one seat that are tested closely
 _PULLED_M, _PULLED_TURNS_RAD = (0.15, 0.3, 0.45, 0.6), (0.0, -0.3, 0.3, -0.6, 0.6)  # of chairs that are pulled out
 _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
 
@@ -70,23 +70,23 @@ class Approach:
         """Where the walk turns, and its end in front of the seat."""
         return [self.sitting.feet_m] if self.gate_m is None else [self.gate_m, self.sitting.feet_m]
 
-    def for_body(self, body: SkeletonProportions) -> "Approach":
+    def scaled_to(self, body: SkeletonProportions) -> "Approach":
         """The same for a body of exactly this size: its pelvis is on the seat."""
         seat, facing = self.sitting.seat_m, self.sitting.facing_rad
         ahead = np.array([np.cos(facing), np.sin(facing)])
         feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
         knees_m = knees_ahead_m(body, self.sitting.height_m)
-        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).with_clear_knees())
+        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).clear_knees())
 
 
 def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
     """The ways to the usable seats of a room on which a body is clear of the rest; kept with the room."""
-    usual = FloorMap.of(floor.scene, floor.range_window_m, _USUAL_HEIGHT_M, with_assumed=floor.with_assumed)
+    usual = FloorMap.of(floor.scene, floor.range_window_m, _DEFAULT_HEIGHT_M, with_assumed=floor.with_assumed)
     if not usual.seat_approaches:
-        one = SkeletonProportions(_USUAL_HEIGHT_M)
+        one = SkeletonProportions(_DEFAULT_HEIGHT_M)
         ways = [way for seat in usable_seats(usual, one) for way in _ways_to(seat, usual, one)]
         usual.seat_approaches.append(ways)
-    return [way.for_body(body) for way in usual.seat_approaches[0]]
+    return [way.scaled_to(body) for way in usual.seat_approaches[0]]
 
 
 def fitting_approaches(ways: Sequence[Approach], word: str, scene: Scene) -> list[Approach]:
@@ -152,7 +152,7 @@ def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bo
 def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
     """The least unusual ways to sit on a seat whose feet have room, can be walked to, and leave the body clear."""
     cells = floor.walkable_m
-    cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+    cells = cells[:: max(1, len(cells) // _MAX_STARTS)]
     found: list[Approach] = []
     for sitting in _clear_sittings(seat, floor, body) if len(cells) else []:
         if len(found) == _WAYS_A_SEAT:
@@ -177,7 +177,7 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
     at = RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=(), turns=())
     controls = assembled_controls(placed, at, body, seed=0, duration_s=_SITS_DOWN_S)
     pose = solved(controls, body, duration_s=_SITS_DOWN_S, floor_z_m=floor.scene.floor_z_m)
-    sketch = BodySamples.of(pose).relative_to(at).without_repeats()
+    sketch = BodySamples.of(pose).relative_to(at).deduplicated()
     bodies = [
         sketch.along(
             RootPath(
@@ -190,7 +190,7 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
     rough_m = obstacles.estimates_m(bodies, seats, margin_m=_MARGIN_M, chairs=[one.chair for one in sittings])
     order = np.argsort([one.cost + _DEEP_COST_PER_M * depth for one, depth in zip(sittings, rough_m, strict=True)])
     found: list[Sitting] = []
-    for k in order[:_MOST_TESTED]:
+    for k in order[:_MAX_TESTED]:
         depth_m = obstacles.penetration_m(bodies[k], seats[k], margin_m=_MARGIN_M, chair=sittings[k].chair)
         if depth_m <= _DEEPEST_M + _MARGIN_M:
             found.append(replace(sittings[k], cost=sittings[k].cost + _DEEP_COST_PER_M * depth_m))
@@ -222,7 +222,7 @@ def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
     places += [(-_LITTLE_M, 0.0), (_LITTLE_M, 0.0), (0.0, -_LITTLE_M), (0.0, _LITTLE_M)]
     for shift_m, ahead_m in places:
         moved = replace(seat, feet_m=seat.feet_m + shift_m * aside, seat_m=seat.seat_m + shift_m * aside)
-        moved = moved.moved_ahead(ahead_m).with_clear_knees()
+        moved = moved.moved_ahead(ahead_m).clear_knees()
         for turn_rad in {sign * turn for turn in _TURNS_RAD for sign in (-1.0, 1.0)}:
             cost = _SHIFT_COST * float(np.hypot(shift_m, ahead_m))
             cost += 0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0

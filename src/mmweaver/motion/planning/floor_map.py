@@ -23,11 +23,11 @@ TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
 _UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
 _OFF_GRID_COST = 3.0
-_MOST_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
+_MAX_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
 _STEP_M = 0.04  # between the positions at which a path is tested
 _SEAT_EDGE_M = 0.05  # clearance next to the seat just left
 _AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
-HEIGHT_STEP_M, _MOST_CACHED = 0.05, 12
+HEIGHT_STEP_M, _MAX_CACHED = 0.05, 12
 _latest: list["FloorMap"] = []
 
 
@@ -56,7 +56,7 @@ class FloorMap:
             if floor.scene is scene and floor._key == key:
                 return floor
         floor = cls(scene, *key)
-        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MOST_CACHED]
+        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MAX_CACHED]
         return floor
 
     @property
@@ -250,7 +250,7 @@ class FloorMap:
         """
         if direction not in self._starts:
             cells = self.walkable_m
-            cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+            cells = cells[:: max(1, len(cells) // _MAX_STARTS)]
             radial = np.arctan2(cells[:, 1], cells[:, 0])
             ways = {"left": [np.pi + 0 * radial], "right": [0 * radial], "towards": [radial + np.pi], "away": [radial]}
             tried = ways.get(direction, [turn + 0 * radial for turn in np.arange(8) * np.pi / 4])

@@ -11,7 +11,7 @@ from mmweaver.core.records import Plane, Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.targets import SEATS, kinds_of, what_was_found
+from mmweaver.motion.planning.targets import SEATS, describe_found, kinds_of
 
 Array = np.ndarray
 NEAR_M = 1.2  # from the middle of what one stands near
@@ -65,7 +65,7 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
         if part.relation == "between":
             inside &= _between(part, floor.scene, cells)
         elif part.landmark == "wall":
-            inside &= _at_wall(part, floor.scene, cells)
+            inside &= _near_wall(part, floor.scene, cells)
         elif part.landmark:
             middles = _middles(part.landmark, part, floor.scene)
             inside &= np.any([_at(part, middle, cells) for middle in middles], axis=0)
@@ -111,7 +111,7 @@ def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
         way_on = "" if kind == "corner" else f" give its position with --landmark {kinds_of(kind)[0]}=X,Y, or"
         what = "corner of two walls" if kind == "corner" else kind
         raise InputError(
-            f"{place.words!r}: no {what} was found in the photo; {what_was_found(scene)};{way_on} say another place"
+            f"{place.words!r}: no {what} was found in the photo; {describe_found(scene)};{way_on} say another place"
         )
     return found
 
@@ -122,7 +122,7 @@ def _walls(place: Place, scene: Scene) -> list[Float[Array, "2 2"]]:
     walls = given or [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
     if not walls:
         raise InputError(
-            f"{place.words!r}: no wall was found in the photo; {what_was_found(scene)}; give its position with"
+            f"{place.words!r}: no wall was found in the photo; {describe_found(scene)}; give its position with"
             " --landmark wall=X,Y, or say another place"
         )
     return walls
@@ -162,7 +162,7 @@ def _nearest_on(wall: Float[Array, "2 2"], points: Float[Array, "point 2"]) -> F
     return wall[0] + share[:, None] * along
 
 
-def _at_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _near_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Which cells are at, or near, one of the walls."""
     away = np.min([np.hypot(*(cells - _nearest_on(wall, cells)).T) for wall in _walls(place, scene)], axis=0)
     return away <= (AT_WALL_M if place.relation == "against" else NEAR_WALL_M)
@@ -194,7 +194,7 @@ def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Ar
     else:
         found = [(one, other) for one in ones for other in others if float(np.hypot(*(one - other))) > 1e-6]
     if not found:
-        raise InputError(f"{place.words!r}: only one of them was found in the photo; {what_was_found(scene)}")
+        raise InputError(f"{place.words!r}: only one of them was found in the photo; {describe_found(scene)}")
     return found
 
 

@@ -15,7 +15,6 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.planning.body_state import BodyState
-from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
 from mmweaver.motion.planning.collision import PulledChair
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
@@ -24,12 +23,13 @@ from mmweaver.motion.planning.seating import Sitting, usable_seats
 from mmweaver.motion.planning.separation import is_clear_of
 from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
+from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 
 Array = np.ndarray
-MOST_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
+MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
 LEAVES_SEATS = 2  # the attempt that leaves the room's seats, also made where nothing can be done from any of them
 ENOUGH_SEATED = 14  # of more ways to sit, where the usual ones touch something
-_SMALL_M2, MOST_TRIES_WHERE_SMALL = 0.5, 40  # so little floor is soon searched
+_SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # so little floor is soon searched
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
 _SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
@@ -113,9 +113,9 @@ def place(
     )
     trajectories: list[Trajectory] = []
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
-    enough = MOST_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
+    enough = MAX_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
     is_small = not floor.is_tight and len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
-    for tried in range(MOST_TRIES_WHERE_SMALL if is_small else MOST_TRIES):
+    for tried in range(MAX_TRIES_IF_SMALL if is_small else MAX_TRIES):
         if len(trajectories) >= enough or (trajectories and tried >= TRIES and not floor.is_tight):
             break
         try:

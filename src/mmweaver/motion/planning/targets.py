@@ -49,12 +49,12 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
         if step.moves and not step.place and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
                 f"for {step.clause or step.target!r}: no {step.target} was found in the photo;"
-                f" {what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
+                f" {describe_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
                 " right of and ahead of the radar) or a class mask (--classes)"
             )
         if step.facing in TARGETS and not faced_landmarks(step, scene):
             raise InputError(
-                f"for {step.clause!r}: no {step.facing} was found in the photo; {what_was_found(scene)}; give its"
+                f"for {step.clause!r}: no {step.facing} was found in the photo; {describe_found(scene)}; give its"
                 f" position with --landmark {kinds_of(step.facing)[0]}=X,Y, or say another side to face"
             )
 
@@ -70,7 +70,7 @@ def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
     ]
 
 
-def without_targets(plan: MotionPlan) -> MotionPlan:
+def drop_targets(plan: MotionPlan) -> MotionPlan:
     """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
     lost = [step for step in plan.steps if _goes_to_landmark(step)]
     aimed = [step for step in plan.steps if step.facing in TARGETS]
@@ -233,7 +233,7 @@ def _lay_legs(
     return True
 
 
-def what_was_found(scene: Scene) -> str:
+def describe_found(scene: Scene) -> str:
     counts = Counter(mark.kind for mark in scene.landmarks)
     if scene.seats:
         counts["seat"] = len(scene.seats)

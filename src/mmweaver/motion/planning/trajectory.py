@@ -247,7 +247,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
-        free = _to_where_knees_turn_m(trajectory, direction, free) if step.lower == "crawl" else free
+        free = _knee_turn_reach_m(trajectory, direction, free) if step.lower == "crawl" else free
         if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
@@ -286,14 +286,14 @@ def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, 
     """How far who goes to and fro goes at most; who crawls needs room to turn there, else goes one way: 0."""
     if step.lower != "crawl" or not paced_m:
         return paced_m
-    roomy_m = _to_where_knees_turn_m(trajectory, direction_rad, min(free_m, paced_m))
+    roomy_m = _knee_turn_reach_m(trajectory, direction_rad, min(free_m, paced_m))
     if not roomy_m:
         trajectory.cost += 2.0
         trajectory.notes.append(f"there is no room to turn on hands and knees for {step.clause!r}; one way is shown")
     return roomy_m
 
 
-def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
+def _knee_turn_reach_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
     """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
     gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
     places = trajectory.position_m + gone_m[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])

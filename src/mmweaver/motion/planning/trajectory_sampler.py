@@ -69,7 +69,7 @@ _SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
 _PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chairs are tried pulled out, how far
 _STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, None)
-_USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
+_DEFAULT_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
 _RUN_OF_USUAL = 1.0  # a run, which is not slowed down as far as a walk
 _LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
@@ -302,12 +302,12 @@ class CandidateSampler:
 
     def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
         """Places to start at: for a straight walk those from which it has room, else those with most of it."""
-        if not step.moves or step.lower not in _USUAL_MPS or step.arc_deg or step.direction not in _STRAIGHT:
+        if not step.moves or step.lower not in _DEFAULT_MPS or step.arc_deg or step.direction not in _STRAIGHT:
             return self.floor.walkable_m
         if id(step) not in self._roomy_starts:
             cells, free_m = self.floor.straight_starts(step.direction)
             of_usual = _RUN_OF_USUAL if step.lower == "jog" else _OF_USUAL
-            enough_m = of_usual * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
+            enough_m = of_usual * _DEFAULT_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
             self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
         return self._roomy_starts[id(step)]
 

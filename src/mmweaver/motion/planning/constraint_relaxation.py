@@ -34,7 +34,7 @@ _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which l
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 DEEP_M = 0.03  # into furniture, where floor is tight: another way is tried first
 _ANY_NEAR_M, _ANY_FAR_M = 0.2, 30.0
-_MOST_RADARS = 3
+_MAX_RADARS = 3
 _MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
 ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
@@ -47,7 +47,7 @@ NARROW_FLOOR = (
 Option = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
-def with_more_room(
+def relax_constraints(
     plan: MotionPlan,
     floor: FloorMap,
     compose_on: Callable[[MotionPlan, FloorMap], Result],
@@ -193,7 +193,7 @@ def ways_on(floor: FloorMap, plan: MotionPlan, farthest_m: float = math.inf) -> 
     radars = [
         name for name in PRESETS
         if PRESETS[name].range_m[0] <= near_m and PRESETS[name].range_m[-1] >= far_m
-    ][:_MOST_RADARS]  # fmt: skip
+    ][:_MAX_RADARS]  # fmt: skip
     if not (is_own or radars):
         return {}
     return {

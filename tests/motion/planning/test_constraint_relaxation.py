@@ -10,8 +10,13 @@ from mmweaver.core.records import Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import APPROXIMATED
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.constraint_relaxation import (
+    NARROW_FLOOR,
+    going_on_elsewhere,
+    on_the_spot,
+    relax_constraints,
+)
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.more_room import NARROW_FLOOR, going_on_elsewhere, on_the_spot, with_more_room
 from tests.motion.rooms import WINDOW_M, room
 
 FULL = ((-3.0, 3.0, 0.0, 6.0),)
@@ -141,7 +146,7 @@ def test_where_floor_is_tight_the_way_that_gets_least_into_furniture_is_taken():
             tried.append((way_of, depths.get(way_of, 0.5)))
             return tried[-1]
 
-        return with_more_room(plan, floor, compose_on, depth_m=lambda result: result[1])[1][0]
+        return relax_constraints(plan, floor, compose_on, depth_m=lambda result: result[1])[1][0]
 
     assert composed({"there": 0.57, "spot, front": 0.01}) == "spot, front"
     assert composed({"there": 0.02}) == "there"
