@@ -19,6 +19,7 @@ from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.floor_geometry import distance_m, random_choice, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     Sitting,
@@ -73,7 +74,7 @@ class Approach:
     def scaled_to(self, body: SkeletonProportions) -> "Approach":
         """The same for a body of exactly this size: its pelvis is on the seat."""
         seat, facing = self.sitting.seat_m, self.sitting.facing_rad
-        ahead = np.array([np.cos(facing), np.sin(facing)])
+        ahead = unit_vector(facing)
         feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
         knees_m = knees_ahead_m(body, self.sitting.height_m)
         return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).clear_knees())
@@ -118,7 +119,7 @@ def approach_from(
 def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: np.random.Generator) -> Array | None:
     """A place (x, y) from which a walk in the step's time and direction takes this way; None where there is none."""
     gaps_m = way.corners_m[0] - way.starts_m
-    further_m = 0.0 if way.gate_m is None else float(np.hypot(*(way.sitting.feet_m - way.gate_m)))
+    further_m = 0.0 if way.gate_m is None else distance_m(way.sitting.feet_m, way.gate_m)
     apart_m = np.hypot(*gaps_m.T) + further_m
     lasts = step.end_s - step.start_s
     fits = (apart_m > 0.55 * lasts) & (apart_m < 1.35 * lasts)
@@ -126,7 +127,7 @@ def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: n
         towards = np.arctan2(gaps_m[:, 1], gaps_m[:, 0])
         fits &= np.abs((towards - direction_rad + np.pi) % (2 * np.pi) - np.pi) < 0.9 * _DIRECTION_RAD
     some = way.starts_m[fits]
-    return some[int(rng.integers(len(some)))] if len(some) else None
+    return random_choice(some, rng) if len(some) else None
 
 
 def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bool) -> None:
@@ -209,7 +210,7 @@ def _has_room_for_feet(sitting: Sitting, floor: FloorMap) -> bool:
 
 def _is_alike(one: Sitting, other: Sitting) -> bool:
     """Whether two ways to sit differ by a little shift only."""
-    apart_m = float(np.hypot(*(one.seat_m - other.seat_m)))
+    apart_m = distance_m(one.seat_m, other.seat_m)
     return apart_m < _SHIFT_M / 2 and abs(one.facing_rad - other.facing_rad) < 0.01
 
 
@@ -239,7 +240,7 @@ def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:
     for side in (-1.0, 1.0):
         for off in _OFF_FRONT_RAD:
             angle = sitting.facing_rad + side * (np.pi / 2 - off)
-            line_m = sitting.feet_m + lengths_m[:, None] * np.array([np.cos(angle), np.sin(angle)])
+            line_m = sitting.feet_m + lengths_m[:, None] * unit_vector(angle)
             can_stand, narrow = floor.can_stand(line_m), floor.clearance_at(line_m) > _NARROW_M
             first = int(np.argmax(can_stand))
             if can_stand[first] and narrow[:first].all():

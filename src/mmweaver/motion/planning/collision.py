@@ -11,6 +11,7 @@ from mmweaver.core.records import Plane, PoseSequence, Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, DistanceField, distance_field, interior, thinned
+from mmweaver.motion.planning.floor_geometry import distances_m, unit_vector
 from mmweaver.motion.planning.occluded_geometry import (
     below_tops,
     extended_to_floor,
@@ -65,7 +66,7 @@ class PulledChair:
         return self.holds(points_m, floor_z_m) & ~self._is_front(points_m)
 
     def _is_front(self, points_m: Float[Array, "point 3"]) -> Bool[Array, " point"]:
-        ahead = np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        ahead = unit_vector(self.facing_rad)
         return np.asarray((points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
@@ -259,7 +260,7 @@ class CollisionMap:
         self, chair: PulledChair, points: Float[Array, "point 3"], distance_m: Float[Array, " point"]
     ) -> Float[Array, " point"]:
         """Distances of a body's points, those about the chair without it."""
-        near = np.hypot(*(points[:, :2] - np.array(chair.place_m)).T) < _NEAR_CHAIR_M - FARTHEST_M
+        near = distances_m(points[:, :2], chair.place_m) < _NEAR_CHAIR_M - FARTHEST_M
         out = distance_m.copy()
         out[near] = np.minimum(_distances_m(points[near], self._without(chair)), FARTHEST_M)
         return out
@@ -319,4 +320,4 @@ def _into_wall_m(
 def _about(points: Float[Array, "point 3"], seat: Place, reach_m: float) -> Float[Array, "near 3"]:
     """Points within a horizontal distance of a seat."""
     points = points[np.abs(points[:, 0] - seat[0]) < reach_m]
-    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < reach_m]
+    return points[distances_m(points[:, :2], seat) < reach_m]

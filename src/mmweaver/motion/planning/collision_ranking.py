@@ -14,6 +14,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.floor_geometry import distance_m
 from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_share
 from mmweaver.motion.planning.placement import Placement
 
@@ -223,9 +224,7 @@ class _Ranking:
 
 def _is_found(scene: Scene, seat: tuple[float, float]) -> bool:
     """Whether a place to sit is on a seat of the room."""
-    return any(
-        np.hypot(*(found.position_m[:2] - np.array(seat))) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats
-    )
+    return any(distance_m(found.position_m[:2], seat) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats)
 
 
 def _sorted(estimates: Sequence[_Tested]) -> list[_Tested]:

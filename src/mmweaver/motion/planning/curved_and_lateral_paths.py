@@ -8,6 +8,7 @@ from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Shape, Side, Step, Way
+from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     SLOWER_TURNS,
@@ -66,7 +67,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     lasts = step.end_s - begin - sum(ramps) / 2
-    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.either_side else 1.0
+    either = random_sign(trajectory.rng) if step.either_side else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
     speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
     for radius in (speed * lasts / abs(bend), *_BEND_RADII_M):
@@ -143,7 +144,7 @@ def _append_move(trajectory: Trajectory, move: Move, places: Float[Array, "n 2"]
 
 def turn_by(trajectory: Trajectory, step: Step) -> None:
     """Turns by `step.turn_deg`, to the left where positive; more than half a turn is possible."""
-    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.either_side else 1.0
+    either = random_sign(trajectory.rng) if step.either_side else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(SLOWER_TURNS[step.speed + 1] * (0.25 + abs(angle_rad) / 3.2), max(span_s, 0.6))
     trajectory.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
@@ -178,9 +179,9 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     if step.style in ("left", "right") and (step.posture == "floor" or step.lower == "get_up"):
         heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
         low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
-    along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(heading_rad), np.sin(heading_rad)])
+    along = np.linspace(low, high, 24)[:, None] * unit_vector(heading_rad)
     ahead_m = OFF_SEAT_AHEAD_M if step.lower == "fall_off" else 0.0
-    ahead = np.array([np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)])
+    ahead = unit_vector(trajectory.heading_rad)
     places = trajectory.position_m + ahead_m * ahead + along
     short_m = np.maximum(LYING_ROOM_M - trajectory.floor.clearance_at(places), 0.0)
     if short_m.any():

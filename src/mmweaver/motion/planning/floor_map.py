@@ -12,6 +12,7 @@ from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import Direction
+from mmweaver.motion.planning.floor_geometry import distances_m
 
 Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
@@ -286,7 +287,7 @@ class FloorMap:
         positions_m = self.walkable_m
         if not len(positions_m):
             return None
-        return positions_m[np.argmin(np.hypot(*(positions_m - position_m).T))]
+        return positions_m[np.argmin(distances_m(positions_m, position_m))]
 
     def check_start(self, start_m: tuple[float, float]) -> None:
         """Raises InputError, naming the nearest walkable position, where nobody can start at `start_m` (x, y)."""

@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Plane, Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.floor_geometry import distance_m, distances_m
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.targets import SEATS, describe_found, kinds_of
 
@@ -192,7 +193,7 @@ def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Ar
     if kinds[0] == kinds[1]:
         found = list(combinations(ones, 2))
     else:
-        found = [(one, other) for one in ones for other in others if float(np.hypot(*(one - other))) > 1e-6]
+        found = [(one, other) for one in ones for other in others if distance_m(one, other) > 1e-6]
     if not found:
         raise InputError(f"{place.words!r}: only one of them was found in the photo; {describe_found(scene)}")
     return found
@@ -204,10 +205,10 @@ def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) 
     aside = np.array([away[1], -away[0]])  # to the right in the picture
     along, across = (cells - middle) @ away, (cells - middle) @ aside
     if place.relation == "near" or place.landmark == "corner":
-        near = np.hypot(*(cells - middle).T)
+        near = distances_m(cells, middle)
         return near <= max(NEAR_M, float(near.min(initial=np.inf)) + 0.3) * (near.min(initial=np.inf) < 1.6)
     if place.relation == "in" and place.landmark == "door":
-        return np.hypot(*(cells - middle).T) <= DOORWAY_M
+        return distances_m(cells, middle) <= DOORWAY_M
     if place.relation in ("behind", "front"):
         depth = along if place.relation == "behind" else -along
         return (depth > BESIDE_M) & (depth < REACH_M) & (np.abs(across) < WIDTH_M)
@@ -229,5 +230,5 @@ def _within(place: Place, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]
     if place.relation == "close":
         return y <= np.quantile(y, SHARE)
     middle = (cells.max(axis=0) + cells.min(axis=0)) / 2
-    apart = np.hypot(*(cells - middle).T)
+    apart = distances_m(cells, middle)
     return apart <= np.quantile(apart, SHARE)

@@ -10,6 +10,7 @@ from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behi
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
+from mmweaver.motion.planning.floor_geometry import distance_m, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -51,7 +52,7 @@ class Sitting:
 
     def moved_ahead(self, by_m: float) -> "Sitting":
         """The same farther ahead on the seat."""
-        shift_m = by_m * np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        shift_m = by_m * unit_vector(self.facing_rad)
         edge_m = self.edge_m - by_m
         return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
 
@@ -104,13 +105,13 @@ def centred_to_lie(seats: list[Sitting], height_m: float) -> list[Sitting]:
 def _share_couch(one: Sitting, other: Sitting) -> bool:
     """Whether two places to sit belong to one couch: they face alike, are as high and nearer than its width."""
     faces_alike = np.cos(one.facing_rad - other.facing_rad) > _SAME_FACING_COS
-    is_near = float(np.hypot(*(one.seat_m - other.seat_m))) < max(one.width_m, other.width_m)
+    is_near = distance_m(one.seat_m, other.seat_m) < max(one.width_m, other.width_m)
     return bool(faces_alike and is_near and abs(one.height_m - other.height_m) < _SAME_HEIGHT_M)
 
 
 def _is_bed(seat: Sitting, scene: Scene) -> bool:
     beds = [mark for mark in scene.landmarks if mark.kind == "bed"]
-    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_RADIUS_M for mark in beds)
+    return any(distance_m(seat.seat_m, mark.position_m[:2]) < _BED_RADIUS_M for mark in beds)
 
 
 def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
@@ -134,7 +135,7 @@ def _edge_sittings(sitting: Sitting, floor: FloorMap, body: SkeletonProportions)
     obstacles, found = CollisionMap.of(floor.scene), []
     for turn in _EDGES_RAD:
         facing = sitting.facing_rad + turn
-        ahead = np.array([np.cos(facing), np.sin(facing)])
+        ahead = unit_vector(facing)
         for by_m in np.arange(_EDGE_STEP_M, _FARTHEST_EDGE_M, _EDGE_STEP_M):
             place = sitting.seat_m + by_m * ahead
             height = obstacles.low_surface_m(place)
@@ -156,14 +157,14 @@ def _edge_sittings(sitting: Sitting, floor: FloorMap, body: SkeletonProportions)
 
 
 def _has_room_for_shins(sitting: Sitting, scene: Scene) -> bool:
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     knees_m = sitting.seat_m + (sitting.knees_m + _KNEE_M) * ahead
     return CollisionMap.of(scene).has_room_for_shins(knees_m, sitting.feet_m, sitting.height_m)
 
 
 def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
     height = float(seat.position_m[2]) - floor.scene.floor_z_m
-    ahead = np.array([np.cos(seat.facing_rad), np.sin(seat.facing_rad)])
+    ahead = unit_vector(seat.facing_rad)
     place = np.asarray(seat.position_m[:2], dtype=float)
     return Sitting(
         feet_m=place + pelvis_behind_feet_m(body, height) * ahead,
@@ -192,7 +193,7 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
 
 def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     """The same seat in any possible way: turned, and ahead, behind, left or right of its centre."""
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     aside = np.array([-ahead[1], ahead[0]])
     spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_WIDTH_M) / 2, 0.03, 0.3)
     shift = rng.uniform(-1, 1, 2) * spare
@@ -206,7 +207,7 @@ def pulled_out(sitting: Sitting, floor: FloorMap, by_m: float) -> Sitting | None
     """On the same chair pulled back from what is ahead of it; None for a couch or bed, or without floor behind."""
     if sitting.width_m >= _COUCH_M or _is_bed(sitting, floor.scene):
         return None
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     aside = np.array([-ahead[1], ahead[0]])
     place = (float(sitting.seat_m[0]), float(sitting.seat_m[1]))
     moved = sitting.seat_m - by_m * ahead
@@ -241,7 +242,7 @@ def turned(sitting: Sitting, turn: float) -> Sitting:
 
 def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:
     """A stool behind somebody who stands at `feet_m` (x, y)."""
-    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * np.array([np.cos(facing_rad), np.sin(facing_rad)])
+    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * unit_vector(facing_rad)
     return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
 
 

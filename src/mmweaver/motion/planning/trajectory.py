@@ -9,6 +9,7 @@ from mmweaver.motion.animation.library.uneven_gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
 from mmweaver.motion.language.plan import HOPPING, Shape, Step, Way
 from mmweaver.motion.planning.collision import PulledChair
+from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -296,7 +297,7 @@ def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, 
 def _knee_turn_reach_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
     """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
     gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
-    places = trajectory.position_m + gone_m[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    places = trajectory.position_m + gone_m[:, None] * unit_vector(direction_rad)
     roomy = gone_m[trajectory.floor.clearance_at(places) > TURNS_ON_KNEES_M] if len(gone_m) else gone_m
     return float(roomy[-1]) if len(roomy) else 0.0
 
@@ -317,7 +318,7 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
     rng = trajectory.rng
-    side = float(np.sign(step.arc_deg)) if step.arc_deg and not step.either_side else float(rng.choice([-1.0, 1.0]))
+    side = float(np.sign(step.arc_deg)) if step.arc_deg and not step.either_side else random_sign(rng)
     chosen = first and not trajectory.heading_is_given
     direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)

@@ -26,6 +26,7 @@ from mmweaver.motion.planning.curved_and_lateral_paths import (
     lay_curved_or_lateral,
     turn_by,
 )
+from mmweaver.motion.planning.floor_geometry import bearing_rad, distance_m, distances_m, random_choice
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
@@ -148,7 +149,7 @@ class CandidateSampler:
                 trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
         trajectory.cost += float(self.rng.uniform(0, 0.5))
         if self.favourite_m is not None and self.start_m is None:
-            gap_m = float(np.hypot(*(np.array(trajectory.start_m) - self.favourite_m)))
+            gap_m = distance_m(trajectory.start_m, self.favourite_m)
             trajectory.cost += FAVOURITE_COST_PER_M * min(gap_m, 2.0)
         return trajectory
 
@@ -191,7 +192,7 @@ class CandidateSampler:
         if not lies_on_seat(self.plan):
             return ways
         middles_m = [one.seat_m for one in self._seats()]
-        return [way for way in ways if any(np.hypot(*(way.sitting.seat_m - at)) < _NEAR_MIDDLE_M for at in middles_m)]
+        return [way for way in ways if any(distance_m(way.sitting.seat_m, at) < _NEAR_MIDDLE_M for at in middles_m)]
 
     def _ways_of(self, seat: str) -> list[Approach]:
         """The ways to the seats of a word, in random order."""
@@ -222,7 +223,7 @@ class CandidateSampler:
             usable = preferred(seats, first.seat, self.floor.scene)
             if first.place is not None:
                 cells = self.floor.place_cells[first.place]
-                usable = [seat for seat in usable if np.hypot(*(cells - seat.seat_m).T).min() < _SEAT_AT_PLACE_M]
+                usable = [seat for seat in usable if distances_m(cells, seat.seat_m).min() < _SEAT_AT_PLACE_M]
             if any(step.lower not in ("sit", "sit_down", "lie_on_seat") for step in self.plan.steps):
                 # Getting up needs room in front of the seat, where a table may stand.
                 free = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
@@ -239,7 +240,7 @@ class CandidateSampler:
         spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
         if self.off_radar_rad is not None and not first.moves:
-            facing = float(np.arctan2(-spot[1], -spot[0])) + self.off_radar_rad
+            facing = bearing_rad(-spot) + self.off_radar_rad
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
         if first.facing and _turns_the_body(first):
@@ -257,14 +258,14 @@ class CandidateSampler:
     def _sittings_known_to_fit(self, seats: list[Sitting]) -> list[Sitting]:
         """The ways to sit on these seats that are known to keep the body clear; the seats where there are none."""
         ways = [way.sitting for way in self._approaches]
-        near = [one for one in ways if any(np.hypot(*(one.seat_m - seat.seat_m)) < _SAME_SEAT_M for seat in seats)]
+        near = [one for one in ways if any(distance_m(one.seat_m, seat.seat_m) < _SAME_SEAT_M for seat in seats)]
         return near or seats
 
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
         """The seat in front of which the body stands: of the motion before, or of the room."""
         before = [] if self.after is None or self.after.sitting is None else [self.after.sitting]
         known = before + seats + ([way.sitting for way in self._approaches] if seats else [])
-        near = (seat for seat in known if np.hypot(*(seat.feet_m - trajectory.position_m)) < _SAME_PLACE_M)
+        near = (seat for seat in known if distance_m(seat.feet_m, trajectory.position_m) < _SAME_PLACE_M)
         return next(near, None)
 
     def _seat_to_start_at(self, seats: list[Sitting]) -> Sitting | None:
@@ -276,7 +277,7 @@ class CandidateSampler:
         free = [seat for seat in seats if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
         free = free or ([way.sitting for way in self._approaches] if seats else [])
         free = preferred(free, steps[down].seat, self.floor.scene)
-        return free[int(self.rng.integers(len(free)))] if free else None
+        return random_choice(free, self.rng) if free else None
 
     def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
         """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
@@ -286,7 +287,7 @@ class CandidateSampler:
             return np.array(route_m[0], float)
         if first.place is not None and not (first.moves and first.place.is_goal):
             cells = self.floor.place_cells[first.place]
-            return cells[int(self.rng.integers(len(cells)))]
+            return random_choice(cells, self.rng)
         if first.moves and goes_to_target(first) and self.rng.random() < 0.8:
             spot = start_for_target(first, self.floor, self.rng)
             if spot is not None:
@@ -297,7 +298,7 @@ class CandidateSampler:
             if spot is not None:
                 return spot
         cells = self._open_starts(first)
-        spot = cells[int(self.rng.integers(len(cells)))]
+        spot = random_choice(cells, self.rng)
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
 
     def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
@@ -332,7 +333,7 @@ class CandidateSampler:
         near = [seat for seat in seats if self._is_meant(seat, named=bool(self.plan.steps[0].seat))]
         falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
         if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
-            sitting = near[int(self.rng.integers(len(near)))]
+            sitting = random_choice(near, self.rng)
             is_blocked = sitting.chair is None and not self.floor.clearance_at(sitting.feet_m) > 0
             cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
         else:
@@ -340,7 +341,7 @@ class CandidateSampler:
             cells = self.floor.walkable_m if first.place is None else self.floor.place_cells[first.place]
             if not len(cells):
                 raise NoTrajectory("no free floor")
-            spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
+            spot = np.array(self.start_m, dtype=float) if self.start_m else random_choice(cells, self.rng)
             facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
             facing = facing if self.heading_rad is None else self.heading_rad
             sitting = stool_at(spot, facing, self.body)
@@ -364,7 +365,7 @@ class CandidateSampler:
         """
         strict = self.heading_rad is not None and not named
         within_m = _AT_START_M if strict else _NEAR_START_M
-        if self.start_m is not None and np.hypot(*(seat.seat_m - self.start_m)) >= within_m:
+        if self.start_m is not None and distance_m(seat.seat_m, self.start_m) >= within_m:
             return False
         return not strict or abs(signed_angle_rad(seat.facing_rad, self.heading_rad)) < _FACES_AS_ASKED_RAD
 
@@ -439,7 +440,7 @@ def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene) -> float:
     if aims:
         x, y = min(aims, key=lambda aim: float(np.hypot(*aim)))
         return float(np.arctan2(y, x))
-    away = float(np.arctan2(spot[1], spot[0]))
+    away = bearing_rad(spot)
     return away if step.facing == "away" else away + np.pi
 
 
