@@ -45,6 +45,7 @@ def projected(step: Step) -> dict[str, Any]:
     to, sat on, looked at; distance_m, route_m, seconds: as the sentence gives them.
     """
     found = {name: _plain(getattr(step, today)) for name, today in PROJECTION.items()}
+    found["style"] = step.style or "either" * step.either_side or "several" * step.several
     found["other_hand"] = None if step.other_hand is None else projected(step.other_hand)
     return {name: value for name, value in found.items() if value}
 

@@ -15,7 +15,7 @@ from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.empty_scene import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
@@ -233,7 +233,8 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     steps = list(plan.steps)
     walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=round(length_m, 2), direction="", target="", place=None, arc_deg=0.0, count=0,
+        walk, route_m=points, distance_m=round(length_m, 2), direction=None, target="", place=None, arc_deg=0.0,
+        count=0,
     )  # fmt: skip
     notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
     if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:
@@ -241,7 +242,7 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
     return replace(
-        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=with_what_is_shown(clauses, steps)
+        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=add_shown_text(clauses, steps)
     )  # fmt: skip
 
 

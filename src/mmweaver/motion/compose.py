@@ -8,8 +8,8 @@ from mmweaver.motion.animation.assemble import assembled_controls, solved
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.step_names import in_turn, with_what_is_shown
+from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Shape, Step
+from mmweaver.motion.language.step_names import add_shown_text, in_turn
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
@@ -18,7 +18,7 @@ from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Placement, place
-from mmweaver.motion.planning.targets import without_targets
+from mmweaver.motion.planning.targets import drop_targets
 
 RUN_ROOM_M = 3.5  # straight free floor that running to and fro at 3 m/s needs
 
@@ -43,7 +43,7 @@ class Motion:
     @property
     def clauses(self) -> tuple[ClauseRecord, ...]:
         """What became of every clause: the plan's records, and what the room made of them."""
-        records = with_what_is_shown(self.plan.clauses, self.plan.steps)
+        records = add_shown_text(self.plan.clauses, self.plan.steps)
         room = [note for note in self.assumptions if note not in self.plan.notes]
         for step in self.plan.steps:
             for note in room:
@@ -98,7 +98,7 @@ def compose(
     """
     if plan.duration_s <= 0:
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
-    plan = settled(plan if has_photo else without_targets(plan))
+    plan = settled(plan if has_photo else drop_targets(plan))
     person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
     plan = with_habits(plan, person)
     body = SkeletonProportions(person.height_m)
@@ -151,7 +151,7 @@ def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, 
     steps, notes = [], []
     for step in plan.steps:
         aimless = _runs_anywhere(step)
-        steps.append(replace(step, direction="spot") if aimless else step)
+        steps.append(replace(step, direction=Shape.SPOT) if aimless else step)
         if aimless:
             notes.append(
                 f"for {step.clause!r} there are {longest_m:.1f} m of straight free floor, {RUN_ROOM_M:g} m are needed:"

@@ -92,7 +92,7 @@ class ContinuousMotion:
         """The plan after a walk to where there is room for it; None where nobody can walk, or there is none."""
         if before is None or before.posture != "feet" or plan.steps[0].moves:
             return None
-        walk = replace(plan.steps[0], lower="walk", upper="", direction="", seconds=WALK_ON_S)
+        walk = replace(plan.steps[0], lower="walk", upper="", direction=None, seconds=WALK_ON_S)
         walked = replace(usual, steps=(walk, *usual.steps), notes=(*usual.notes, WALKS_ON))
         try:
             return self._compose(continued(walked, before), person, plan.text, may_touch=False)

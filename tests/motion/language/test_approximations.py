@@ -150,5 +150,5 @@ def test_what_is_begun_and_given_up_is_said_to_be_done_wholly():
 
 def test_who_goes_around_something_to_sit_does_not_walk_to_and_fro():
     plan = parse("a person went around to sit on the chair")
-    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", ""), ("sit_down", "")]
+    assert [(step.lower, step.direction) for step in plan.steps] == [("walk", None), ("sit_down", None)]
     assert "around what the person walks is not shown" in plan.clauses[0].how

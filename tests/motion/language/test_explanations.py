@@ -3,15 +3,15 @@
 import pytest
 
 from mmweaver.motion.language.explanations import add_explanations
-from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Step
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, Side, Step, Way
 from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.step_names import with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text
 
 
 def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' is not shown") -> ClauseRecord:
     """The record of a sentence of one clause."""
     own = [Step(**{**vars(step), "clauses": (0,)}) for step in steps]
-    return add_explanations(with_what_is_shown([ClauseRecord(words, status, how)], own), own, roughly=False)[0]
+    return add_explanations(add_shown_text([ClauseRecord(words, status, how)], own), own, roughly=False)[0]
 
 
 @pytest.mark.parametrize(
@@ -19,10 +19,10 @@ def said(words: str, *steps: Step, status: str = APPROXIMATED, how: str = "'so' 
     [
         ("a person waves", Step(upper="wave")),
         ("she kneels down", Step(lower="kneel_down")),
-        ("walks three steps forward", Step(lower="walk", direction="forwards", count=3)),
+        ("walks three steps forward", Step(lower="walk", direction=Way.FORWARDS, count=3)),
         ("raises the left arm overhead and lowers it", Step(upper="raise", hand="left")),
-        ("walks to the couch", Step(lower="walk", seat="couch", direction="seat")),
-        ("turns left", Step(lower="turn", direction="left")),
+        ("walks to the couch", Step(lower="walk", seat="couch", direction=Way.SEAT)),
+        ("turns left", Step(lower="turn", direction=Side.LEFT)),
         ("claps twice", Step(upper="clap", count=2)),
     ],
 )
@@ -37,7 +37,7 @@ def test_words_that_say_just_what_is_shown_need_no_others(words: str, step: Step
         ("raises an arm", [Step(upper="raise")], "raising one hand overhead and lowering it once"),
         ("waves twice", [Step(upper="wave")], "waving with one hand repeatedly"),
         ("waves with the left hand", [Step(upper="wave", hand="right")], "waving with the right hand repeatedly"),
-        ("walks to his left", [Step(lower="walk", direction="right")], "walking to the right in the photo"),
+        ("walks to his left", [Step(lower="walk", direction=Side.RIGHT)], "walking to the right in the photo"),
         ("walks", [Step(lower="walk", count=2)], "walking two steps"),
         ("walks", [Step(lower="walk", speed=1)], "walking quickly"),
         ("kneels", [Step(lower="kneel", style="knee")], "kneeling on one knee"),
@@ -67,7 +67,7 @@ def test_reasons_that_only_say_what_is_shown_are_left_out() -> None:
 def test_a_clause_within_the_movement_before_says_so() -> None:
     steps = [Step(upper="wave", hand="both", clauses=(0, 1))]
     records = [ClauseRecord("flaps", APPROXIMATED, "'flaps' is not shown"), ClauseRecord("wings", APPROXIMATED, "it")]
-    hows = [record.how for record in add_explanations(with_what_is_shown(records, steps), steps, roughly=False)]
+    hows = [record.how for record in add_explanations(add_shown_text(records, steps), steps, roughly=False)]
     assert hows == [
         "is shown as waving with both hands repeatedly; 'flaps' is not shown",
         "is shown as the same movement; it",
@@ -94,7 +94,7 @@ def test_notes_are_of_clauses_that_are_not_done() -> None:
 @pytest.mark.parametrize("status", [DONE, APPROXIMATED])
 def test_a_clause_without_a_step_of_its_own_is_shown_as_its_neighbour(status: str) -> None:
     steps = [Step(lower="bend", clauses=(0,))]
-    records = with_what_is_shown([ClauseRecord("bends down"), ClauseRecord("tries to get up", status)], steps)
+    records = add_shown_text([ClauseRecord("bends down"), ClauseRecord("tries to get up", status)], steps)
     tries = add_explanations(records, steps, roughly=False)[1]
     assert (tries.status, tries.how) == (status, f"is shown as {records[0].shown}")
 

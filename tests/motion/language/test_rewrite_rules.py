@@ -15,8 +15,8 @@ SAME = [
 ]
 
 
-def movements(text: str) -> list[tuple[str, str, str, str, float]]:
-    def movement(step: Step) -> tuple[str, str, str, str, float]:
+def movements(text: str) -> list[tuple[object, ...]]:
+    def movement(step: Step) -> tuple[object, ...]:
         return step.lower, step.upper, step.direction, step.foot, step.arc_deg
 
     return [movement(step) for step in parse(f"a person {text}", in_part=True).steps]

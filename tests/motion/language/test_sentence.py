@@ -122,7 +122,7 @@ MORE = {
     "walks forward, is pushed from the right and walks on": "walk forwards | stumble left | walk forwards",
     "gets pushed while walking": "walk | stumble | walk",
     "walks a quarter circle to the left": "walk 90",
-    "walks in a half circle": "walk 180 either",
+    "walks in a half circle": "walk 180",
     "turns 180 degrees to the left": "turn t180",
     "turns around clockwise": "turn t-180",
     "picks something up from the floor with the left hand": "pick_up left",
@@ -389,7 +389,7 @@ def test_an_arm_that_is_raised_meanwhile_stays_up(text: str) -> None:
 
 def test_who_faces_backwards_turns_around() -> None:
     step = parse("a person spins, then lands facing backwards").steps[-1]
-    assert (step.lower, step.direction, step.facing) == ("turn", "", "")
+    assert (step.lower, step.direction, step.facing) == ("turn", None, "")
 
 
 @pytest.mark.parametrize("text", ["skips", "skips in a circle", "is skipping and clapping"])

@@ -76,10 +76,10 @@ def test_what_only_begins_a_movement_is_not_done_twice(text: str, acted: list[tu
         ("walks, stops, waves and walks on", "forwards", 0.0),
         ("walks, turns left and walks to the right", "right", 0.0),
         ("turns to the right, then turns back", "left", 0.0),
-        ("turns a little to the right, then turns back to face the front", "", 45.0),
+        ("turns a little to the right, then turns back to face the front", None, 45.0),
     ],
 )
-def test_the_way_follows_from_how_the_body_faces(text: str, direction: str, turn_deg: float) -> None:
+def test_the_way_follows_from_how_the_body_faces(text: str, direction: str | None, turn_deg: float) -> None:
     last = parse(f"a person {text}").steps[-1]
     assert (last.direction, last.turn_deg) == (direction, turn_deg)
 

@@ -11,8 +11,8 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.step_names import doing, in_turn, steps_of_each, with_what_is_shown
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Side, Step, Way
+from mmweaver.motion.language.step_names import add_shown_text, doing, in_turn, steps_of_each
 from mmweaver.motion.language.timing import plan_motion
 
 WALK, WAVE = Step(lower="walk"), Step(upper="wave")
@@ -21,17 +21,17 @@ WALK, WAVE = Step(lower="walk"), Step(upper="wave")
 @pytest.mark.parametrize(
     ("step", "words"),
     [
-        (Step(lower="walk", direction="backwards", count=3, speed=-1), "walking three steps backwards slowly"),
-        (Step(lower="walk", direction="left"), "walking to the left in the photo"),
-        (Step(lower="walk", direction="back"), "walking back the way it came"),
-        (Step(lower="walk", direction="circle", arc_deg=-720.0), "walking in a circle clockwise, twice round"),
-        (Step(lower="walk", arc_deg=90.0, style="either"), "walking in an arc of 90 degrees"),
+        (Step(lower="walk", direction=Way.BACKWARDS, count=3, speed=-1), "walking three steps backwards slowly"),
+        (Step(lower="walk", direction=Side.LEFT), "walking to the left in the photo"),
+        (Step(lower="walk", direction=Way.BACK), "walking back the way it came"),
+        (Step(lower="walk", direction=Shape.CIRCLE, arc_deg=-720.0), "walking in a circle clockwise, twice round"),
+        (Step(lower="walk", arc_deg=90.0, either_side=True), "walking in an arc of 90 degrees"),
         (Step(lower="walk", target="door", distance_m=2.0), "walking 2 m to the door"),
         (Step(lower="walk", foot="left", count=1), "walking one step"),  # no foot begins it
         (Step(lower="walk", upper="wave", count=2), "walking while waving with one hand twice"),
-        (Step(lower="jog", style="jog", direction="spot"), "jogging on the spot"),
+        (Step(lower="jog", style="jog", direction=Shape.SPOT), "jogging on the spot"),
         (Step(lower="jog"), "running"),
-        (Step(lower="turn", direction="left"), "turning 90 degrees to the person's left"),
+        (Step(lower="turn", direction=Side.LEFT), "turning 90 degrees to the person's left"),
         (Step(lower="turn", turn_deg=-45.0), "turning 45 degrees to the person's right"),
         (Step(lower="turn", facing="window"), "turning to face the window"),
         (Step(lower="fall", style="left"), "falling on the person's left side"),
@@ -40,15 +40,15 @@ WALK, WAVE = Step(lower="walk"), Step(upper="wave")
         (Step(lower="sit", seat="sofa", upper="clap"), "sitting on the sofa while clapping repeatedly"),
         (Step(lower="lunge"), "lunging ahead with one leg once"),
         (Step(lower="lunge", count=2), "lunging ahead with each leg in turn twice"),
-        (Step(lower="squat", style="several"), "squatting twice or more"),
+        (Step(lower="squat", several=True), "squatting twice or more"),
         (Step(lower="jump"), "jumping once or more"),
         (Step(lower="bend", style="held", seconds=3.0), "bending down and staying down for 3 s"),
         (Step(upper="raise", hand="left", count=12), "raising the left hand overhead and lowering it 12 times"),
         (Step(upper="raise_hold", hand="both"), "lifting both arms overhead and keeping them up"),
-        (Step(lower="lean", direction="left", upper="raise_hold", hand="both"),
+        (Step(lower="lean", direction=Side.LEFT, upper="raise_hold", hand="both"),
          "leaning to the person's left once while holding both arms up overhead"),
         (Step(lower="kneel_up", style="knee", foot="left"), "standing up from the left knee"),
-        (Step(upper="arms_out", hand="right", direction="forwards"), "holding the right arm out ahead"),
+        (Step(upper="arms_out", hand="right", direction=Way.FORWARDS), "holding the right arm out ahead"),
         (Step(upper="point", facing="left"), "pointing to the left in the photo with one hand once"),
         (Step(upper="wave", facing="towards"), "waving with one hand repeatedly, facing the radar"),
         (Step(upper="clap", place=Place("near", "window")), "clapping repeatedly, near the window"),
@@ -77,7 +77,7 @@ def test_a_step_that_no_clause_names_counts_with_the_next_one() -> None:
 
 def test_a_clause_that_shares_its_step_shows_that_and_one_that_is_not_done_nothing() -> None:
     lost, shared = ClauseRecord("waves", NOT_DONE, "no activity in it is known"), ClauseRecord("at a walk")
-    records = with_what_is_shown([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
+    records = add_shown_text([shared, ClauseRecord("goes"), lost], [replace(WALK, clauses=(1,))])
     assert [record.shown for record in records] == ["walking", "walking", ""]
 
 
@@ -120,7 +120,7 @@ def test_every_activity_has_words() -> None:
 
 
 def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> None:
-    there, on, back = (replace(WALK, direction=way) for way in ("left", "right", "back"))
+    there, on, back = (replace(WALK, direction=way) for way in (*Side, Way.BACK))
     steps = [replace(there, clauses=(0,)), replace(on, clauses=(0, 1)), replace(back, clauses=(0, 1, 2))]
     assert steps_of_each(3, steps) == [[steps[0]], [steps[1]], [steps[2]]]
     waves = [Step(seconds=0.5, clauses=(0,)), replace(WAVE, clauses=(0, 1))]
@@ -134,5 +134,5 @@ def test_a_step_of_several_clauses_counts_with_those_that_have_no_other() -> Non
 
 def test_steps_with_others_between_them_are_not_in_a_row() -> None:
     walks, bows = replace(WALK, clauses=(0,)), Step(lower="bow", clauses=(1,))
-    records = with_what_is_shown([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
+    records = add_shown_text([ClauseRecord("walks"), ClauseRecord("bows")], [walks, bows, walks])
     assert [record.shown for record in records] == ["walking, later walking", "then bowing once"]

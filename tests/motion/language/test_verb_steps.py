@@ -50,15 +50,15 @@ def test_steps_to_a_side_are_sidesteps_however_many(text: str, lower: str, count
 
 
 @pytest.mark.parametrize(
-    ("text", "style", "count"),
+    ("text", "several", "count"),
     [
-        ("jumps up and down", "several", 0),
-        ("is jumping up and down for 5 seconds", "several", 0),
-        ("jumps up and down three times", "", 3),
-        ("jumps up", "", 0),
+        ("jumps up and down", True, 0),
+        ("is jumping up and down for 5 seconds", True, 0),
+        ("jumps up and down three times", False, 3),
+        ("jumps up", False, 0),
     ],
 )
-def test_jumping_up_and_down_is_jumping_more_than_once(text: str, style: str, count: int) -> None:
+def test_jumping_up_and_down_is_jumping_more_than_once(text: str, several: bool, count: int) -> None:
     plan = parse(f"a person {text}")
-    assert [(step.style, step.count) for step in plan.steps] == [(style, count)]
+    assert [(step.several, step.count) for step in plan.steps] == [(several, count)]
     assert plan.clauses[0].status == "done"

@@ -95,7 +95,7 @@ def test_who_turns_on_a_seat_moves_ahead_past_its_corner():
         width_m=0.6, depth_m=0.6, edge_m=0.3, knees_m=0.36,
     )  # fmt: skip
     aslant = turned(square, 0.6)
-    assert square.with_clear_knees() is square
+    assert square.clear_knees() is square
     assert aslant.knees_m >= aslant.edge_m + 0.05 - 1e-9
     assert np.hypot(*(aslant.seat_m - square.seat_m)) > 0.05
 

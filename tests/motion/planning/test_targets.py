@@ -12,7 +12,7 @@ from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.placement import place
-from mmweaver.motion.planning.targets import without_targets
+from mmweaver.motion.planning.targets import drop_targets
 from tests.motion.rooms import WINDOW_M, room, seat
 
 DOOR = Landmark(kind="door", position_m=np.array([0.9, 2.9, -0.1]), approach_m=(0.75, 2.5), facing_rad=1.2)
@@ -69,11 +69,11 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
 
 
 def test_without_a_photo_the_way_leads_anywhere_and_says_so():
-    plan = without_targets(_plan("door"))
+    plan = drop_targets(_plan("door"))
     assert [step.target for step in plan.steps] == ["", ""]
     note = "for 'walks to the door': without a photo there is no door; the walk leads where there is room"
     assert plan.notes == (note,)
-    assert without_targets(plan) == plan
+    assert drop_targets(plan) == plan
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_who_points_at_a_landmark_faces_it(text: str):
     assert np.angle(np.exp(1j * (path.facing_rad(end_s)[0] - np.arctan2(y, x)))) == pytest.approx(0, abs=0.2)
     with pytest.raises(InputError, match="no door was found"):
         place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)
-    assert any("no door to face" in note for note in without_targets(plan).notes)
+    assert any("no door to face" in note for note in drop_targets(plan).notes)
 
 
 def test_who_cannot_walk_there_from_a_seat_gets_up_elsewhere():

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from mmweaver.core.safe_files.safe_text import read_toml
-from mmweaver.motion.language.rewrite_rules import with_parts
+from mmweaver.motion.language.rewrite_rules import expand_parts
 
 _ALWAYS, _IN_PART = ("instead_of_another", "always"), ("in_part",)
 MARK = "approx_"
@@ -43,7 +43,7 @@ _HELD = re.compile(r"<(\d+)>(?: +for (\d+(?:\.\d+)?) seconds\b)?")
 @cache
 def _pattern(number: int) -> re.Pattern[str]:
     """Compiled when first tried: most sentences need few of them, and all take 0.1 CPU-s."""
-    return re.compile(with_parts(APPROXIMATIONS[number].pattern, _TABLE["parts"]))
+    return re.compile(expand_parts(APPROXIMATIONS[number].pattern, _TABLE["parts"]))
 
 
 def _is_adjective(found: re.Match[str]) -> bool:

@@ -209,6 +209,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return _is_the_face(words, i) or bool(found)
     if word.text == "pace":
         return before not in ("to", "they", "i", "we", "you", "")  # "at a moderate pace", "increases pace"
+    if _is_adjective(words, i):
+        return True
     if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
         return False
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
@@ -253,6 +255,13 @@ def _is_the_face(words: list[Word], i: int) -> bool:
     put = before == "to" and i > 1 and words[i - 2].text in ("it", "them", "something", "hand", "hands")
     aimed = after in _FACED or after in DIRECTIONS or after in OWN
     return put or before in (*OWN, "the", "a", "near") or (words[i].form == "base" and not aimed)
+
+
+def _is_adjective(words: list[Word], i: int) -> bool:
+    """ "Throws a skipping rock"."""
+    before, noun = words[i - 1].text if i else "", words[i + 1] if i + 1 < len(words) else None
+    is_article = words[i].form == "ing" and before in ("a", "an")
+    return is_article and noun is not None and not is_known(noun) and any(other.is_verb for other in words[:i])
 
 
 def _form(words: list[Word], at: int) -> str:

@@ -36,7 +36,7 @@ def split_clauses(words: list[Word]) -> list[Clause]:
     clauses = _split(words)
     for number, clause in enumerate(clauses):
         clause.number = number
-    return _in_order(clauses)
+    return _temporal_order(clauses)
 
 
 def _split(words: list[Word]) -> list[Clause]:
@@ -100,7 +100,7 @@ def _stronger(one: str, other: str) -> str:
     return max(one, other, key=lambda link: _STRENGTH[link])
 
 
-def _in_order(clauses: list[Clause]) -> list[Clause]:
+def _temporal_order(clauses: list[Clause]) -> list[Clause]:
     """Temporal order: leading "after A, B" is A, B; leading "before B, A" is A, B; "B after A" is A, B."""
     if len(clauses) > 1 and clauses[0].link.startswith("lead-"):
         kind = clauses[0].link.removeprefix("lead-")

@@ -9,7 +9,7 @@ from mmweaver.motion.language.described_person import strip_stature
 from mmweaver.motion.language.lexicon import NUMBERS, PRONOUNS, SEATS, TARGETS, TIMES
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, Step
-from mmweaver.motion.language.step_names import steps_of_each, with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text, steps_of_each
 from mmweaver.motion.language.token_coverage import not_covered
 from mmweaver.motion.language.words import word_of
 
@@ -183,7 +183,7 @@ def explain_clauses(
         clauses.append(ClauseRecord(words, status, "; ".join(hows)))
     index = {number: given.index(of_given[number]) for number in records}
     steps = [_quote_clauses(step, index, clauses) for step in steps]
-    clauses = add_explanations(with_what_is_shown(clauses, steps), steps, roughly=roughly)
+    clauses = add_explanations(add_shown_text(clauses, steps), steps, roughly=roughly)
     return steps, clauses, [record.sentence for record in clauses if record.status != DONE]
 
 

@@ -25,7 +25,7 @@ from mmweaver.motion.language.lexicon import (
 )
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import MARK as PLACE
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import Hand, Step
 from mmweaver.motion.language.words import Word
 
 # How much of a sentence may be left: nothing, phrases that only say how, clauses, and what only a rough reading keeps.
@@ -197,7 +197,7 @@ def _limb_step(clause: Clause) -> tuple[Step | None, str]:
     """The step that stands for what arms, legs or hands do in a clause, and how that is said."""
     texts, side = {word.text for word in clause.words}, _side_of(clause.words)
     raises = any(word.lemma in _RAISING for word in clause.words)
-    hand = side or ("both" if texts & _TWO else "")
+    hand: Hand = side or ("both" if texts & _TWO else "")
     if texts & _ARMS or (raises and side):
         if texts & _HIGH or raises:
             return Step(upper="raise", hand=hand), "only what the arms do is shown, as raising them"
@@ -218,6 +218,7 @@ def _limb_step(clause: Clause) -> tuple[Step | None, str]:
     return None, ""
 
 
-def _side_of(words: list[Word]) -> str:
-    sides = {word.text for word in words} & {"left", "right"}
-    return "both" if len(sides) == 2 else next(iter(sides), "")
+def _side_of(words: list[Word]) -> Hand:
+    texts = {word.text for word in words}
+    left, right = "left" in texts, "right" in texts
+    return "both" if left and right else "left" if left else "right" if right else ""

@@ -1,14 +1,15 @@
 """Modifiers: the words of a clause other than its verbs, as fields of a Step."""
 
 from dataclasses import replace
+from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, RADAR, SEATS, SPEEDS, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import Direction, Shape, Side, Step, Way, direction_of
 from mmweaver.motion.language.words import Word
 
-OPPOSITE = {"left": "right", "right": "left"}
+OPPOSITE: dict[Any, Side] = {Side.LEFT: Side.RIGHT, Side.RIGHT: Side.LEFT}
 MAX_COUNT = 60
 _WHOM = frozenset({"it", "them", "someone", "somebody", "you", "him", "her", "then", "and", "person", "front"})
 _LEGGED = frozenset({"walk", "run", "jog", "jump", "hop", "leap", "step", "go", "move", "sidestep", "squat", "skip"})
@@ -52,9 +53,9 @@ def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> 
     part = next((word.text for word in words[i + 1 : i + 2] if word.text in _OF_A_LEG | _OF_THE_BODY), "")
     if part:  # "his right ankle", "the left shoulder"
         return replace(about, foot=about.foot or text) if part in _OF_A_LEG else about
-    if about.direction == "circle":
+    if about.direction == Shape.CIRCLE:
         around_deg = max(abs(about.arc_deg), 360.0)
-        return replace(about, arc_deg=around_deg if text == "left" else -around_deg, style="")
+        return replace(about, arc_deg=around_deg if text == "left" else -around_deg, either_side=False)
     bends = ("turn", "rotate", "pivot", "spin", "roll_over", "swipe")
     if before in OWN and not any(
         word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
@@ -63,7 +64,7 @@ def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> 
             f"'{before} {text}' is taken as the {text} of a person who faces the radar, {OPPOSITE[text]} in the photo"
         )
         text = OPPOSITE[text]
-    return replace(about, direction=text)
+    return replace(about, direction=Side(text))
 
 
 def _arm_soon(words: list[Word], i: int) -> bool:
@@ -74,23 +75,23 @@ def _arm_soon(words: list[Word], i: int) -> bool:
 
 
 def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
-    direction = DIRECTIONS[text]
-    if direction == "circle" and about.direction in OPPOSITE:
-        return replace(about, direction="circle", arc_deg=360.0 if about.direction == "left" else -360.0)
+    direction = direction_of(DIRECTIONS[text])
+    if direction == Shape.CIRCLE and isinstance(about.direction, Side):
+        return replace(about, direction=Shape.CIRCLE, arc_deg=360.0 if about.direction == Side.LEFT else -360.0)
     following = {word.text for word in words[i + 1 : i + 4]}
     going = any(word.is_verb and word.lemma in ("walk", "go", "run", "return", "jog", "head", "come") for word in words)
     if text == "back" and (going or not any(word.lemma in ("step", "lean") for word in words)):
-        direction = "back"
+        direction = Way.BACK
     if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
         return about
     if _is_no_direction(text, words, i, following):
         return about
-    if direction == "forwards" and about.direction:
+    if direction == Way.FORWARDS and about.direction:
         return about
-    if about.direction in ("left", "right") and direction == "spot":
+    if isinstance(about.direction, Side) and direction == Shape.SPOT:
         return about
-    if about.direction in ("left", "right") and direction in ("around", "backwards"):
-        return replace(about, direction=about.direction if direction == "around" else direction)
+    if isinstance(about.direction, Side) and direction in (Shape.AROUND, Way.BACKWARDS):
+        return replace(about, direction=about.direction if direction == Shape.AROUND else direction)
     return replace(about, direction=direction)
 
 
@@ -139,7 +140,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, turn_deg=float(text[3:]))
     if text.startswith("rounds_"):
         times = text.removeprefix("rounds_")
-        return replace(about, arc_deg=360.0 * int(NUMBERS.get(times, times)), style="either")
+        return replace(about, arc_deg=360.0 * int(NUMBERS.get(times, times)), either_side=True)
     if text.startswith("fraction_"):
         _, part, whole = text.split("_")
         return replace(about, arc_deg=360.0 * int(part) / max(int(whole), 1))
@@ -147,7 +148,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, facing=text.removeprefix(AIM))
     if text == "from_side":
         return replace(about, style="side")
-    if text.startswith(("from_", "on_")) and "pushed" in texts and about.direction in ("", "away"):
+    if text.startswith(("from_", "on_")) and "pushed" in texts and about.direction in (None, Way.AWAY):
         return replace(about, direction=_PUSHED_FROM.get(text.removeprefix("from_"), about.direction))
     if text in ("onback", "onbelly"):
         return replace(about, style="back" if text == "onback" else "front")
@@ -163,9 +164,9 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
     return replace(about, style=styles.get(text, about.style))
 
 
-_PUSHED_FROM = {
-    "own_left": "left", "own_right": "right",  # of a person who faces the viewer
-    "behind": "forwards", "back": "forwards", "rear": "forwards", "front": "backwards", "left": "right",
-    "right": "left", "on_left_side": "right", "on_right_side": "left",
-    "on_own_left_side": "left", "on_own_right_side": "right",
-}  # fmt: skip
+_PUSHED_FROM: dict[str, Direction] = {
+    **dict.fromkeys(("own_left", "right", "on_right_side", "on_own_left_side"), Side.LEFT),
+    **dict.fromkeys(("own_right", "left", "on_left_side", "on_own_right_side"), Side.RIGHT),
+    **dict.fromkeys(("behind", "back", "rear"), Way.FORWARDS),
+    "front": Way.BACKWARDS,
+}

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field, replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.lexicon import NUMBERS, SPEEDS, TIMES
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.plan import Step, Way
 from mmweaver.motion.language.verb_steps import GAITS, facing_of, target_of
 from mmweaver.motion.language.words import Word
 
@@ -57,9 +58,11 @@ class ParsedClause:
         about = more.about
         self.take_its_speed(more)
         last = self.steps[-1]
-        comes_back = more.link == "and" and about.direction == "back" and last.direction in ("", "seat")
+        comes_back = more.link == "and" and about.direction == Way.BACK and last.direction in (None, Way.SEAT)
         if comes_back and last.lower in GAITS and last.moves:  # "walks to the door and back"
-            back = replace(last, direction="back", target="", seat="", place=None, clauses=(*last.clauses, more.number))
+            back = replace(
+                last, direction=Way.BACK, target="", seat="", place=None, clauses=(*last.clauses, more.number)
+            )
             self.steps.append(_same_length(about, back))
             self.forms.append("s")
             return
@@ -107,12 +110,14 @@ class ParsedClause:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
         about, number = more.about, more.number
         if last.lower == "sidestep":
-            other = {"left": "right", "right": "left"}.get(last.direction, "")
-            if about.direction not in ("back", "backwards", other) or not other:
+            other = OPPOSITE.get(last.direction)
+            if about.direction not in (Way.BACK, Way.BACKWARDS, other) or not other:
                 return False
             other_way = {"direction": other}
         elif (
-            about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
+            about.direction in (Way.BACK, Way.BACKWARDS, Way.FORWARDS)
+            and last.lower in ("walk", "jog")
+            and not last.arc_deg
         ):
             other_way = {"direction": about.direction}
         else:

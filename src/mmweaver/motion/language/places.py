@@ -7,7 +7,7 @@ from pathlib import Path
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.motion.language.described_person import PEOPLE
 from mmweaver.motion.language.lexicon import NUMBERS, RADAR, TARGETS
-from mmweaver.motion.language.rewrite_rules import with_parts
+from mmweaver.motion.language.rewrite_rules import expand_parts
 
 MARK = "place_"
 _TABLE = read_toml(Path(__file__).with_suffix(".toml"))
@@ -19,10 +19,10 @@ _PARTS = {
     **_TABLE["parts"],
 }
 _WHOM, _WHOSE, _AIMED, _FACED, _ACTS_THERE, _ROOM = (
-    re.compile(with_parts(pattern, _PARTS)) for pattern in _TABLE["patterns"].values() if isinstance(pattern, str)
+    re.compile(expand_parts(pattern, _PARTS)) for pattern in _TABLE["patterns"].values() if isinstance(pattern, str)
 )
 _THERE, _AWAY_FROM_IT, _PATTERNS = (
-    [(re.compile(with_parts(pattern, _PARTS)), relation) for pattern, relation in _TABLE["patterns"][group]]
+    [(re.compile(expand_parts(pattern, _PARTS)), relation) for pattern, relation in _TABLE["patterns"][group]]
     for group in ("there", "away", "at")
 )
 AIM = "aim_"  # the token for what somebody faces: a Landmark.kind follows
@@ -83,7 +83,7 @@ def mark_places(text: str) -> str:
     for pattern in (_AIMED, _FACED):
         text = pattern.sub(lambda found: f"{found[1]} {AIM}{TARGETS[found[2]]} ", text)
     for pattern, token in _THERE:
-        text = pattern.sub(lambda found, token=token: f"{found['goes']} {_with_side(found, token)} ", text)
+        text = pattern.sub(lambda found, token=token: f"{found['goes']} {_side_tokens(found, token)} ", text)
     for pattern, relation in _AWAY_FROM_IT:
         text = pattern.sub(lambda found, relation=relation: _unless_acted_there(found, relation), text)
     for pattern, relation in _PATTERNS:
@@ -91,7 +91,7 @@ def mark_places(text: str) -> str:
     return text
 
 
-def _with_side(found: re.Match[str], token: str) -> str:
+def _side_tokens(found: re.Match[str], token: str) -> str:
     side = found.groupdict().get("side")
     return f"{MARK}{token} {MARK}{side}" if side else MARK + token
 

@@ -1,6 +1,8 @@
 """The parsed sentence: steps one after the other, each a body activity and possibly a hand activity over it."""
 
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Literal
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.described_person import DescribedPerson
@@ -10,35 +12,101 @@ HOPPING = ("hop", "hop_one_leg")  # on the spot unless a way is named
 FALLING_ON = "falling_on"  # Step.style of a stumble that ends in a fall
 
 
+class Side(StrEnum):
+    """A side of the picture, as the viewer sees it; of turns and bends the person's own."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class Way(StrEnum):
+    """A way that the body goes: as it faces, seen from the radar, back the way it came, or to a seat."""
+
+    FORWARDS = "forwards"
+    BACKWARDS = "backwards"
+    TOWARDS = "towards"
+    AWAY = "away"
+    BACK = "back"
+    SEAT = "seat"
+
+
+class Shape(StrEnum):
+    """The shape of a path that leads nowhere: round, to and fro, half a turn, on the spot."""
+
+    CIRCLE = "circle"
+    PACING = "pacing"
+    AROUND = "around"
+    SPOT = "spot"
+
+
+Direction = Side | Way | Shape
+Hand = Literal["left", "right", "both", ""]
+Foot = Literal["left", "right", ""]
+_DIRECTIONS: dict[str, Direction] = {value: value for kind in (Side, Way, Shape) for value in kind}
+
+
+def direction_of(name: str) -> Direction:
+    """The direction of a name, such as "left" or "circle".
+
+    >>> direction_of("away") is Way.AWAY
+    True
+    """
+    return _DIRECTIONS[name]
+
+
 @dataclass(frozen=True, kw_only=True)
-class Step:
-    """One step. Directions are the viewer's (left in the photo), hands, feet and bends the person's own."""
+class Action:
+    """What body and hands do; hands, feet and styles of lying are the person's own left and right."""
 
     lower: str = "stand"  # key of a body activity
     upper: str = ""  # key of a hand activity, overlaid
+    hand: Hand = ""  # "": chosen by the seed
+    foot: Foot = ""  # the leg that moves
     other_hand: "Step | None" = None  # what the other hand does meanwhile: a hand activity, its hand and count
-    hand: str = ""  # left | right | both | "" (chosen by the seed)
-    foot: str = ""  # left | right | "": the leg that moves
-    direction: str = (
-        ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
-    )
+    # How it is done: back, front, left, right (lying, falling), ahead (arms held out, walking), knee (of one knee),
+    # held, released (bending), high, up, down, under, side, wide, jog, frontlunge, FALLING_ON
+    style: str = ""
+    on_feet: bool = False  # the sentence says "stands"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Path:
+    """Where the body goes or turns, and how far."""
+
+    direction: Direction | None = None
     arc_deg: float = 0.0  # bend of the path, to the person's left where positive
     turn_deg: float = 0.0  # of a turn, to the person's left where positive; 0: by the direction
-    style: str = (
-        ""  # back | front (lying and falling) | bent (walking) | ahead (arms held out, walking) | knee (of one knee)
-    )
-    speed: int = 0  # -1 slowly, 0, 1 quickly
-    count: int = 0  # repetitions; 0: as many as the time allows
+    either_side: bool = False  # bend or turn go to a side that the seed chooses
+    distance_m: float = 0.0  # how far a walk goes, where the sentence says so
+    route_m: tuple[tuple[float, float], ...] = ()  # the corners (x, y) of a path that is given
+
+
+@dataclass(frozen=True, kw_only=True)
+class Target:
+    """What a step goes to, sits on or looks at."""
+
     seat: str = ""  # the word of the sentence: sofa, chair, ...
     target: str = ""  # the Landmark.kind to go to: door, table, ...
     place: Place | None = None  # where it is done, or the walk goes
-    distance_m: float = 0.0  # how far a walk goes, where the sentence says so
-    route_m: tuple[tuple[float, float], ...] = ()  # the corners (x, y) of a path that is given
     facing: str = ""  # left | right | towards | away | down | a Landmark.kind | ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repetition:
+    """How often, how long and how fast."""
+
+    count: int = 0  # repetitions; 0: as many as the time allows
+    several: bool = False  # more than once, where there is no count: "does squats"
     seconds: float = 0.0  # the duration that the sentence gives
+    speed: Literal[-1, 0, 1] = 0  # -1 slowly, 1 quickly
     pace: float = 1.0  # the person's tempo, relative to the usual one
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step(Action, Path, Target, Repetition):
+    """One step of a plan: what is done, which way, to what, how often; the words that ask for it, and its time."""
+
     usual_hand: str = ""  # left | right: mostly used where the sentence names none
-    on_feet: bool = False  # the sentence says "stands"
     clause: str = ""  # the words of the sentence
     clauses: tuple[int, ...] = ()  # which of MotionPlan.clauses it carries out
     start_s: float = 0.0
@@ -68,15 +136,15 @@ class Step:
     @property
     def arms_ahead(self) -> bool:
         """Whether arms that are held out are ahead, not to the sides; a walk has its own direction."""
-        ahead = self.style == "ahead" if self.moves else self.direction == "forwards"
+        ahead = self.style == "ahead" if self.moves else self.direction == Way.FORWARDS
         return self.upper == "arms_out" and ahead
 
     @property
     def moves(self) -> bool:
         """Whether the position on the floor changes."""
         if self.lower in HOPPING:
-            return self.direction not in ("", "spot")
-        return BY_KEY[self.lower].moves and self.direction != "spot"
+            return self.direction not in (None, Shape.SPOT)
+        return BY_KEY[self.lower].moves and self.direction != Shape.SPOT
 
     @property
     def uses_seat(self) -> bool:

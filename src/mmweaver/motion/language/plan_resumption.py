@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import Foot, MotionPlan, Step, Way
 from mmweaver.motion.language.postures import STILL, insert_transitions
 from mmweaver.motion.language.timing import is_elastic
 
@@ -10,7 +10,7 @@ HELD_FIRST_S, HELD_LAST_S = 0.6, 0.8  # long enough to blend from the last motio
 _SEATED = ("sit", "sit_down")
 
 
-def posture_held(posture: str, *, seconds: float, style: str = "", foot: str = "") -> Step:
+def posture_held(posture: str, *, seconds: float, style: str = "", foot: Foot = "") -> Step:
     """A step in which the body stays as it is: standing, sitting, kneeling or lying."""
     return Step(lower=STILL.get(posture, "stand"), seconds=seconds, style=style, foot=foot)
 
@@ -24,7 +24,7 @@ def continued(plan: MotionPlan, before: Step | None, *, seat_m: float | None = N
     steps = list(plan.steps)
     if before is not None:
         goes_to_seat = before.posture == "feet" and steps[0].lower in _SEATED and seat_m is not None
-        way = [Step(lower="walk", direction="seat", distance_m=seat_m or 0.0, clause=steps[0].clause)]
+        way = [Step(lower="walk", direction=Way.SEAT, distance_m=seat_m or 0.0, clause=steps[0].clause)]
         steps = insert_transitions([before, *(way if goes_to_seat else []), *steps])
     last = steps[-1]
     rest = posture_held(last.posture, seconds=HELD_LAST_S, style=last.style, foot=last.foot)

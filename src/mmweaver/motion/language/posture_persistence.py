@@ -6,7 +6,7 @@ from dataclasses import replace
 from mmweaver.motion.language.activities import BY_KEY, words_in
 from mmweaver.motion.language.lexicon import ARMS
 from mmweaver.motion.language.modifiers import OPPOSITE
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import Step, Way
 from mmweaver.motion.language.simultaneous import ARMS_TAKEN, ONE_ARMED
 
 # Postures of the arms, which last, and movements of the head alone, for which they come down.
@@ -189,7 +189,7 @@ def _kept_arms(before: Step, step: Step, *, moves_arms: bool) -> list[Step]:
         return [before, step]
     arms = {"upper": before.upper, "hand": before.hand}
     if before.upper == "arms_out" and not step.moves:
-        arms["direction"] = step.direction or ("forwards" if before.arms_ahead else "")
+        arms["direction"] = step.direction or (Way.FORWARDS if before.arms_ahead else None)
     if before.arms_ahead and step.moves:
         arms["style"] = step.style or "ahead"
     if step.lower == before.lower and not step.moves and not step.facing and step.lower in ("stand", "sit", "kneel"):

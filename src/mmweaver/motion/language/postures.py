@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.plan import FALLING_ON, Step
+from mmweaver.motion.language.plan import FALLING_ON, Step, Way
 from mmweaver.motion.language.posture_persistence import STAYING
 
 RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
@@ -14,7 +14,7 @@ _WITH_FREE_HANDS = ("sit_down", "kneel_down")
 # What is done lying, and on which side; "": on either.
 LYING = {"push_ups": "front", "plank": "front", "sit_ups": "back", "roll_over": ""}
 _ITS_PLACE = re.compile(r"back[_ ]to[_ ]start|\b(?:position|place|spot|pose|posture|stance)\b")
-_FALLS_ON = {"forwards": "front", "backwards": "back"}  # the way of a stumble -> style of the fall
+_FALLS_ON = {Way.FORWARDS: "front", Way.BACKWARDS: "back"}  # the way of a stumble -> style of the fall
 _WAYS_OF_FALLING = words_in("back backwards backward onback onbelly forward forwards front ahead")
 ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
@@ -139,7 +139,8 @@ def _falling_on(steps: list[Step]) -> list[Step]:
     for k, (before, step) in enumerate(pairwise(steps)):
         if before.lower != "stumble" or step.lower != "fall" or before.style:
             continue
-        way = before.direction or ("forwards" if step.style == "front" or "stumbl" in before.clause else "backwards")
+        on_front = step.style == "front" or "stumbl" in before.clause
+        way = before.direction or (Way.FORWARDS if on_front else Way.BACKWARDS)
         says_how = bool(words_in(step.clause) & _WAYS_OF_FALLING) or step.style not in ("front", "back")
         if not says_how and way in _FALLS_ON:
             steps[k + 1] = step = replace(step, style=_FALLS_ON[way])
@@ -167,18 +168,18 @@ def _styled(steps: list[Step]) -> list[Step]:
     return steps
 
 
-def carried_over(steps: list[Step]) -> list[Step]:
+def inherit_state(steps: list[Step]) -> list[Step]:
     """'Walks back' returns if the person has walked before, goes on after a turn, else backwards.
 
     A raised hand is the one to wave; what was picked up is put down with the same hands.
     """
     gone = False
     for k, step in enumerate(steps):
-        if step.direction == "back" and not gone and k and _ITS_PLACE.search(step.clause):  # it has left no place
-            steps[k] = replace(step, lower="stand", direction="")
-        elif step.direction == "back" and not gone:  # "turns around and walks back" goes where the person faces then
+        if step.direction == Way.BACK and not gone and k and _ITS_PLACE.search(step.clause):  # it has left no place
+            steps[k] = replace(step, lower="stand", direction=None)
+        elif step.direction == Way.BACK and not gone:  # "turns around and walks back" goes where the person faces then
             turned = k > 0 and steps[k - 1].lower == "turn"
-            steps[k] = replace(step, direction="forwards" if turned else "backwards")
+            steps[k] = replace(step, direction=Way.FORWARDS if turned else Way.BACKWARDS)
         gone = gone or step.moves
         lifted = next((one for one in reversed(steps[:k]) if one.lower == "pick_up"), None)
         if step.lower == "put_down" and not step.hand and lifted is not None:

@@ -33,15 +33,15 @@ _FEW = {"some": "3", "several": "3", "a few": "3"}
 @cache
 def _rules(stage: str) -> list[tuple[re.Pattern[str], Replacement]]:
     """Compiled when first needed: most sentences never need the last stage."""
-    rows = [(re.compile(with_parts(pattern, _PARTS), re.IGNORECASE), to) for pattern, to in _TABLE["rules"][stage]]
+    rows = [(re.compile(expand_parts(pattern, _PARTS), re.IGNORECASE), to) for pattern, to in _TABLE["rules"][stage]]
     if stage != "phrases":
         return rows
-    return [(_PUNCHES, _punch_tokens), *((pattern, _as_participle(to) or to) for pattern, to in rows)]
+    return [(_PUNCHES, _punch_tokens), *((pattern, _participle_rule(to) or to) for pattern, to in rows)]
 
 
-def with_parts(pattern: str, parts: Mapping[str, str]) -> str:
+def expand_parts(pattern: str, parts: Mapping[str, str]) -> str:
     """A pattern with the parts that it names in angle brackets."""
-    return re.sub(r"(?<!P)<([a-z_]+)>", lambda name: with_parts(parts[name[1]], parts), pattern)
+    return re.sub(r"(?<!P)<([a-z_]+)>", lambda name: expand_parts(parts[name[1]], parts), pattern)
 
 
 def rewritten(text: str, stage: str) -> str:
@@ -62,11 +62,11 @@ def rewritten(text: str, stage: str) -> str:
 
 def words_of_phrases() -> set[str]:
     """The words, and stems of words, that the patterns of phrases are made of."""
-    patterns = " ".join(with_parts(pattern, _PARTS) for pattern, _ in _TABLE["rules"]["phrases"])
+    patterns = " ".join(expand_parts(pattern, _PARTS) for pattern, _ in _TABLE["rules"]["phrases"])
     return set(re.findall("[a-z]+", re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", patterns)))
 
 
-def _as_participle(replacement: str) -> Replacement | None:
+def _participle_rule(replacement: str) -> Replacement | None:
     """The token of a hand activity ends in "ing" where the first word did."""
     token = next(iter(replacement.split()), "")
     lower, upper = ACTIVITY_OF_LEMMA.get(token, ("", ""))

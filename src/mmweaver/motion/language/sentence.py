@@ -27,14 +27,14 @@ from mmweaver.motion.language.lexicon import ARMS, NUMBERS, RECOVERING
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
 from mmweaver.motion.language.places import room_of
-from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Side, Step, Way
 from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
-from mmweaver.motion.language.postures import carried_over, insert_transitions
+from mmweaver.motion.language.postures import inherit_state, insert_transitions
 from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.simultaneous import going_on, sequence_steps
 from mmweaver.motion.language.spelling import correct_spelling
-from mmweaver.motion.language.step_names import with_what_is_shown
+from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import AIMED, SIDES
 from mmweaver.motion.language.words import Word, words_of
@@ -103,11 +103,11 @@ def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> M
         steps = [first]
     else:
         more = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
-        steps = carried_over(insert_transitions([*plan.steps, *more]))
+        steps = inherit_state(insert_transitions([*plan.steps, *more]))
     again = ClauseRecord(repeated.words)
     if any(clause.status == NOT_DONE for clause in plan.clauses):
         again = again.lowered_to(APPROXIMATED, "what is not shown once is not shown again")
-    clauses = with_what_is_shown((*plan.clauses, again), steps)
+    clauses = add_shown_text((*plan.clauses, again), steps)
     said = {before.sentence: now.sentence for before, now in zip(plan.clauses, clauses, strict=False)}
     notes = [said.get(note, note) for note in plan.notes] + [again.sentence] * (again.status != DONE)
     return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses, notes=tuple(notes))
@@ -132,7 +132,7 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
     if not parsed_clauses:
         raise InputError(not_known(given_text.strip()))
     sequence = sequence_steps(parsed_clauses, leaving)
-    steps = carried_over(insert_transitions(going_on(sequence)))
+    steps = inherit_state(insert_transitions(going_on(sequence)))
     said = {number: f"{record.clause} {record.how}" for number, record in records.items()}
     steps, lost = persist_postures(steps, said, {one.number for one in every_clause if one.link == "then"})
     for number, how in lost:
@@ -258,9 +258,10 @@ def _another_step(last: Step, parsed: ParsedClause) -> Step | None:
     if not _once_more(last, parsed):
         return None
     side = parsed.about.direction
-    way = {"facing": side, "direction": ""} if last.facing in OPPOSITE else {"direction": side}
+    assert side is not None  # as `_once_more` found
+    way = {"facing": side, "direction": None} if last.facing in OPPOSITE else {"direction": side}
     if last.lower == "turn" and last.turn_deg:  # "spins clockwise, then counterclockwise"
-        way = {"turn_deg": abs(last.turn_deg) * SIDES[side], "direction": "", "style": ""}
+        way = {"turn_deg": abs(last.turn_deg) * SIDES[side], "direction": None, "either_side": False}
     return replace(last, **way, clauses=(parsed.number,))
 
 
@@ -271,7 +272,7 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     on_the_spot |= last.upper in AIMED and last.facing == OPPOSITE.get(parsed.about.direction)
     sides = (last.direction, last.facing if last.upper in AIMED else "")
     other_side = parsed.link == "and" and OPPOSITE.get(parsed.about.direction) in sides
-    return (parsed.link == "then" or other_side) and on_the_spot and parsed.about.direction in OPPOSITE
+    return (parsed.link == "then" or other_side) and on_the_spot and isinstance(parsed.about.direction, Side)
 
 
 def _repeated_with_other_limb(last: Step, parsed: ParsedClause) -> Step | None:
@@ -290,11 +291,13 @@ def _repeated_with_other_limb(last: Step, parsed: ParsedClause) -> Step | None:
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
     direction = parsed.about.direction
-    sideways = direction in OPPOSITE and last.direction in ("forwards", "backwards", "back", *OPPOSITE)
-    sideways |= parsed.link == "then" and direction in ("back", "backwards") and not last.direction  # "and then back"
+    sideways = isinstance(direction, Side) and last.direction in (Way.FORWARDS, Way.BACKWARDS, Way.BACK, *OPPOSITE)
+    sideways |= (
+        parsed.link == "then" and direction in (Way.BACK, Way.BACKWARDS) and not last.direction
+    )  # "and then back"
     measured = bool(parsed.about.seconds or parsed.about.distance_m)  # "to the left for 3 s and to the right for 5 s"
     follows = parsed.link in ("then", "comma") or (parsed.link == "and" and (measured or last.lower == "sidestep"))
-    is_other = direction != last.direction or (parsed.link == "then" and direction in OPPOSITE)
+    is_other = direction != last.direction or (parsed.link == "then" and isinstance(direction, Side))
     return follows and is_other and sideways and last.lower in ("walk", "jog", "sidestep") and not last.arc_deg
 
 
@@ -308,7 +311,7 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
     if before.upper:
         return False
     stumbles = before.lower == now.lower == "stumble"
-    if stumbles and now.direction and before.direction not in ("", now.direction):
+    if stumbles and now.direction and before.direction not in (None, now.direction):
         return False
     if stumbles and (now.direction or now.style) and not before.direction:
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)

@@ -10,7 +10,7 @@ from mmweaver.motion.language.fallback_parsing import ROUGH
 from mmweaver.motion.language.lexicon import RADAR
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.parsed_clause import ParsedClause
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import Shape, Side, Step, Way
 
 # Hand activities that leave the other arm free, and those of them that the head goes with.
 ONE_ARMED = words_in(
@@ -103,16 +103,16 @@ def _only_begins(before: Step, step: Step) -> bool:
 
 def _facing_onward(before: Step, step: Step) -> Step:
     """Who turns, opens a door or 'walks on', goes ahead."""
-    both_turn = before.lower == step.lower == "turn" and (before.direction in OPPOSITE or before.turn_deg)
-    if both_turn and step.direction == "around" and "back" in step.clause.split():  # as far as the turn before
-        return replace(step, direction=OPPOSITE.get(before.direction, ""), turn_deg=-before.turn_deg)
+    both_turn = before.lower == step.lower == "turn" and (isinstance(before.direction, Side) or before.turn_deg)
+    if both_turn and step.direction == Shape.AROUND and "back" in step.clause.split():  # as far as the turn before
+        return replace(step, direction=OPPOSITE.get(before.direction), turn_deg=-before.turn_deg)
     if step.lower not in ("walk", "jog") or step.target or step.place or step.seat:
         return step
     aimless = not step.direction and not step.arc_deg
     turned = before.lower == "turn" and not before.facing and not RADAR & {*step.clause.split()}
-    turned &= aimless or step.direction == "away"
+    turned &= aimless or step.direction == Way.AWAY
     onward = aimless and (before.upper == "open_door" or _WALKS_ON.search(step.clause) is not None)
-    return replace(step, direction="forwards") if turned or onward else step
+    return replace(step, direction=Way.FORWARDS) if turned or onward else step
 
 
 def _merged_walk(one: Step, other: Step) -> list[Step]:
@@ -140,14 +140,14 @@ def _joined(one: Step, other: Step) -> list[Step]:
         return _merged_walk(replace(one, lower=gait), replace(other, lower=gait))
     walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
     if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
-        onward = replace(walk, direction="forwards" if walk.direction == "forwards" else walk.direction, count=0)
+        onward = replace(walk, direction=Way.FORWARDS if walk.direction == Way.FORWARDS else walk.direction, count=0)
         return [walk, more, onward]
     if walk.lower in ("walk", "jog") and more.lower == "turn" and not (one.upper or other.upper or more.facing):
         angle = {"left": 90.0, "right": -90.0, "around": 180.0}.get(more.direction, more.turn_deg)
-        if (more.direction == "around" and walk.direction) or abs(angle) >= 360.0 or walk.direction == "circle":
+        if (more.direction == Shape.AROUND and walk.direction) or abs(angle) >= 360.0 or walk.direction == Shape.CIRCLE:
             return [one, other]
-        bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
-        return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
+        bend = replace(walk, arc_deg=angle, turn_deg=0.0, either_side=not isinstance(more.direction, Side))
+        return [replace(bend, direction=Way.BACKWARDS if walk.direction == Way.BACKWARDS else None)]
     return [overlay(one, other)]
 
 
@@ -248,12 +248,12 @@ def overlay(one: Step, other: Step) -> Step:
                 upper="",
                 hand="",
                 count=legs.count if legs.moves else 0,
-                direction="" if legs.lower == "stand" else legs.direction,
+                direction=None if legs.lower == "stand" else legs.direction,
             ),
             replace(first, lower="stand"),
         )
         clauses = tuple(dict.fromkeys((*one.clauses, *other.clauses)))
-        other_hand = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else "")
+        other_hand = replace(second, lower="stand", direction=second.direction if second.upper == "arms_out" else None)
         return replace(together, other_hand=other_hand, clause=f"{one.clause}, {other.clause}", clauses=clauses)
     lower = one if one.lower != "stand" or other.lower == "stand" else other
     upper = one if one.upper else other
@@ -265,7 +265,7 @@ def overlay(one: Step, other: Step) -> Step:
         style="held"
         if lower.lower in ("bend", "lean")
         else lower.style or ("ahead" if lower.moves and upper.arms_ahead else ""),
-        direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
+        direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else None),
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,
         facing=lower.facing or upper.facing,

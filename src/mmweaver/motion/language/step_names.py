@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from mmweaver.motion.language.activities import BY_KEY, words_in
-from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Step
+from mmweaver.motion.language.plan import NOT_DONE, ClauseRecord, Shape, Step, Way
 
 # Done once where the sentence has no number, though they do not end the step; again and again within two seconds.
 _ONCE = words_in("lunge roll_over roll_in_bed raise point swipe")
@@ -22,7 +22,7 @@ SPEEDS_SAID = {-1: " slowly", 0: "", 1: " quickly"}
 _SMALL_NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven")
 
 
-def how_often(step: Step, key: str) -> str:
+def frequency_text(step: Step, key: str) -> str:
     """How often an activity is repeated, where it can be."""
     activity = BY_KEY[key]
     if activity.counted_s is None or key in PACES or step.style in ("held", "released"):
@@ -30,7 +30,7 @@ def how_often(step: Step, key: str) -> str:
     if step.count:
         return f" {times_said(step.count)}"
     is_once = (activity.once or key in _ONCE) and step.style != "frontlunge"
-    if step.style == "several" and not activity.hands and not (is_once and step.upper):
+    if step.several and not activity.hands and not (is_once and step.upper):
         return " twice or more"
     if is_once:
         return " once"
@@ -79,7 +79,7 @@ def body_phrase(step: Step) -> str:
     if step.lower in ("pick_up", "put_down"):
         name += hand_suffix(hand_of(step, step.lower))
     paces = f" {steps_said(step.count)}" if step.lower in PACES and step.count and not step.upper else ""
-    return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{how_often(step, step.lower)}"
+    return f"{name}{paces}{_way(step)}{SPEEDS_SAID[step.speed]}{frequency_text(step, step.lower)}"
 
 
 def _way(step: Step) -> str:
@@ -95,7 +95,9 @@ def _way(step: Step) -> str:
     if step.uses_seat:
         return f" on the {step.seat}" if step.seat and step.lower != "stand_up" else ""
     if step.lower == "lean":
-        way = {"backwards": " backwards", "": " to one side"}.get(step.direction, f" to the person's {step.direction}")
+        way = {Way.BACKWARDS: " backwards", None: " to one side"}.get(
+            step.direction, f" to the person's {step.direction}"
+        )
         return (
             way
             if step.upper
@@ -106,19 +108,19 @@ def _way(step: Step) -> str:
     if step.lower in ("kick", "roundhouse"):
         return {"back": " to the back", "high": " high up"}.get(step.style, "")
     if not step.moves or step.lower == "forward_roll":
-        return _WAYS["spot"] if step.direction == "spot" and step.lower == "jog" else ""
+        return _WAYS["spot"] if step.direction == Shape.SPOT and step.lower == "jog" else ""
     return _going(step)
 
 
 def _going(step: Step) -> str:
     """Where something leads that changes the position on the floor."""
-    if step.direction == "circle":
+    if step.direction == Shape.CIRCLE:
         return f" in a circle{_round(step)}"
     if step.arc_deg:
-        backwards = " backwards" if step.direction == "backwards" else ""
-        return f"{backwards} in an arc of {abs(step.arc_deg):g} degrees{_own_side(step.arc_deg, step.style)}"
+        backwards = " backwards" if step.direction == Way.BACKWARDS else ""
+        return f"{backwards} in an arc of {abs(step.arc_deg):g} degrees{_own_side(step.arc_deg, step.either_side)}"
     to = f" {step.distance_m:g} m" if step.distance_m else ""
-    if step.target or (step.seat and step.direction == "seat"):
+    if step.target or (step.seat and step.direction == Way.SEAT):
         return f"{to} to the {step.target or step.seat}"
     if step.lower == "sidestep" and step.direction not in _SIDES:
         return f"{to} to a side"
@@ -126,10 +128,8 @@ def _going(step: Step) -> str:
 
 
 def _round(step: Step) -> str:
-    if step.style == "either" or not step.arc_deg:
-        way = ""
-    else:
-        way = " counterclockwise" if step.arc_deg > 0 else " clockwise"
+    either = step.either_side or not step.arc_deg
+    way = "" if either else " counterclockwise" if step.arc_deg > 0 else " clockwise"
     rounds = round(abs(step.arc_deg) / 360)
     return way + (f", {times_said(rounds)} round" if rounds > 1 else "")
 
@@ -141,12 +141,12 @@ def _turn(step: Step) -> str:
         aim = f"to face {step.facing} in the photo" if step.facing in _SIDES else f"to face the {step.facing}"
         return f" {facing.get(step.facing, aim)}"
     if step.turn_deg:
-        return f" {abs(step.turn_deg):g} degrees{_own_side(step.turn_deg, step.style)}"
+        return f" {abs(step.turn_deg):g} degrees{_own_side(step.turn_deg, step.either_side)}"
     return f" 90 degrees to the person's {step.direction}" if step.direction in _SIDES else " around"
 
 
-def _own_side(angle_deg: float, style: str) -> str:
-    return "" if style == "either" else f" to the person's {'left' if angle_deg > 0 else 'right'}"
+def _own_side(angle_deg: float, either: bool) -> str:
+    return "" if either else f" to the person's {'left' if angle_deg > 0 else 'right'}"
 
 
 # Activities of one hand, and those of both unless the sentence names one.
@@ -196,7 +196,7 @@ def hand_phrase(step: Step, part: Step) -> str:
     elif hand and key not in ("arms_out", "hips"):
         name += hand_suffix(hand) + " in turn" * (hand == "both" and key in _IN_TURN)
     speed = (part.speed or step.speed) if step.lower == "stand" else 0
-    return f"{name}{_HEIGHTS.get(part.style, '')}{SPEEDS_SAID[speed]}{how_often(part, key)}"
+    return f"{name}{_HEIGHTS.get(part.style, '')}{SPEEDS_SAID[speed]}{frequency_text(part, key)}"
 
 
 def hand_suffix(hand: str) -> str:
@@ -212,7 +212,7 @@ def hand_of(part: Step, key: str) -> str:
     return (part.hand or "both") if key in _BOTH else ""
 
 
-def with_what_is_shown(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
+def add_shown_text(records: Sequence[ClauseRecord], steps: Sequence[Step]) -> tuple[ClauseRecord, ...]:
     """The records with what each clause is shown as: 'then waving' where that begins after another step.
 
     Records that said so of other steps, before these were cut or placed, say it of these.

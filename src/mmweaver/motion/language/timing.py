@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, FALLING_ON, NOT_DONE, MotionPlan, Shape, Step
 from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import PACES, with_what_is_shown
+from mmweaver.motion.language.step_names import PACES, add_shown_text
 
 LONGEST_S = 600.0
 SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
@@ -165,7 +165,7 @@ def _record_cut(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -
             record(before, APPROXIMATED, how)
     for step in wanted[len(kept) :]:
         record(step, NOT_DONE, f"the {given} s are over before it")
-    return replace(plan, notes=tuple(notes), clauses=with_what_is_shown(clauses, kept))
+    return replace(plan, notes=tuple(notes), clauses=add_shown_text(clauses, kept))
 
 
 def _seconds_text(seconds: float) -> str:
@@ -198,15 +198,15 @@ def _usual_limits(step: Step) -> tuple[float, float]:
         return lasts, lasts + 0.2
     if step.style == FALLING_ON:
         return FALLING_ON_S
-    if step.direction == "circle" and step.moves and not step.count:
+    if step.direction == Shape.CIRCLE and step.moves and not step.count:
         return _circle_limits(step)
-    if step.direction == "pacing" and step.moves and not step.count:
+    if step.direction == Shape.PACING and step.moves and not step.count:
         return BY_KEY[step.lower].least_s, CRAWLING_TO_AND_FRO_S if step.lower == "crawl" else PACING_S
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         way_m = step.distance_m + TURN_M * max(len(step.route_m) - 1, 0)
         return way_m / (1.4 * usual_mps) + 0.3, way_m / usual_mps + 0.6
-    if step.style == "several" and not step.count:  # "does squats"
+    if step.several and not step.count:  # "does squats"
         least, natural = _usual_limits(replace(step, count=2, speed=0))
         return least, max(natural, 2 * BY_KEY[step.lower].natural_s)
     doing = BY_KEY[step.upper or step.lower]
@@ -241,7 +241,7 @@ def _is_done_once(step: Step) -> bool:
 
 def is_elastic(step: Step) -> bool:
     """Whether a step can go on for as long as there is time."""
-    rounds = step.direction == "circle" and abs(step.arc_deg) > 360
+    rounds = step.direction == Shape.CIRCLE and abs(step.arc_deg) > 360
     return not (_is_done_once(step) or step.count or step.seconds or step.distance_m or rounds)
 
 

@@ -33,7 +33,7 @@ from mmweaver.motion.language.lexicon import (
     TIMES,
 )  # fmt: skip
 from mmweaver.motion.language.modifiers import OPPOSITE
-from mmweaver.motion.language.plan import ClauseRecord, Step
+from mmweaver.motion.language.plan import ClauseRecord, Shape, Side, Step, Way
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.step_names import hand_of
 from mmweaver.motion.language.verb_steps import SLIGHT_TURN_DEG
@@ -179,11 +179,11 @@ def _goes(step: Step, way: str) -> bool:
     if way in ("back", "ahead") and step.lower == "sidestep":
         return False
     if way == "back":
-        back = step.direction in ("backwards", "back", "pacing", "away") or step.style == "back"
+        back = step.direction in (Way.BACKWARDS, Way.BACK, Shape.PACING, Way.AWAY) or step.style == "back"
         return back or step.place is not None or step.lower in ("lie", "lie_down", "fall", "turn")
     if way == "ahead":
-        ahead = step.direction in ("forwards", "towards") or step.facing == "towards" or step.lower == "turn"
-        onward = step.lower in _SETS["gaits"] and step.direction not in ("left", "right", "backwards", "back")
+        ahead = step.direction in (Way.FORWARDS, Way.TOWARDS) or step.facing == "towards" or step.lower == "turn"
+        onward = step.lower in _SETS["gaits"] and step.direction not in (Side.LEFT, Side.RIGHT, Way.BACKWARDS, Way.BACK)
         return ahead or onward or bool(_doing(step) & _SHOWN_BY["forward"][0])
     to_both = {step.lower, step.upper} & _SETS["to_and_fro"] and not step.direction
     return bool(to_both or _goes_aside(step) or {way, "both"} & {step.hand, step.foot})
@@ -192,7 +192,7 @@ def _goes(step: Step, way: str) -> bool:
 def _goes_aside(step: Step) -> bool:
     directed = step.moves or step.lower in ("turn", "stumble", "lean", "kick", "fall_off", "side_kick")
     sides = {step.direction if directed else "", step.style, step.facing}
-    turns = (step.arc_deg or step.turn_deg) and step.style != "either"
+    turns = (step.arc_deg or step.turn_deg) and not step.either_side
     placed = step.place is not None or step.target or (step.seat and step.moves)
     to_a_side = {step.lower, step.upper} & _SETS["sideways"] and not step.arms_ahead
     return bool(sides & {"left", "right", "side", "seat"} or turns or placed or to_a_side)
@@ -241,7 +241,7 @@ def _turn(token: _Token) -> str:
     if text.endswith("clockwise"):
         counter = text != "clockwise" or {"counter", "anti", "against"} & {*token.before(2)}
         sign, side = (1.0, "left") if counter else (-1.0, "right")
-        angles = [0.0 if step.style == "either" else step.arc_deg or step.turn_deg for step in own]
+        angles = [0.0 if step.either_side else step.arc_deg or step.turn_deg for step in own]
         turns = any(angle * sign > 0 for angle in angles)
         turns |= any((step.lower, step.direction) == ("turn", side) for step in own)
         return "" if turns or any(step.upper in _SETS["rounds"] for step in own) else f"{text!r} is not shown"
@@ -254,11 +254,11 @@ def _turn(token: _Token) -> str:
 
 def _goes_round(step: Step) -> bool:
     turns = step.arc_deg or step.turn_deg or step.lower in ("turn", "hula_hoop") or step.upper in _SETS["rounds"]
-    return bool(turns or (step.direction == "circle" and step.moves))
+    return bool(turns or (step.direction == Shape.CIRCLE and step.moves))
 
 
 def _angles(step: Step) -> set[float]:
-    plain = 90.0 if step.direction in ("left", "right") else 180.0
+    plain = 90.0 if isinstance(step.direction, Side) else 180.0
     return {abs(step.turn_deg), abs(step.arc_deg), plain if step.lower == "turn" else 0.0}
 
 
@@ -280,11 +280,13 @@ _BY_FIELD: dict[str, Callable[[Step], bool]] = {
     "faces": lambda step: bool(step.facing) or step.lower == "turn",
     "wide": lambda step: step.style == "wide",
     "high": lambda step: step.style == "high",
-    "up": lambda step: step.direction == "pacing" or step.style in ("high", "up"),
-    "far": lambda step: bool(step.place or step.target or step.direction in ("pacing", "circle") or step.distance_m),
+    "up": lambda step: step.direction == Shape.PACING or step.style in ("high", "up"),
+    "far": lambda step: bool(
+        step.place or step.target or step.direction in (Shape.PACING, Shape.CIRCLE) or step.distance_m
+    ),
     "elsewhere": lambda step: step.moves or step.lower == "turn" or bool(step.place or step.facing),
-    "placed": lambda step: bool(step.place or step.target or step.direction == "towards"),
-    "round": lambda step: _goes_round(step) or step.direction in ("pacing", "around"),
+    "placed": lambda step: bool(step.place or step.target or step.direction == Way.TOWARDS),
+    "round": lambda step: _goes_round(step) or step.direction in (Shape.PACING, Shape.AROUND),
     "lasts": lambda step: bool(step.moves or step.seconds or abs(step.turn_deg) == SLIGHT_TURN_DEG),
     "low": lambda step: step.lower != "stand",
     "off": lambda step: BY_KEY[step.lower].counted_s is not None,
@@ -378,7 +380,9 @@ def _concerns(step: Step, noun: str) -> bool:
     handled = bool(keys & _SETS["handling"])
     if any(noun in _OF_ACTIVITY.get(key, ()) for key in keys) or (noun in _SETS["carried"] and handled):
         return True
-    if noun in _SETS["curves"] and (step.arc_deg or step.direction in ("circle", "around") or step.lower == "turn"):
+    if noun in _SETS["curves"] and (
+        step.arc_deg or step.direction in (Shape.CIRCLE, Shape.AROUND) or step.lower == "turn"
+    ):
         return True
     stem = noun.removesuffix("s")
     if step.place is not None and stem in re.findall("[a-z]+", step.place.words):
@@ -405,7 +409,7 @@ def _back_to(token: _Token) -> str:
     gone = [i for i, step in enumerate(token.steps[:here]) if step.moves]
     ways = {step.direction for step in token.steps[:here]}
     returns = any(
-        _goes(step, "back") or step.target or step.seat or OPPOSITE.get(step.direction) in ways
+        _goes(step, "back") or step.target or step.seat or (step.direction and OPPOSITE.get(step.direction) in ways)
         for step in (*token.own, *token.steps[here:])
     )
     return "the way back is not shown" if gone and not returns else ""
@@ -441,7 +445,7 @@ def _unmatched_tokens(tokens: list[_Token], steps: Sequence[Step]) -> Iterator[_
         often = 1 if step.moves and step.lower not in ("hop", "hop_one_leg", "leap") else max(step.count, 1)
         for key in _doing(step):
             slots += [{i for i, (_, named, _) in enumerate(mentions) if named and _alike(named, key, step)}] * often
-        to_and_fro = {step.lower, step.upper} & _SETS["to_and_fro"] or step.direction in ("pacing", "circle")
+        to_and_fro = {step.lower, step.upper} & _SETS["to_and_fro"] or step.direction in (Shape.PACING, Shape.CIRCLE)
         slots += [aside, ways - aside] * (_MANY_TIMES if to_and_fro or step.count > 1 else 1)
         slots += [{i for i, (_, named, _) in enumerate(mentions) if named == "turn"}] * bool(step.arc_deg)
     taken: dict[int, int] = {}  # slot -> mention

@@ -2,18 +2,19 @@
 
 from dataclasses import replace
 from itertools import pairwise, takewhile
+from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import ACTIVITY_OF_LEMMA, BY_KEY, words_in
 from mmweaver.motion.language.described_person import PERSON_NOUNS
 from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, LEGS, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.places import AIM
-from mmweaver.motion.language.plan import HOPPING, Step
+from mmweaver.motion.language.plan import HOPPING, Shape, Side, Step, Way
 from mmweaver.motion.language.words import Word
 
 ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 THINGS_LIFTED = frozenset(["something", "item", "object", "box", "thing", "weight", "weights", "bag", "chair"])
-SIDES = {"left": 1.0, "right": -1.0}
+SIDES: dict[Any, float] = {Side.LEFT: 1.0, Side.RIGHT: -1.0}
 SEVERAL_TIMES = 3  # "repeatedly", "several times"
 SLIGHT_TURN_DEG = 45.0  # "turns a little to the left"
 AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
@@ -27,7 +28,9 @@ _SINGLE = words_in(
     stomp
     """
 )
-_HOPPED = ("forwards", "towards", "away", "left", "right")  # ways of hopping on one leg
+_HOPPED = (Way.FORWARDS, Way.TOWARDS, Way.AWAY, *Side)  # ways of hopping on one leg
+_AS_HOPPED = {Shape.SPOT: None, Way.BACK: Way.BACKWARDS}
+_AS_STUMBLED = {Way.BACK: Way.BACKWARDS, Way.TOWARDS: Way.FORWARDS, Way.AWAY: Way.BACKWARDS}
 GAITS = ("walk", "jog", "limp", "stagger", "crawl", "walking_lunge")
 
 
@@ -45,7 +48,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
     step = _times_of_a_walk(_arms_step(step, texts), texts)
     if _is_of_several(step, words, at):
-        step = replace(step, count=2) if step.style else replace(step, style="several")
+        step = replace(step, count=2) if step.style else replace(step, several=True)
     elif _is_a_single_one(step, words, at):
         step = replace(step, count=1)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
@@ -58,9 +61,9 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
-        step = _in_place(step, words)
+        step = _stationary_step(step, words)
     else:
-        step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+        step = replace(step, direction=None, arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     if "repeatedly" in texts and not (step.count or step.seconds or step.lower in GAITS):
         counted = BY_KEY[step.upper or step.lower].counted_s is not None
         step = replace(step, count=SEVERAL_TIMES if counted else 0)
@@ -107,10 +110,10 @@ def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
         or texts & {"step", "steps"}
     ):
         return step
-    if step.direction != "circle":
+    if step.direction != Shape.CIRCLE:
         return replace(step, count=0) if step.lower in GAITS else step
     side = 1.0 if step.arc_deg >= 0 else -1.0
-    return replace(step, count=0, arc_deg=side * 360.0 * step.count, style=step.style if step.arc_deg else "either")
+    return replace(step, count=0, arc_deg=side * 360.0 * step.count, either_side=step.either_side or not step.arc_deg)
 
 
 def _arms_step(step: Step, texts: set[str]) -> Step:
@@ -126,48 +129,48 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
 
 def _goes_somewhere(step: Step, words: list[Word]) -> bool:
     """Whether somebody who carries something walks: a direction or a place to go to is named."""
-    return bool(target_of(words)) or step.direction not in ("", "spot", "backwards")
+    return bool(target_of(words)) or step.direction not in (None, Shape.SPOT, Way.BACKWARDS)
 
 
 def _roll_over(step: Step, words: list[Word], at: int) -> Step:
     del words, at
     lower = "roll_in_bed" if step.seat else "roll_over"
-    return replace(step, lower=lower, style="", direction=step.direction if step.direction in SIDES else "")
+    return replace(step, lower=lower, style="", direction=step.direction if isinstance(step.direction, Side) else None)
 
 
 def _forward_roll(step: Step, words: list[Word], at: int) -> Step:
     del at
-    return replace(step, direction="forwards", hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+    return replace(step, direction=Way.FORWARDS, hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 
-def _in_place(step: Step, words: list[Word]) -> Step:
+def _stationary_step(step: Step, words: list[Word]) -> Step:
     facing = facing_of(words) or step.facing
     if step.upper in AIMED:
-        facing = step.facing or (step.direction if step.direction in SIDES else "")
+        facing = step.facing or (step.direction if isinstance(step.direction, Side) else "")
         facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
     if not facing and step.upper and {w.text for w in words} & RADAR and {w.text for w in words} & _TOWARDS:
         facing = "towards"  # "pushes a hand towards the radar"
-    kept = step.upper == "arms_out" and step.direction == "forwards"
-    kept |= step.upper == "swipe" and step.direction in SIDES
+    kept = step.upper == "arms_out" and step.direction == Way.FORWARDS
+    kept |= step.upper == "swipe" and isinstance(step.direction, Side)
     sit_down = step.lower == "sit" and any(word.lemma == "sit_down" for word in words)
     return replace(
-        step, direction=step.direction if kept else "", facing=facing, arc_deg=0.0, turn_deg=0.0,
+        step, direction=step.direction if kept else None, facing=facing, arc_deg=0.0, turn_deg=0.0,
         lower="sit_down" if sit_down else step.lower,
     )  # fmt: skip
 
 
 def _going_step(step: Step, words: list[Word], at: int) -> Step:
     texts, direction = {word.text for word in words}, step.direction
-    if direction == "around":
-        direction = "pacing"
-    if step.seat and direction in ("", "backwards", "forwards", "towards") and not texts & AROUND:
-        direction = "seat"
+    if direction == Shape.AROUND:
+        direction = Shape.PACING
+    if step.seat and direction in (None, Way.BACKWARDS, Way.FORWARDS, Way.TOWARDS) and not texts & AROUND:
+        direction = Way.SEAT
     target = target_of(words)
     step = replace(step, direction=direction, hand="", target=target, facing=facing_of(words))
     aside = any(other.text == "sideways" and before.text not in ARMS for before, other in pairwise(words))
     if (aside and step.lower == "walk") or _is_step_aside(step, words, at):
         return _sideways_step(replace(step, lower="sidestep"), words, at)
-    if direction == "spot":
+    if direction == Shape.SPOT:
         still = {"walk": "march", "walking_lunge": "lunge"}.get(step.lower, step.lower)
         return replace(step, lower=still, arc_deg=0.0, turn_deg=0.0)
     return _bent(step)
@@ -176,21 +179,23 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
 def _bent(step: Step) -> Step:
     """Angles of a walk are bends of its path; left and right are then the person's own, as of a turn."""
     angle = step.arc_deg or step.turn_deg
-    if not angle or step.direction == "circle":
+    if not angle or step.direction == Shape.CIRCLE:
         return replace(step, turn_deg=0.0)
     side = SIDES.get(step.direction, 0.0)
-    direction = "backwards" if step.direction in ("backwards", "back") else ""
-    style = step.style if side else "either"
-    return replace(step, arc_deg=abs(angle) * (side or 1.0), turn_deg=0.0, direction=direction, style=style)
+    direction = Way.BACKWARDS if step.direction in (Way.BACKWARDS, Way.BACK) else None
+    either_side = step.either_side or not side
+    return replace(step, arc_deg=abs(angle) * (side or 1.0), turn_deg=0.0, direction=direction, either_side=either_side)
 
 
 def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
     """Whether it is done sideways: 'takes one step to the left', but not 'walks to the left'."""
     noun = words[at].lemma == "step"
     if noun and at + 1 < len(words) and any(word.text in ("step", "steps") for word in words[at + 1 :]):
-        return step.direction in SIDES and step.lower == "walk" and not step.arc_deg  # "steps to the right three steps"
+        return (
+            isinstance(step.direction, Side) and step.lower == "walk" and not step.arc_deg
+        )  # "steps to the right three steps"
     few = step.count in (0, 1, 2) if words[at].text in ("step", "steps") else step.count in (1, 2)
-    return noun and few and step.direction in SIDES and step.lower == "walk" and not step.arc_deg
+    return noun and few and isinstance(step.direction, Side) and step.lower == "walk" and not step.arc_deg
 
 
 def target_of(words: list[Word]) -> str:
@@ -208,52 +213,53 @@ def target_of(words: list[Word]) -> str:
 
 def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     word, texts = words[at], {other.text for other in words}
-    aimless = replace(step, direction="", turn_deg=0.0, arc_deg=0.0)
-    facing = step.facing or ("towards" if texts & RADAR and step.direction != "away" else "")
-    if not facing and (step.direction == "away" or word.lemma == "face"):
-        facing = "" if step.direction == "backwards" else step.direction.removeprefix("forwards") or "towards"
+    aimless = replace(step, direction=None, turn_deg=0.0, arc_deg=0.0)
+    facing = step.facing or ("towards" if texts & RADAR and step.direction != Way.AWAY else "")
+    if not facing and (step.direction == Way.AWAY or word.lemma == "face"):
+        ahead = step.direction in (None, Way.FORWARDS)
+        facing = "towards" if ahead else "" if step.direction == Way.BACKWARDS else str(step.direction)
     if facing or word.lemma == "face":
         return replace(aimless, facing=facing)
-    angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == "circle" or word.lemma == "spin" else 0.0)
+    angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == Shape.CIRCLE or word.lemma == "spin" else 0.0)
     side, times = SIDES.get(step.direction, 0.0), step.count if texts & {*TIMES, "times", "turns"} else 0
     step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
     if times > 1:  # "turns around twice"
         angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
     about = "around" in texts or angle == 180.0 or not side
     if side and not angle and "around" not in texts and texts & {"slightly", "little", "bit"}:
-        return replace(step, direction="", turn_deg=SLIGHT_TURN_DEG * side)
+        return replace(step, direction=None, turn_deg=SLIGHT_TURN_DEG * side)
     if angle in (0.0, 180.0) and about and side:
-        return replace(step, direction="", turn_deg=180.0 * side)
+        return replace(step, direction=None, turn_deg=180.0 * side)
     if angle in (0.0, 180.0):
-        return replace(step, direction="around" if about else step.direction)
+        return replace(step, direction=Shape.AROUND if about else step.direction)
     if angle == 90.0 and side:
         return step
-    return replace(step, direction="", turn_deg=angle * (side or 1.0), style="" if side else "either")
+    return replace(step, direction=None, turn_deg=angle * (side or 1.0), either_side=not side)
 
 
 def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
     """On the spot, somewhere, or on one leg."""
     texts = {word.text for word in words}
-    if step.direction == "circle" and step.lower == "hop":
+    if step.direction == Shape.CIRCLE and step.lower == "hop":
         return step
-    if step.turn_deg or step.arc_deg or step.direction in ("circle", "around", "pacing"):
+    if step.turn_deg or step.arc_deg or step.direction in (Shape.CIRCLE, Shape.AROUND, Shape.PACING):
         raise InputError(f"{step.clause!r}: jumping with a turn is not known; say 'jumps, then turns'")
-    direction = {"spot": "", "back": "backwards"}.get(step.direction, step.direction)
+    direction = _AS_HOPPED.get(step.direction, step.direction)
     if texts & ON_ONE_LEG:
-        direction = direction if direction in _HOPPED else ""
+        direction = direction if direction in _HOPPED else None
         return replace(step, lower="hop_one_leg", direction=direction, facing="" if direction else facing_of(words))
-    direction = "right" if "sideways" in texts and not direction else direction
-    if direction in (*_HOPPED, "backwards"):
+    direction = Side.RIGHT if "sideways" in texts and not direction else direction
+    if direction in (*_HOPPED, Way.BACKWARDS):
         return replace(step, lower="leap", direction=direction)
-    return replace(step, direction="", facing=facing_of(words))
+    return replace(step, direction=None, facing=facing_of(words))
 
 
 def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
-    direction = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
-    known = ("left", "right", "forwards", "backwards")
+    direction = _AS_STUMBLED.get(step.direction, step.direction)
+    known = (*Side, Way.FORWARDS, Way.BACKWARDS)
     side = step.style == "side" or "sideways" in {word.text for word in words}
     style = "side" if side and direction not in known else ""
-    direction = direction if direction in known else "forwards" if words[at].lemma == "trip" and not side else ""
+    direction = direction if direction in known else Way.FORWARDS if words[at].lemma == "trip" and not side else None
     return replace(step, direction=direction, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
 
 
@@ -261,20 +267,20 @@ def _floor_step(step: Step, words: list[Word], at: int) -> Step:
     """Lying and falling: on the back unless the clause says forwards, belly or one's own side."""
     if step.seat and step.lower in ("lie", "lie_down"):
         lower = "lie_on_seat" if step.lower == "lie" else "recline"
-        return replace(step, lower=lower, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+        return replace(step, lower=lower, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
     if step.seat:
         raise InputError(f"{step.clause!r}: falling is known on the floor and off a seat; leave out the {step.seat}")
-    if step.lower == "fall" and (step.direction in SIDES or "sideways" in {word.text for word in words}):
-        own_side = step.direction if step.direction in SIDES else "right"
-        return replace(step, style=own_side, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
-    style = step.style or ("front" if step.direction in ("forwards", "towards") else "back")
-    return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+    if step.lower == "fall" and (isinstance(step.direction, Side) or "sideways" in {word.text for word in words}):
+        own_side = step.direction if isinstance(step.direction, Side) else "right"
+        return replace(step, style=own_side, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+    style = step.style or ("front" if step.direction in (Way.FORWARDS, Way.TOWARDS) else "back")
+    return replace(step, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
 
 
 def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
     """To the own side that is named, else to the right."""
-    style = step.direction if step.direction in SIDES else "right"
-    return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+    style = step.direction if isinstance(step.direction, Side) else "right"
+    return replace(step, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
 
 
 def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
@@ -282,28 +288,28 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
     still = word.lemma == "kneel" and word.form == "ing"
     lower = "kneel_up" if word.lemma == "kneel_up" else "kneel" if still else "kneel_down"
     style = "knee" if {other.text for other in words} & (ON_ONE_LEG | {"one_knee"}) else step.style
-    return replace(step, lower=lower, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+    return replace(step, lower=lower, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
-    onward = {"way", "direction", "off"} & {word.text for word in words} and step.direction != "spot"
-    if step.lower == "march" and (onward or step.direction not in ("", "spot", "around")):
+    onward = {"way", "direction", "off"} & {word.text for word in words} and step.direction != Shape.SPOT
+    if step.lower == "march" and (onward or step.direction not in (None, Shape.SPOT, Shape.AROUND)):
         return _going_step(replace(step, lower="walk"), words, at)
-    if step.lower == "kick" and step.direction in ("back", "backwards"):
+    if step.lower == "kick" and step.direction in (Way.BACK, Way.BACKWARDS):
         step = replace(step, style="back")
-    return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+    return replace(step, direction=None, hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 
 def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
-    if step.direction == "back":
+    if step.direction == Way.BACK:
         raise InputError(f"{step.clause!r}: say to which side, left or right, the person steps back")
     return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
 
 
 def _leaning_step(step: Step, words: list[Word], at: int) -> Step:
     """To the own side that is named, or back; else to both sides in turn."""
-    direction = "backwards" if step.direction in ("back", "backwards") else step.direction
-    direction = direction if direction in (*SIDES, "backwards") else ""
+    direction = Way.BACKWARDS if step.direction in (Way.BACK, Way.BACKWARDS) else step.direction
+    direction = direction if direction in (*SIDES, Way.BACKWARDS) else None
     return replace(step, direction=direction, hand="", foot="", arc_deg=0.0, turn_deg=0.0)
 
 

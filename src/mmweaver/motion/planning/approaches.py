@@ -19,6 +19,7 @@ from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.floor_geometry import distance_m, random_choice, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     Sitting,
@@ -47,12 +48,12 @@ _LITTLE_M = 0.05  # how far people shift on a seat, to a side, ahead or back
 _SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # of one sitter, and between places on a couch that are tried
 _LONGEST_NARROW_M, _GATE_STEP_M = 1.2, 0.1
 _OFF_FRONT_RAD = (0.0, 0.5)  # how far from along the seat's front the narrow way may lead
-_WAYS_A_SEAT, _MOST_STARTS = 4, 200
+_WAYS_A_SEAT, _MAX_STARTS = 4, 200
 _SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
 _WALK_MPS = (0.45, 1.6)
-_USUAL_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
+_DEFAULT_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
 _DEEPEST_M, _MARGIN_M, _DEEP_COST_PER_M = 0.03, 0.02, 30.0  # how deep it may get into what is near a seat
-_MOST_TESTED = 24  # ways to sit on one seat that are tested closely
+_MAX_TESTED = 24  # ways to sit on one seat that are tested closely
 _PULLED_M, _PULLED_TURNS_RAD = (0.15, 0.3, 0.45, 0.6), (0.0, -0.3, 0.3, -0.6, 0.6)  # of chairs that are pulled out
 _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
 
@@ -70,23 +71,23 @@ class Approach:
         """Where the walk turns, and its end in front of the seat."""
         return [self.sitting.feet_m] if self.gate_m is None else [self.gate_m, self.sitting.feet_m]
 
-    def for_body(self, body: SkeletonProportions) -> "Approach":
+    def scaled_to(self, body: SkeletonProportions) -> "Approach":
         """The same for a body of exactly this size: its pelvis is on the seat."""
         seat, facing = self.sitting.seat_m, self.sitting.facing_rad
-        ahead = np.array([np.cos(facing), np.sin(facing)])
+        ahead = unit_vector(facing)
         feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
         knees_m = knees_ahead_m(body, self.sitting.height_m)
-        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).with_clear_knees())
+        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).clear_knees())
 
 
 def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
     """The ways to the usable seats of a room on which a body is clear of the rest; kept with the room."""
-    usual = FloorMap.of(floor.scene, floor.range_window_m, _USUAL_HEIGHT_M, with_assumed=floor.with_assumed)
+    usual = FloorMap.of(floor.scene, floor.range_window_m, _DEFAULT_HEIGHT_M, with_assumed=floor.with_assumed)
     if not usual.seat_approaches:
-        one = SkeletonProportions(_USUAL_HEIGHT_M)
+        one = SkeletonProportions(_DEFAULT_HEIGHT_M)
         ways = [way for seat in usable_seats(usual, one) for way in _ways_to(seat, usual, one)]
         usual.seat_approaches.append(ways)
-    return [way.for_body(body) for way in usual.seat_approaches[0]]
+    return [way.scaled_to(body) for way in usual.seat_approaches[0]]
 
 
 def fitting_approaches(ways: Sequence[Approach], word: str, scene: Scene) -> list[Approach]:
@@ -118,7 +119,7 @@ def approach_from(
 def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: np.random.Generator) -> Array | None:
     """A place (x, y) from which a walk in the step's time and direction takes this way; None where there is none."""
     gaps_m = way.corners_m[0] - way.starts_m
-    further_m = 0.0 if way.gate_m is None else float(np.hypot(*(way.sitting.feet_m - way.gate_m)))
+    further_m = 0.0 if way.gate_m is None else distance_m(way.sitting.feet_m, way.gate_m)
     apart_m = np.hypot(*gaps_m.T) + further_m
     lasts = step.end_s - step.start_s
     fits = (apart_m > 0.55 * lasts) & (apart_m < 1.35 * lasts)
@@ -126,7 +127,7 @@ def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: n
         towards = np.arctan2(gaps_m[:, 1], gaps_m[:, 0])
         fits &= np.abs((towards - direction_rad + np.pi) % (2 * np.pi) - np.pi) < 0.9 * _DIRECTION_RAD
     some = way.starts_m[fits]
-    return some[int(rng.integers(len(some)))] if len(some) else None
+    return random_choice(some, rng) if len(some) else None
 
 
 def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bool) -> None:
@@ -152,7 +153,7 @@ def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bo
 def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
     """The least unusual ways to sit on a seat whose feet have room, can be walked to, and leave the body clear."""
     cells = floor.walkable_m
-    cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+    cells = cells[:: max(1, len(cells) // _MAX_STARTS)]
     found: list[Approach] = []
     for sitting in _clear_sittings(seat, floor, body) if len(cells) else []:
         if len(found) == _WAYS_A_SEAT:
@@ -177,7 +178,7 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
     at = RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=(), turns=())
     controls = assembled_controls(placed, at, body, seed=0, duration_s=_SITS_DOWN_S)
     pose = solved(controls, body, duration_s=_SITS_DOWN_S, floor_z_m=floor.scene.floor_z_m)
-    sketch = BodySamples.of(pose).relative_to(at).without_repeats()
+    sketch = BodySamples.of(pose).relative_to(at).deduplicated()
     bodies = [
         sketch.along(
             RootPath(
@@ -190,7 +191,7 @@ def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -
     rough_m = obstacles.estimates_m(bodies, seats, margin_m=_MARGIN_M, chairs=[one.chair for one in sittings])
     order = np.argsort([one.cost + _DEEP_COST_PER_M * depth for one, depth in zip(sittings, rough_m, strict=True)])
     found: list[Sitting] = []
-    for k in order[:_MOST_TESTED]:
+    for k in order[:_MAX_TESTED]:
         depth_m = obstacles.penetration_m(bodies[k], seats[k], margin_m=_MARGIN_M, chair=sittings[k].chair)
         if depth_m <= _DEEPEST_M + _MARGIN_M:
             found.append(replace(sittings[k], cost=sittings[k].cost + _DEEP_COST_PER_M * depth_m))
@@ -209,7 +210,7 @@ def _has_room_for_feet(sitting: Sitting, floor: FloorMap) -> bool:
 
 def _is_alike(one: Sitting, other: Sitting) -> bool:
     """Whether two ways to sit differ by a little shift only."""
-    apart_m = float(np.hypot(*(one.seat_m - other.seat_m)))
+    apart_m = distance_m(one.seat_m, other.seat_m)
     return apart_m < _SHIFT_M / 2 and abs(one.facing_rad - other.facing_rad) < 0.01
 
 
@@ -222,7 +223,7 @@ def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
     places += [(-_LITTLE_M, 0.0), (_LITTLE_M, 0.0), (0.0, -_LITTLE_M), (0.0, _LITTLE_M)]
     for shift_m, ahead_m in places:
         moved = replace(seat, feet_m=seat.feet_m + shift_m * aside, seat_m=seat.seat_m + shift_m * aside)
-        moved = moved.moved_ahead(ahead_m).with_clear_knees()
+        moved = moved.moved_ahead(ahead_m).clear_knees()
         for turn_rad in {sign * turn for turn in _TURNS_RAD for sign in (-1.0, 1.0)}:
             cost = _SHIFT_COST * float(np.hypot(shift_m, ahead_m))
             cost += 0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0
@@ -239,7 +240,7 @@ def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:
     for side in (-1.0, 1.0):
         for off in _OFF_FRONT_RAD:
             angle = sitting.facing_rad + side * (np.pi / 2 - off)
-            line_m = sitting.feet_m + lengths_m[:, None] * np.array([np.cos(angle), np.sin(angle)])
+            line_m = sitting.feet_m + lengths_m[:, None] * unit_vector(angle)
             can_stand, narrow = floor.can_stand(line_m), floor.clearance_at(line_m) > _NARROW_M
             first = int(np.argmax(can_stand))
             if can_stand[first] and narrow[:first].all():

@@ -87,7 +87,7 @@ class BodySamples:
             lowest_s=float(pose.time_s[rows][lowest]),
         )
 
-    def without_repeats(self) -> "BodySamples":
+    def deduplicated(self) -> "BodySamples":
         """Without the points of limbs that have hardly moved since an earlier time."""
         each = len(_LIMB_ENDS) * len(_SHARES)
         cells = np.rint(self.points_m / _SAME_M).astype(np.int64)

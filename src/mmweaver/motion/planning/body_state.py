@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from mmweaver.motion.animation.carry_over import ControlsState
+from mmweaver.motion.language.plan import Foot
 from mmweaver.motion.planning.seating import Sitting
 
 
@@ -14,6 +15,6 @@ class BodyState:
     heading_rad: float  # from +x towards +y
     posture: str = "feet"  # feet | seat | knees | floor
     style: str = ""  # of lying: back | front
-    foot: str = ""  # of kneeling on one knee
+    foot: Foot = ""  # of kneeling on one knee
     sitting: Sitting | None = None  # the seat that is used, or that is right behind
     controls: ControlsState | None = None  # how the body moves there

@@ -11,10 +11,11 @@ from mmweaver.core.records import Plane, PoseSequence, Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, DistanceField, distance_field, interior, thinned
+from mmweaver.motion.planning.floor_geometry import distances_m, unit_vector
 from mmweaver.motion.planning.occluded_geometry import (
     below_tops,
-    between_low_points,
     extended_to_floor,
+    low_gap_points,
     table_legs,
     table_tops,
     upright_structures,
@@ -32,8 +33,8 @@ _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not th
 _SHIN_M = 0.45  # height of foot and shin of somebody who sits
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
 _ABOUT_SEAT_M = 0.15  # of a place to sit, whose height is measured
-_SHIN_TOP_M, _MOST_OF_SHINS = 0.2, 0.5  # lower things and smaller parts are no mattress
-_MOST_POINTS = 34_000
+_SHIN_TOP_M, _MAX_SHIN_SHARE = 0.2, 0.5  # lower things and smaller parts are no mattress
+_MAX_POINTS = 34_000
 _LOW_M = 0.64  # beds and low tables are solid: points are added at these depths below theirs
 _LOW_DOWN_M = (0.05, 0.1, 0.15, 0.2, 0.25)
 _HALF_CHAIR_M, _BACK_BEHIND_M, _CHAIR_TOP_M = 0.32, 0.05, 1.1
@@ -65,7 +66,7 @@ class PulledChair:
         return self.holds(points_m, floor_z_m) & ~self._is_front(points_m)
 
     def _is_front(self, points_m: Float[Array, "point 3"]) -> Bool[Array, " point"]:
-        ahead = np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        ahead = unit_vector(self.facing_rad)
         return np.asarray((points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
@@ -93,7 +94,7 @@ class CollisionMap:
     def _measured_m(self) -> Float[Array, "point 3"]:
         """Points measured above the floor, in the radar's frame."""
         photo = self.scene.photo
-        step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
+        step = max(1, int(np.sqrt(photo.depth_m.size / _MAX_POINTS)))
         # Every row: a bed seen at a flat angle has few.
         points = AlignedPhoto.of(self.scene).points_m[:, ::step]
         points = points[photo.depth_m[:, ::step] > 0.3]
@@ -130,16 +131,16 @@ class CollisionMap:
 
     def _without(self, chair: PulledChair) -> Float[Array, "solid 3"]:
         """Everything solid around a chair but the chair itself; kept, as many ways to sit on it are compared."""
-        if chair not in self._without_chair:
+        if chair not in self._chairless:
             solid, tops, legs = (_about(points, chair.place_m, _NEAR_CHAIR_M) for points in self._hard_m)
             others = solid[~chair.holds(solid, self.scene.floor_z_m)]
             below = tops - np.array([0.0, 0.0, _THICK_M])
             legs = legs[~chair.has_back_at(legs, self.scene.floor_z_m)]
-            self._without_chair[chair] = np.concatenate([others, tops, below, legs])
-        return self._without_chair[chair]
+            self._chairless[chair] = np.concatenate([others, tops, below, legs])
+        return self._chairless[chair]
 
     @cached_property
-    def _without_chair(self) -> dict[PulledChair, Array]:
+    def _chairless(self) -> dict[PulledChair, Array]:
         return {}
 
     @cached_property
@@ -164,7 +165,7 @@ class CollisionMap:
         """Points of low furniture, those between rows of pixels included."""
         points = self._measured_m
         low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
-        return np.concatenate([low, between_low_points(self.scene, low)])
+        return np.concatenate([low, low_gap_points(self.scene, low)])
 
     @cached_property
     def _low_tops_m(self) -> Float[Array, "y x"]:
@@ -196,7 +197,7 @@ class CollisionMap:
         rows, columns = self._low_tops_m.shape
         height = self._low_tops_m[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
         is_surface = (height > _SHIN_TOP_M) & (height < seat_height_m + _LOW_DOWN_M[1])
-        return bool(is_surface.mean() < _MOST_OF_SHINS)
+        return bool(is_surface.mean() < _MAX_SHIN_SHARE)
 
     @cached_property
     def _standing(self) -> DistanceField:
@@ -218,7 +219,7 @@ class CollisionMap:
         Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead. `chair`
         is not where the photo shows it.
         """
-        samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).without_repeats()
+        samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).deduplicated()
         worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m, chairs=[chair])[0])
         return max(worst, self.beyond_seats_m(samples, seats_m, margin_m=margin_m, chair=chair))
 
@@ -245,7 +246,7 @@ class CollisionMap:
         for chair, end, body in zip(chairs, ends, bodies, strict=False):
             if chair is not None:
                 own = slice(int(end) - len(body.points_m), int(end))
-                distance[own] = self._with_chair_moved_m(chair, points[own], distance[own])
+                distance[own] = self._moved_chair_depth_m(chair, points[own], distance[own])
         depth = radius - distance - allowed
         for plane in self._walls:
             depth = np.maximum(depth, _into_wall_m(plane, points, radius - allowed))
@@ -255,11 +256,11 @@ class CollisionMap:
     def _walls(self) -> tuple[Plane, ...]:
         return tuple(plane for plane in self.scene.planes if plane.kind == "wall")
 
-    def _with_chair_moved_m(
+    def _moved_chair_depth_m(
         self, chair: PulledChair, points: Float[Array, "point 3"], distance_m: Float[Array, " point"]
     ) -> Float[Array, " point"]:
         """Distances of a body's points, those about the chair without it."""
-        near = np.hypot(*(points[:, :2] - np.array(chair.place_m)).T) < _NEAR_CHAIR_M - FARTHEST_M
+        near = distances_m(points[:, :2], chair.place_m) < _NEAR_CHAIR_M - FARTHEST_M
         out = distance_m.copy()
         out[near] = np.minimum(_distances_m(points[near], self._without(chair)), FARTHEST_M)
         return out
@@ -319,4 +320,4 @@ def _into_wall_m(
 def _about(points: Float[Array, "point 3"], seat: Place, reach_m: float) -> Float[Array, "near 3"]:
     """Points within a horizontal distance of a seat."""
     points = points[np.abs(points[:, 0] - seat[0]) < reach_m]
-    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < reach_m]
+    return points[distances_m(points[:, :2], seat) < reach_m]

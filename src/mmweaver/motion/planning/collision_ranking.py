@@ -14,13 +14,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.floor_geometry import distance_m
 from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_share
 from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
 
-MOST_TESTED, MOST_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
+MAX_TESTED, MAX_ANIMATED = 3, 1  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
 # Above a seat that was found there is room for a trunk, though the seat's own back may occlude it.
@@ -127,8 +128,8 @@ class _Ranking:
             if best.cost_m <= -_KEPT_M:
                 return best
             placements = placements[1:]
-        animations = MOST_ANIMATED
-        for estimate in self._refined(self._estimated(placements)[:MOST_TESTED]):
+        animations = MAX_ANIMATED
+        for estimate in self._refined(self._estimated(placements)[:MAX_TESTED]):
             if estimate.cost_m > best.cost_m - _WORTH_M and not estimate.is_clear:
                 continue
             tested = estimate
@@ -144,7 +145,7 @@ class _Ranking:
 
     def _refined(self, estimates: Sequence[_Tested]) -> Iterator[_Tested]:
         """Estimates with what is ahead of a sitter: as they come where they stay, the best first where they move."""
-        refined = (self._with_what_is_ahead(estimate) for estimate in estimates)
+        refined = (self._refined_ahead(estimate) for estimate in estimates)
         if all(estimate.placement.is_still for estimate in estimates):
             return refined
         return iter(_sorted(list(refined)))
@@ -182,10 +183,10 @@ class _Ranking:
         if _key(placement) not in self._sketches:
             sketch = samples.relative_to(placement.path)
             is_still = placement.is_still
-            self._sketches[_key(placement)] = sketch.without_repeats() if is_still else sketch.every_second_time()
+            self._sketches[_key(placement)] = sketch.deduplicated() if is_still else sketch.every_second_time()
         return self._tested(placement, samples, pose)
 
-    def _with_what_is_ahead(self, estimate: _Tested) -> _Tested:
+    def _refined_ahead(self, estimate: _Tested) -> _Tested:
         """An estimate that counts what is ahead of a sitter, too; of others it has all there is."""
         if estimate.samples is None or not estimate.placement.seats_m:
             return estimate
@@ -223,9 +224,7 @@ class _Ranking:
 
 def _is_found(scene: Scene, seat: tuple[float, float]) -> bool:
     """Whether a place to sit is on a seat of the room."""
-    return any(
-        np.hypot(*(found.position_m[:2] - np.array(seat))) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats
-    )
+    return any(distance_m(found.position_m[:2], seat) < max(found.size_m) / 2 + _ON_SEAT_M for found in scene.seats)
 
 
 def _sorted(estimates: Sequence[_Tested]) -> list[_Tested]:

@@ -16,7 +16,7 @@ from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import Scene
 from mmweaver.motion.language.places import Place
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import MotionPlan, Shape, Step, Way
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.targets import SEATS
@@ -34,7 +34,7 @@ _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which l
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
 DEEP_M = 0.03  # into furniture, where floor is tight: another way is tried first
 _ANY_NEAR_M, _ANY_FAR_M = 0.2, 30.0
-_MOST_RADARS = 3
+_MAX_RADARS = 3
 _MUCH_MORE = 2.0  # times the free floor: what a longer window must show to be of help
 ASSUMED_FLOOR = (
     "the photo shows no free floor for this: the person stands where floor is assumed, behind furniture or before what"
@@ -44,7 +44,7 @@ NARROW_FLOOR = (
     "no free floor is as wide as a body: the person stands in a gap that is deep enough for the trunk, and may touch"
     " what is next to it"
 )
-Way = tuple[MotionPlan, FloorMap, tuple[str, ...]]
+Option = tuple[MotionPlan, FloorMap, tuple[str, ...]]
 
 
 def relax_constraints(
@@ -83,7 +83,7 @@ def relax_constraints(
     raise first_error
 
 
-def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way]:
+def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Option]:
     yield plan, floor, ()
     elsewhere, turned_notes = going_on_elsewhere(plan)
     if turned_notes:
@@ -116,15 +116,13 @@ def _ways(plan: MotionPlan, floor: FloorMap, *, may_touch: bool) -> Iterator[Way
 
 def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
     """The plan with walks that only go on ('walks on', after a turn) led where there is room, and notes on them."""
-    walks = [
-        step for step in plan.steps[1:]
-        if step.lower in ("walk", "jog") and step.direction == "forwards" and not _SAYS_AHEAD & set(step.clause.split())
-    ]  # fmt: skip
+    ahead = [step for step in plan.steps[1:] if step.lower in ("walk", "jog") and step.direction == Way.FORWARDS]
+    walks = [step for step in ahead if not _SAYS_AHEAD & {*step.clause.split()}]
     notes = tuple(
         f"there is no room to go on ahead for {step.clause or step.name!r}: the person turns to where there is room"
         for step in walks
     )
-    steps = tuple(replace(step, direction="") if step in walks else step for step in plan.steps)
+    steps = tuple(replace(step, direction=None) if step in walks else step for step in plan.steps)
     return replace(plan, steps=steps), notes
 
 
@@ -137,7 +135,7 @@ def _like(floor: FloorMap, *, with_assumed: bool = False, is_tight: bool = False
 
 def _walks_somewhere(step: Step) -> bool:
     """Whether a step is a walk that leads to nothing in the room."""
-    return step.moves and step.lower in _WALKS and not step.target and step.direction != "seat" and _is_free(step)
+    return step.moves and step.lower in _WALKS and not step.target and step.direction != Way.SEAT and _is_free(step)
 
 
 def _travels(step: Step) -> bool:
@@ -156,7 +154,7 @@ def on_the_spot(plan: MotionPlan, is_meant: Callable[[Step], bool]) -> tuple[Mot
         if is_meant(step):
             lower, does = _ON_THE_SPOT.get(step.lower, ("march", "walks"))
             notes.append(f"there is no room for {step.clause or step.name!r}: the person {does} on the spot")
-            step = replace(step, lower=lower, direction="spot", count=0, arc_deg=0.0, target="")
+            step = replace(step, lower=lower, direction=Shape.SPOT, count=0, arc_deg=0.0, target="")
         steps.append(step)
     return replace(plan, steps=tuple(steps)), tuple(notes)
 
@@ -195,7 +193,7 @@ def recovery_options(floor: FloorMap, plan: MotionPlan, farthest_m: float = math
     radars = [
         name for name in PRESETS
         if PRESETS[name].range_m[0] <= near_m and PRESETS[name].range_m[-1] >= far_m
-    ][:_MOST_RADARS]  # fmt: skip
+    ][:_MAX_RADARS]  # fmt: skip
     if not (is_own or radars):
         return {}
     return {

@@ -7,7 +7,8 @@ from mmweaver.motion.animation.library.on_furniture import OFF_SEAT_AHEAD_M
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M, SIDE_AWAY_M
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
-from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.plan import Shape, Side, Step, Way
+from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
     SLOWER_TURNS,
@@ -32,7 +33,7 @@ _BEND_RADII_M = (1.3, 1.0, 0.8, 0.65, 0.5, 0.4)
 
 def is_curved_or_lateral(step: Step) -> bool:
     """Whether `lay_other` is what lays this step out."""
-    return step.lower in SPECIAL or (bool(step.arc_deg) and step.direction != "circle")
+    return step.lower in SPECIAL or (bool(step.arc_deg) and step.direction != Shape.CIRCLE)
 
 
 def lay_curved_or_lateral(
@@ -49,9 +50,9 @@ def lay_curved_or_lateral(
 
 def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -> float | None:
     """The direction, where forwards and backwards are relative to the person's heading even at the very start."""
-    if step.direction == "forwards":
+    if step.direction == Way.FORWARDS:
         return trajectory.heading_rad
-    if step.direction in ("backwards", "back"):
+    if step.direction in (Way.BACKWARDS, Way.BACK):
         return trajectory.heading_rad + np.pi
     return direction_rad
 
@@ -59,14 +60,14 @@ def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -
 def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
     """A bend through the requested angle, as wide as time and room allow."""
     direction = direction_rad
-    if direction is None or step.direction in ("left", "right"):
+    if direction is None or isinstance(step.direction, Side):
         chosen = first and not trajectory.heading_is_given
         direction = float(trajectory.rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
-    backwards = step.direction == "backwards"
+    backwards = step.direction == Way.BACKWARDS
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     lasts = step.end_s - begin - sum(ramps) / 2
-    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    either = random_sign(trajectory.rng) if step.either_side else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
     speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
     for radius in (speed * lasts / abs(bend), *_BEND_RADII_M):
@@ -93,7 +94,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
 def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
     """Sideways with the heading unchanged, to the given side or either."""
     direction = direction_rad
-    if direction is None or step.direction in ("forwards", "backwards", "back", "towards", "away"):
+    if direction is None or step.direction in (Way.FORWARDS, Way.BACKWARDS, Way.BACK, Way.TOWARDS, Way.AWAY):
         direction = trajectory.heading_rad + float(trajectory.rng.choice([-0.5, 0.5])) * np.pi
     else:  # perpendicular to the heading, on the given side
         left = trajectory.heading_rad + 0.5 * np.pi
@@ -143,7 +144,7 @@ def _append_move(trajectory: Trajectory, move: Move, places: Float[Array, "n 2"]
 
 def turn_by(trajectory: Trajectory, step: Step) -> None:
     """Turns by `step.turn_deg`, to the left where positive; more than half a turn is possible."""
-    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    either = random_sign(trajectory.rng) if step.either_side else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(SLOWER_TURNS[step.speed + 1] * (0.25 + abs(angle_rad) / 3.2), max(span_s, 0.6))
     trajectory.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
@@ -178,9 +179,9 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     if step.style in ("left", "right") and (step.posture == "floor" or step.lower == "get_up"):
         heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
         low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
-    along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(heading_rad), np.sin(heading_rad)])
+    along = np.linspace(low, high, 24)[:, None] * unit_vector(heading_rad)
     ahead_m = OFF_SEAT_AHEAD_M if step.lower == "fall_off" else 0.0
-    ahead = np.array([np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)])
+    ahead = unit_vector(trajectory.heading_rad)
     places = trajectory.position_m + ahead_m * ahead + along
     short_m = np.maximum(LYING_ROOM_M - trajectory.floor.clearance_at(places), 0.0)
     if short_m.any():

@@ -11,6 +11,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.language.places import Place
+from mmweaver.motion.language.plan import Direction
+from mmweaver.motion.planning.floor_geometry import distances_m
 
 Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
@@ -22,11 +24,11 @@ TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
 _UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
 _OFF_GRID_COST = 3.0
-_MOST_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
+_MAX_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
 _STEP_M = 0.04  # between the positions at which a path is tested
 _SEAT_EDGE_M = 0.05  # clearance next to the seat just left
 _AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
-HEIGHT_STEP_M, _MOST_CACHED = 0.05, 12
+HEIGHT_STEP_M, _MAX_CACHED = 0.05, 12
 _latest: list["FloorMap"] = []
 
 
@@ -55,7 +57,7 @@ class FloorMap:
             if floor.scene is scene and floor._key == key:
                 return floor
         floor = cls(scene, *key)
-        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MOST_CACHED]
+        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MAX_CACHED]
         return floor
 
     @property
@@ -238,18 +240,18 @@ class FloorMap:
         return np.all(self.can_stand(starts_m[:, None] + steps[..., None] * ways[:, None]), axis=1)
 
     @cached_property
-    def _starts(self) -> dict[str, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
+    def _starts(self) -> dict[Direction | None, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
         return {}
 
-    def straight_starts(self, direction: str) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
+    def straight_starts(self, direction: Direction | None) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
         """Walkable places (x, y), and how far in metres one can go straight from each; at most `_FARTHEST_M`.
 
-        `direction` is left, right, towards or away (from the radar), or "" for the best of several. Kept, as most walks
-        of a room need the same few.
+        `direction` is left, right, towards or away (from the radar), or None for the best of several. Kept, as most
+        walks of a room need the same few.
         """
         if direction not in self._starts:
             cells = self.walkable_m
-            cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+            cells = cells[:: max(1, len(cells) // _MAX_STARTS)]
             radial = np.arctan2(cells[:, 1], cells[:, 0])
             ways = {"left": [np.pi + 0 * radial], "right": [0 * radial], "towards": [radial + np.pi], "away": [radial]}
             tried = ways.get(direction, [turn + 0 * radial for turn in np.arange(8) * np.pi / 4])
@@ -285,7 +287,7 @@ class FloorMap:
         positions_m = self.walkable_m
         if not len(positions_m):
             return None
-        return positions_m[np.argmin(np.hypot(*(positions_m - position_m).T))]
+        return positions_m[np.argmin(distances_m(positions_m, position_m))]
 
     def check_start(self, start_m: tuple[float, float]) -> None:
         """Raises InputError, naming the nearest walkable position, where nobody can start at `start_m` (x, y)."""

@@ -10,8 +10,9 @@ from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.records import Plane, Scene
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.floor_geometry import distance_m, distances_m
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.targets import SEATS, kinds_of, what_was_found
+from mmweaver.motion.planning.targets import SEATS, describe_found, kinds_of
 
 Array = np.ndarray
 NEAR_M = 1.2  # from the middle of what one stands near
@@ -65,7 +66,7 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
         if part.relation == "between":
             inside &= _between(part, floor.scene, cells)
         elif part.landmark == "wall":
-            inside &= _at_wall(part, floor.scene, cells)
+            inside &= _near_wall(part, floor.scene, cells)
         elif part.landmark:
             middles = _middles(part.landmark, part, floor.scene)
             inside &= np.any([_at(part, middle, cells) for middle in middles], axis=0)
@@ -111,7 +112,7 @@ def _middles(kind: str, place: Place, scene: Scene) -> list[Float[Array, "2"]]:
         way_on = "" if kind == "corner" else f" give its position with --landmark {kinds_of(kind)[0]}=X,Y, or"
         what = "corner of two walls" if kind == "corner" else kind
         raise InputError(
-            f"{place.words!r}: no {what} was found in the photo; {what_was_found(scene)};{way_on} say another place"
+            f"{place.words!r}: no {what} was found in the photo; {describe_found(scene)};{way_on} say another place"
         )
     return found
 
@@ -122,7 +123,7 @@ def _walls(place: Place, scene: Scene) -> list[Float[Array, "2 2"]]:
     walls = given or [_ends(plane) for plane in scene.planes if plane.kind == "wall"]
     if not walls:
         raise InputError(
-            f"{place.words!r}: no wall was found in the photo; {what_was_found(scene)}; give its position with"
+            f"{place.words!r}: no wall was found in the photo; {describe_found(scene)}; give its position with"
             " --landmark wall=X,Y, or say another place"
         )
     return walls
@@ -162,7 +163,7 @@ def _nearest_on(wall: Float[Array, "2 2"], points: Float[Array, "point 2"]) -> F
     return wall[0] + share[:, None] * along
 
 
-def _at_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _near_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Which cells are at, or near, one of the walls."""
     away = np.min([np.hypot(*(cells - _nearest_on(wall, cells)).T) for wall in _walls(place, scene)], axis=0)
     return away <= (AT_WALL_M if place.relation == "against" else NEAR_WALL_M)
@@ -192,9 +193,9 @@ def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Ar
     if kinds[0] == kinds[1]:
         found = list(combinations(ones, 2))
     else:
-        found = [(one, other) for one in ones for other in others if float(np.hypot(*(one - other))) > 1e-6]
+        found = [(one, other) for one in ones for other in others if distance_m(one, other) > 1e-6]
     if not found:
-        raise InputError(f"{place.words!r}: only one of them was found in the photo; {what_was_found(scene)}")
+        raise InputError(f"{place.words!r}: only one of them was found in the photo; {describe_found(scene)}")
     return found
 
 
@@ -204,10 +205,10 @@ def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) 
     aside = np.array([away[1], -away[0]])  # to the right in the picture
     along, across = (cells - middle) @ away, (cells - middle) @ aside
     if place.relation == "near" or place.landmark == "corner":
-        near = np.hypot(*(cells - middle).T)
+        near = distances_m(cells, middle)
         return near <= max(NEAR_M, float(near.min(initial=np.inf)) + 0.3) * (near.min(initial=np.inf) < 1.6)
     if place.relation == "in" and place.landmark == "door":
-        return np.hypot(*(cells - middle).T) <= DOORWAY_M
+        return distances_m(cells, middle) <= DOORWAY_M
     if place.relation in ("behind", "front"):
         depth = along if place.relation == "behind" else -along
         return (depth > BESIDE_M) & (depth < REACH_M) & (np.abs(across) < WIDTH_M)
@@ -229,5 +230,5 @@ def _within(place: Place, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]
     if place.relation == "close":
         return y <= np.quantile(y, SHARE)
     middle = (cells.max(axis=0) + cells.min(axis=0)) / 2
-    apart = np.hypot(*(cells - middle).T)
+    apart = distances_m(cells, middle)
     return apart <= np.quantile(apart, SHARE)

@@ -22,7 +22,7 @@ _INSET_M, _LEG_STEP_M, _TOP_THICKNESS_M, _LEG_HALF_M = (
     0.04,
     0.025,
 )  # legs: from the corner, spacing, top, width
-_LEAST_UNSEEN = 0.6  # a leg is possible if this share of it is occluded or outside the picture
+_MIN_UNSEEN = 0.6  # a leg is possible if this share of it is occluded or outside the picture
 _RIM_M, _SLICE_M = (0.58, 1.05), 0.03  # heights of table tops, tested slice by slice
 _THIN_M, _LONG_M = 0.12, 0.55  # how thick a top is at most, and how long at least
 _CELL_M, _REACH_M = 0.05, 5.0  # grid in which tops and legs are looked for, and its half side
@@ -101,7 +101,7 @@ def _rectangle(scene: Scene, plane: Plane) -> Points:
     return (plane.centre_m + u[:, None] * plane.axis_u + v[None] * plane.axis_v).reshape(-1, 3)
 
 
-def between_low_points(scene: Scene, points: Points) -> Float[np.ndarray, "between 3"]:
+def low_gap_points(scene: Scene, points: Points) -> Float[np.ndarray, "between 3"]:
     """Points between measured ones of one level: rows of pixels are far apart on a bed that is seen at a flat angle."""
     side = int(2 * _REACH_M / _CELL_M)
     cell, inside = _cells(points, side)
@@ -153,7 +153,7 @@ def _behind_rims(scene: Scene, tops: Points) -> Float[np.ndarray, "behind 3"]:
 
 def _is_possible(scene: Scene, leg: Points) -> bool:
     """Whether most of a leg is occluded or lies outside the picture."""
-    return bool((~_seen_through(scene, leg)).mean() >= _LEAST_UNSEEN)
+    return bool((~_seen_through(scene, leg)).mean() >= _MIN_UNSEEN)
 
 
 def _seen_through(scene: Scene, points: Points) -> np.ndarray:

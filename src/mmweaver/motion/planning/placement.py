@@ -15,8 +15,8 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.planning.body_state import BodyState
-from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
 from mmweaver.motion.planning.collision import PulledChair
+from mmweaver.motion.planning.floor_geometry import distances_m, random_choice, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
@@ -24,12 +24,13 @@ from mmweaver.motion.planning.seating import Sitting, usable_seats
 from mmweaver.motion.planning.separation import is_clear_of
 from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
+from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 
 Array = np.ndarray
-MOST_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
+MAX_TRIES, TRIES, ENOUGH = 140, 28, 10  # candidates tried for the first, for all, and found, at most
 LEAVES_SEATS = 2  # the attempt that leaves the room's seats, also made where nothing can be done from any of them
 ENOUGH_SEATED = 14  # of more ways to sit, where the usual ones touch something
-_SMALL_M2, MOST_TRIES_WHERE_SMALL = 0.5, 40  # so little floor is soon searched
+_SMALL_M2, MAX_TRIES_IF_SMALL = 0.5, 40  # so little floor is soon searched
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
 _SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
@@ -58,7 +59,7 @@ class Placement:
         heading_rad = float(self.path.facing_rad(end_s)[0])
         sitting, height_m = None, self._last_seat_height_m()
         if height_m is not None:
-            behind_m = pelvis_behind_feet_m(body, height_m) * np.array([np.cos(heading_rad), np.sin(heading_rad)])
+            behind_m = pelvis_behind_feet_m(body, height_m) * unit_vector(heading_rad)
             sitting = Sitting(feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m,
                               chair=self.chair)  # fmt: skip
         return BodyState(
@@ -113,9 +114,9 @@ def place(
     )
     trajectories: list[Trajectory] = []
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
-    enough = MOST_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
+    enough = MAX_TRIES if floor.is_tight else enough  # every one fits; the one that touches least is looked for
     is_small = not floor.is_tight and len(floor.walkable_m) * floor.cell_m**2 < _SMALL_M2
-    for tried in range(MOST_TRIES_WHERE_SMALL if is_small else MOST_TRIES):
+    for tried in range(MAX_TRIES_IF_SMALL if is_small else MAX_TRIES):
         if len(trajectories) >= enough or (trajectories and tried >= TRIES and not floor.is_tight):
             break
         try:
@@ -143,7 +144,7 @@ def _open_choices(floor: FloorMap, seed: int, heading_rad: float | None, is_vari
     cells = floor.walkable_m
     rng = stream(seed, "motion", "open choices")
     facing_rad = float(rng.normal(0, 0.35)) if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
-    spot = cells[int(rng.integers(len(cells)))] if len(cells) else None
+    spot = random_choice(cells, rng) if len(cells) else None
     return {
         "heading_rad": heading_rad,
         "off_radar_rad": facing_rad if is_varied else None,
@@ -158,7 +159,7 @@ def _occlusion_costs(trajectories: list[Trajectory], plan: MotionPlan, floor: Fl
     cost = np.full(tracks_m.shape[:2], _OCCLUDED_COST)
     for trajectory, costs, track_m in zip(trajectories, cost, tracks_m, strict=True):
         for seat in trajectory.seats_m:
-            costs[np.hypot(*(track_m - np.array(seat)).T) < _SEAT_RADIUS_M] = _OCCLUDED_SITTING_COST
+            costs[distances_m(track_m, seat) < _SEAT_RADIUS_M] = _OCCLUDED_SITTING_COST
     return (cost * occluded_along(floor.scene, tracks_m)).max(axis=1)
 
 

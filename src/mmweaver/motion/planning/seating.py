@@ -10,6 +10,7 @@ from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behi
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
+from mmweaver.motion.planning.floor_geometry import distance_m, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -51,7 +52,7 @@ class Sitting:
 
     def moved_ahead(self, by_m: float) -> "Sitting":
         """The same farther ahead on the seat."""
-        shift_m = by_m * np.array([np.cos(self.facing_rad), np.sin(self.facing_rad)])
+        shift_m = by_m * unit_vector(self.facing_rad)
         edge_m = self.edge_m - by_m
         return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
 
@@ -59,7 +60,7 @@ class Sitting:
         """The same elsewhere, (x, y)."""
         return replace(self, feet_m=self.feet_m + by_m, seat_m=self.seat_m + by_m)
 
-    def with_clear_knees(self) -> "Sitting":
+    def clear_knees(self) -> "Sitting":
         """So far ahead that the backs of the knees are past the seat's edge, as people sit on beds and deep couches."""
         needed_m = self.edge_m + _KNEE_M - self.knees_m
         by_m = min(needed_m, self.edge_m - _ON_SEAT_M)
@@ -74,17 +75,17 @@ def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
 def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
     """The seats that the word stands for: couches are wide, chairs are not; edges of beds are beds only."""
     if word in _COUCHES:
-        return [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
+        return [seat for seat in seats if seat.width_m >= _COUCH_M and not _is_bed(seat, scene)]
     if word == "bed":
-        return [seat for seat in seats if _on_bed(seat, scene)]
+        return [seat for seat in seats if _is_bed(seat, scene)]
     if word in _CHAIRS:
-        return [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
-    return [seat for seat in seats if not _on_bed(seat, scene)]
+        return [seat for seat in seats if seat.width_m < _COUCH_M and not _is_bed(seat, scene)]
+    return [seat for seat in seats if not _is_bed(seat, scene)]
 
 
 def long_enough_to_lie_on(seats: list[Sitting], scene: Scene) -> list[Sitting]:
     """Couches and beds on which a person can lie, along the edge where one sits."""
-    return [seat for seat in seats if seat.width_m >= LYING_M or _on_bed(seat, scene)]
+    return [seat for seat in seats if seat.width_m >= LYING_M or _is_bed(seat, scene)]
 
 
 def centred_to_lie(seats: list[Sitting], height_m: float) -> list[Sitting]:
@@ -95,22 +96,22 @@ def centred_to_lie(seats: list[Sitting], height_m: float) -> list[Sitting]:
     centred = []
     for seat in seats:
         aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
-        along_m = [float((other.seat_m - seat.seat_m) @ aside) for other in seats if _on_same_couch(seat, other)]
+        along_m = [float((other.seat_m - seat.seat_m) @ aside) for other in seats if _share_couch(seat, other)]
         shift_m = (float(np.mean(along_m)) + _LYING_OFF_CENTRE * height_m) * aside
         centred.append(replace(seat, feet_m=seat.feet_m + shift_m, seat_m=seat.seat_m + shift_m))
     return centred
 
 
-def _on_same_couch(one: Sitting, other: Sitting) -> bool:
+def _share_couch(one: Sitting, other: Sitting) -> bool:
     """Whether two places to sit belong to one couch: they face alike, are as high and nearer than its width."""
     faces_alike = np.cos(one.facing_rad - other.facing_rad) > _SAME_FACING_COS
-    is_near = float(np.hypot(*(one.seat_m - other.seat_m))) < max(one.width_m, other.width_m)
+    is_near = distance_m(one.seat_m, other.seat_m) < max(one.width_m, other.width_m)
     return bool(faces_alike and is_near and abs(one.height_m - other.height_m) < _SAME_HEIGHT_M)
 
 
-def _on_bed(seat: Sitting, scene: Scene) -> bool:
+def _is_bed(seat: Sitting, scene: Scene) -> bool:
     beds = [mark for mark in scene.landmarks if mark.kind == "bed"]
-    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_RADIUS_M for mark in beds)
+    return any(distance_m(seat.seat_m, mark.position_m[:2]) < _BED_RADIUS_M for mark in beds)
 
 
 def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
@@ -120,13 +121,13 @@ def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
         sitting = _sitting(seat, floor, body)
         usable = LOWEST_M <= sitting.height_m <= HIGHEST_M
         if usable and not _has_room_for_shins(sitting, floor.scene):
-            found += _at_edges(sitting, floor, body)
+            found += _edge_sittings(sitting, floor, body)
         elif usable and bool(floor.sees(sitting.seat_m)):
             found.append(sitting)
     return found
 
 
-def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
+def _edge_sittings(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
     """Where somebody can sit on a wide surface on which a seat was found too far from its edges: on beds, mostly.
 
     From there straight ahead and to the sides, as far as it goes on at about one height, until the shins are free.
@@ -134,7 +135,7 @@ def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> l
     obstacles, found = CollisionMap.of(floor.scene), []
     for turn in _EDGES_RAD:
         facing = sitting.facing_rad + turn
-        ahead = np.array([np.cos(facing), np.sin(facing)])
+        ahead = unit_vector(facing)
         for by_m in np.arange(_EDGE_STEP_M, _FARTHEST_EDGE_M, _EDGE_STEP_M):
             place = sitting.seat_m + by_m * ahead
             height = obstacles.low_surface_m(place)
@@ -145,7 +146,7 @@ def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> l
             edge = replace(
                 sitting, feet_m=feet_m, facing_rad=facing, height_m=height, seat_m=place, width_m=_BED_WIDTH_M,
                 edge_m=_BODY_WIDTH_M / 2, knees_m=knees_m,
-            ).with_clear_knees()  # fmt: skip
+            ).clear_knees()  # fmt: skip
             aside = _KNEES_APART_M * np.array([-ahead[1], ahead[0]])
             ways = [edge.moved(side * aside) for side in (-1.0, 0.0, 1.0)]
             is_floor = floor.is_seen_floor(np.stack([way.feet_m for way in ways])).all()
@@ -156,14 +157,14 @@ def _at_edges(sitting: Sitting, floor: FloorMap, body: SkeletonProportions) -> l
 
 
 def _has_room_for_shins(sitting: Sitting, scene: Scene) -> bool:
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     knees_m = sitting.seat_m + (sitting.knees_m + _KNEE_M) * ahead
     return CollisionMap.of(scene).has_room_for_shins(knees_m, sitting.feet_m, sitting.height_m)
 
 
 def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
     height = float(seat.position_m[2]) - floor.scene.floor_z_m
-    ahead = np.array([np.cos(seat.facing_rad), np.sin(seat.facing_rad)])
+    ahead = unit_vector(seat.facing_rad)
     place = np.asarray(seat.position_m[:2], dtype=float)
     return Sitting(
         feet_m=place + pelvis_behind_feet_m(body, height) * ahead,
@@ -174,7 +175,7 @@ def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
         depth_m=float(seat.size_m[1]),
         edge_m=float(seat.size_m[1]) / 2,
         knees_m=knees_ahead_m(body, height),
-    ).with_clear_knees()
+    ).clear_knees()
 
 
 def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
@@ -186,27 +187,27 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     if kind == 3:
         back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
         further = replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
-        return replace(further, edge_m=sitting.edge_m + float(np.hypot(*back))).with_clear_knees()
+        return replace(further, edge_m=sitting.edge_m + float(np.hypot(*back))).clear_knees()
     return turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
 
 
 def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     """The same seat in any possible way: turned, and ahead, behind, left or right of its centre."""
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     aside = np.array([-ahead[1], ahead[0]])
     spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_WIDTH_M) / 2, 0.03, 0.3)
     shift = rng.uniform(-1, 1, 2) * spare
     moved = shift[0] * ahead + shift[1] * aside
     sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
-    sitting = replace(sitting, edge_m=sitting.edge_m - float(shift[0])).with_clear_knees()
+    sitting = replace(sitting, edge_m=sitting.edge_m - float(shift[0])).clear_knees()
     return turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
 def pulled_out(sitting: Sitting, floor: FloorMap, by_m: float) -> Sitting | None:
     """On the same chair pulled back from what is ahead of it; None for a couch or bed, or without floor behind."""
-    if sitting.width_m >= _COUCH_M or _on_bed(sitting, floor.scene):
+    if sitting.width_m >= _COUCH_M or _is_bed(sitting, floor.scene):
         return None
-    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    ahead = unit_vector(sitting.facing_rad)
     aside = np.array([-ahead[1], ahead[0]])
     place = (float(sitting.seat_m[0]), float(sitting.seat_m[1]))
     moved = sitting.seat_m - by_m * ahead
@@ -236,12 +237,12 @@ def turned(sitting: Sitting, turn: float) -> Sitting:
         facing_rad=sitting.facing_rad + turn,
         edge_m=sitting.edge_m * float(np.cos(turn)) + corner_m * abs(float(np.sin(turn))),
         cost=0.3 + _TURN_COST * abs(turn) + (PULLED_COST + sitting.chair.by_m if sitting.chair else 0.0),
-    ).with_clear_knees()
+    ).clear_knees()
 
 
 def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:
     """A stool behind somebody who stands at `feet_m` (x, y)."""
-    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * np.array([np.cos(facing_rad), np.sin(facing_rad)])
+    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * unit_vector(facing_rad)
     return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
 
 

@@ -8,7 +8,7 @@ from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
 from mmweaver.geometry.body_capsules import TRUNK, TRUNK_WIDTH_PER_DEPTH, capsule_between, part_of, scale_of
 
 Array = np.ndarray
-LEAST_PELVIS_DISTANCE_M, LEAST_SURFACE_DISTANCE_M = 0.5, 0.02
+MIN_PELVIS_DISTANCE_M, MIN_SURFACE_DISTANCE_M = 0.5, 0.02
 CHECK_RATE_HZ = 20.0  # how often the bodies are compared: a limb at 3 m/s moves 15 cm in between
 SPHERES_PER_BONE = 4
 TRACK_MARGIN_M, HALF_BODY_WIDTH_M = 0.15, 0.4  # of somebody whose body is not posed yet, only the pelvis's track
@@ -25,7 +25,7 @@ _HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretche
 def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
     """Whether two people keep their least distances at all times."""
     pelvis_m, body_m = separations_m(one, other)
-    return pelvis_m >= LEAST_PELVIS_DISTANCE_M and body_m >= LEAST_SURFACE_DISTANCE_M
+    return pelvis_m >= MIN_PELVIS_DISTANCE_M and body_m >= MIN_SURFACE_DISTANCE_M
 
 
 def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
@@ -47,7 +47,7 @@ def is_clear_of(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], 
     joints_m = _at(other, time_s)[:, :, :2]
     distance_m = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
     pelvis_m = distance_m[:, joint("pelvis")].min()
-    return bool(pelvis_m >= LEAST_PELVIS_DISTANCE_M + TRACK_MARGIN_M and distance_m.min() >= HALF_BODY_WIDTH_M)
+    return bool(pelvis_m >= MIN_PELVIS_DISTANCE_M + TRACK_MARGIN_M and distance_m.min() >= HALF_BODY_WIDTH_M)
 
 
 def _common_times(one: PoseSequence, other: PoseSequence) -> Float[Array, " time"]:

@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene
 from mmweaver.motion.language.lexicon import TARGETS
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan, Step
+from mmweaver.motion.planning.floor_geometry import bearing_rad, distance_m, distances_m, random_choice, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
@@ -49,12 +50,12 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
         if step.moves and not step.place and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
                 f"for {step.clause or step.target!r}: no {step.target} was found in the photo;"
-                f" {what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
+                f" {describe_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
                 " right of and ahead of the radar) or a class mask (--classes)"
             )
         if step.facing in TARGETS and not faced_landmarks(step, scene):
             raise InputError(
-                f"for {step.clause!r}: no {step.facing} was found in the photo; {what_was_found(scene)}; give its"
+                f"for {step.clause!r}: no {step.facing} was found in the photo; {describe_found(scene)}; give its"
                 f" position with --landmark {kinds_of(step.facing)[0]}=X,Y, or say another side to face"
             )
 
@@ -70,7 +71,7 @@ def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
     ]
 
 
-def without_targets(plan: MotionPlan) -> MotionPlan:
+def drop_targets(plan: MotionPlan) -> MotionPlan:
     """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
     lost = [step for step in plan.steps if _goes_to_landmark(step)]
     aimed = [step for step in plan.steps if step.facing in TARGETS]
@@ -107,9 +108,9 @@ def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> F
     marks = _goals(floor, step, rng)
     if not marks:
         return None
-    mark = marks[int(rng.integers(len(marks)))]
+    mark = random_choice(marks, rng)
     length, angle = (step.end_s - step.start_s) * rng.uniform(0.5, 1.2), rng.uniform(0, 2 * np.pi)
-    return np.array(mark.approach_m) + length * np.array([np.cos(angle), np.sin(angle)])
+    return np.array(mark.approach_m) + length * unit_vector(angle)
 
 
 def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
@@ -119,7 +120,7 @@ def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     """
     marks = sorted(
         _goals(trajectory.floor, step, trajectory.rng),
-        key=lambda mark: float(np.hypot(*(mark.approach_m - trajectory.position_m))),
+        key=lambda mark: distance_m(mark.approach_m, trajectory.position_m),
     )
     for mark in marks:
         goal = _standing_position_m(trajectory.floor, mark)
@@ -133,14 +134,14 @@ def walk_along(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     """Walks a given route. Raises InputError where it is not free, NoTrajectory where the time is too short for it."""
     corners = [np.array(corner, float) for corner in step.route_m]
     if not first:
-        corners = corners if float(np.hypot(*(corners[0] - trajectory.position_m))) > 0.05 else corners[1:]
+        corners = corners if distance_m(corners[0], trajectory.position_m) > 0.05 else corners[1:]
     else:
         corners = corners[1:]
     position = trajectory.position_m
     for corner in corners:
         gap = corner - position
         length = float(np.hypot(*gap))
-        free = trajectory.floor.free_length_m(position, float(np.arctan2(gap[1], gap[0])), length)
+        free = trajectory.floor.free_length_m(position, bearing_rad(gap), length)
         if free < length - 1e-6:
             stop = position + gap * free / max(length, 1e-9)
             raise InputError(
@@ -151,9 +152,7 @@ def walk_along(trajectory: Trajectory, step: Step, *, first: bool) -> None:
         position = corner
     last = corners[-1] - (corners[-2] if len(corners) > 1 else trajectory.position_m)
     x, y = corners[-1].tolist()
-    end = Landmark(
-        kind="path", position_m=np.array([x, y, 0.0]), approach_m=(x, y), facing_rad=float(np.arctan2(last[1], last[0]))
-    )
+    end = Landmark(kind="path", position_m=np.array([x, y, 0.0]), approach_m=(x, y), facing_rad=bearing_rad(last))
     if not _lay_legs(trajectory, step, corners, end, first=first):
         raise NoTrajectory("no time for the path")
 
@@ -183,7 +182,7 @@ def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] |
     if bool(floor.can_stand(approach)):
         return approach
     near = floor.nearest_walkable_m(approach)
-    return near if near is not None and float(np.hypot(*(near - approach))) < _NEAR_M else None
+    return near if near is not None and distance_m(near, approach) < _NEAR_M else None
 
 
 def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
@@ -195,7 +194,7 @@ def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Arra
     if not len(places):
         return None
     some = places[trajectory.rng.integers(len(places), size=_NUM_CORNERS)]
-    some = some[np.argsort(np.hypot(*(some - start).T) + np.hypot(*(some - goal).T))]
+    some = some[np.argsort(distances_m(some, start) + distances_m(some, goal))]
     some = some[floor.are_free_ways(np.broadcast_to(start, some.shape), some)]
     some = some[floor.are_free_ways(some, np.broadcast_to(goal, some.shape))]
     return [some[0], goal] if len(some) else None
@@ -233,7 +232,7 @@ def _lay_legs(
     return True
 
 
-def what_was_found(scene: Scene) -> str:
+def describe_found(scene: Scene) -> str:
     counts = Counter(mark.kind for mark in scene.landmarks)
     if scene.seats:
         counts["seat"] = len(scene.seats)

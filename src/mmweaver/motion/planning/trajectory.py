@@ -7,8 +7,9 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.library.uneven_gait import LUNGES_HZ
 from mmweaver.motion.animation.root_path import Move, RootPath, Turn
-from mmweaver.motion.language.plan import HOPPING, Step
+from mmweaver.motion.language.plan import HOPPING, Shape, Step, Way
 from mmweaver.motion.planning.collision import PulledChair
+from mmweaver.motion.planning.floor_geometry import random_sign, unit_vector
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -58,7 +59,7 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
         low, high = ((0.25, 0.35), (0.4, 0.6), (0.6, 0.75))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
-    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0) * step.pace
+    return float(rng.uniform(low, high)) * (0.7 if step.direction == Way.BACKWARDS else 1.0) * step.pace
 
 
 def slowest_mps(step: Step, speed_mps: float) -> float:
@@ -150,7 +151,7 @@ class Trajectory:
 
 def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
     """Turns the body along the direction (against it when going backwards); returns when the first stride can begin."""
-    heading = direction_rad + np.pi if step.direction == "backwards" else direction_rad
+    heading = direction_rad + np.pi if step.direction == Way.BACKWARDS else direction_rad
     if first:
         trajectory.start_heading_rad = trajectory.heading_rad = heading
         return start_s
@@ -247,7 +248,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
-        free = _to_where_knees_turn_m(trajectory, direction, free) if step.lower == "crawl" else free
+        free = _knee_turn_reach_m(trajectory, direction, free) if step.lower == "crawl" else free
         if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
         ramps = (0.0 if begun else ramp_s, ramp_s)
@@ -276,7 +277,7 @@ def _pacing_m(step: Step, speed_mps: float) -> float:
     """How far who walks to and fro goes before turning back, in metres; 0 where no time or no word asks for that."""
     lasts_s, crawls = step.end_s - step.start_s, step.lower == "crawl"
     least_s, most_s = _TO_AND_FRO_ON_KNEES_WITHIN_S if crawls else _TO_AND_FRO_WITHIN_S
-    if step.direction != "pacing" or not least_s < lasts_s < most_s:
+    if step.direction != Shape.PACING or not least_s < lasts_s < most_s:
         return 0.0
     turning_s = np.pi / CRAWLING_TURN_RADPS if crawls else 0.0
     return min(PACED_M.get(step.lower, PACED_M["walk"]), speed_mps * (lasts_s - turning_s - 1.2) / 2)
@@ -286,17 +287,17 @@ def _there_and_back_m(trajectory: Trajectory, step: Step, direction_rad: float, 
     """How far who goes to and fro goes at most; who crawls needs room to turn there, else goes one way: 0."""
     if step.lower != "crawl" or not paced_m:
         return paced_m
-    roomy_m = _to_where_knees_turn_m(trajectory, direction_rad, min(free_m, paced_m))
+    roomy_m = _knee_turn_reach_m(trajectory, direction_rad, min(free_m, paced_m))
     if not roomy_m:
         trajectory.cost += 2.0
         trajectory.notes.append(f"there is no room to turn on hands and knees for {step.clause!r}; one way is shown")
     return roomy_m
 
 
-def _to_where_knees_turn_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
+def _knee_turn_reach_m(trajectory: Trajectory, direction_rad: float, free_m: float) -> float:
     """How far a crawling body goes before it turns: to the last place with room for that, 0 without one."""
     gone_m = np.arange(PACING_LEG_M["crawl"], free_m, 0.05)
-    places = trajectory.position_m + gone_m[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    places = trajectory.position_m + gone_m[:, None] * unit_vector(direction_rad)
     roomy = gone_m[trajectory.floor.clearance_at(places) > TURNS_ON_KNEES_M] if len(gone_m) else gone_m
     return float(roomy[-1]) if len(roomy) else 0.0
 
@@ -317,7 +318,7 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
     rng = trajectory.rng
-    side = float(np.sign(step.arc_deg)) if step.arc_deg and step.style != "either" else float(rng.choice([-1.0, 1.0]))
+    side = float(np.sign(step.arc_deg)) if step.arc_deg and not step.either_side else random_sign(rng)
     chosen = first and not trajectory.heading_is_given
     direction = float(rng.uniform(0, 2 * np.pi)) if chosen else trajectory.heading_rad
     begin = face_along(trajectory, step, direction, step.start_s, first=first)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.records import Scene
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import MotionPlan, Shape, Side, Step, Way
 from mmweaver.motion.planning.approaches import (
     CLOSEST_FEET_M,
     Approach,
@@ -26,6 +26,7 @@ from mmweaver.motion.planning.curved_and_lateral_paths import (
     lay_curved_or_lateral,
     turn_by,
 )
+from mmweaver.motion.planning.floor_geometry import bearing_rad, distance_m, distances_m, random_choice
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
@@ -68,8 +69,8 @@ _SAME_PLACE_M = 0.1
 _SAME_SEAT_M = 0.6  # places to sit so near belong to one seat
 _KNOWN_WAYS = 0.5  # share of the tries, where the usual ways to sit collide, on which the known ones are taken
 _PULLED, _PULLED_M, _PULLED_TURN_RAD = 0.4, (0.08, 0.45), 0.5  # how often chairs are tried pulled out, how far
-_STRAIGHT = ("left", "right", "towards", "away", "")
-_USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
+_STRAIGHT = (*Side, Way.TOWARDS, Way.AWAY, None)
+_DEFAULT_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35, "walking_lunge": 0.5}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
 _RUN_OF_USUAL = 1.0  # a run, which is not slowed down as far as a walk
 _LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
@@ -148,7 +149,7 @@ class CandidateSampler:
                 trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
         trajectory.cost += float(self.rng.uniform(0, 0.5))
         if self.favourite_m is not None and self.start_m is None:
-            gap_m = float(np.hypot(*(np.array(trajectory.start_m) - self.favourite_m)))
+            gap_m = distance_m(trajectory.start_m, self.favourite_m)
             trajectory.cost += FAVOURITE_COST_PER_M * min(gap_m, 2.0)
         return trajectory
 
@@ -191,7 +192,7 @@ class CandidateSampler:
         if not lies_on_seat(self.plan):
             return ways
         middles_m = [one.seat_m for one in self._seats()]
-        return [way for way in ways if any(np.hypot(*(way.sitting.seat_m - at)) < _NEAR_MIDDLE_M for at in middles_m)]
+        return [way for way in ways if any(distance_m(way.sitting.seat_m, at) < _NEAR_MIDDLE_M for at in middles_m)]
 
     def _ways_of(self, seat: str) -> list[Approach]:
         """The ways to the seats of a word, in random order."""
@@ -201,9 +202,9 @@ class CandidateSampler:
     def _seat_ahead(self, trajectory: Trajectory, step: Step, following: Step | None) -> Approach | None:
         """How a walk ends at a seat; None where it does not, or no way fits."""
         sits_down = following is not None and following.lower == "sit_down"
-        if not sits_down and step.direction != "seat":
+        if not sits_down and step.direction != Way.SEAT:
             return None
-        named = step.seat if step.direction == "seat" else ""
+        named = step.seat if step.direction == Way.SEAT else ""
         ways = self._ways_of((following.seat if following and sits_down else "") or named)
         return approach_from(trajectory, step, ways, _direction_rad(trajectory, step))
 
@@ -222,7 +223,7 @@ class CandidateSampler:
             usable = preferred(seats, first.seat, self.floor.scene)
             if first.place is not None:
                 cells = self.floor.place_cells[first.place]
-                usable = [seat for seat in usable if np.hypot(*(cells - seat.seat_m).T).min() < _SEAT_AT_PLACE_M]
+                usable = [seat for seat in usable if distances_m(cells, seat.seat_m).min() < _SEAT_AT_PLACE_M]
             if any(step.lower not in ("sit", "sit_down", "lie_on_seat") for step in self.plan.steps):
                 # Getting up needs room in front of the seat, where a table may stand.
                 free = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
@@ -239,7 +240,7 @@ class CandidateSampler:
         spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
         if self.off_radar_rad is not None and not first.moves:
-            facing = float(np.arctan2(-spot[1], -spot[0])) + self.off_radar_rad
+            facing = bearing_rad(-spot) + self.off_radar_rad
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
         if first.facing and _turns_the_body(first):
@@ -257,14 +258,14 @@ class CandidateSampler:
     def _sittings_known_to_fit(self, seats: list[Sitting]) -> list[Sitting]:
         """The ways to sit on these seats that are known to keep the body clear; the seats where there are none."""
         ways = [way.sitting for way in self._approaches]
-        near = [one for one in ways if any(np.hypot(*(one.seat_m - seat.seat_m)) < _SAME_SEAT_M for seat in seats)]
+        near = [one for one in ways if any(distance_m(one.seat_m, seat.seat_m) < _SAME_SEAT_M for seat in seats)]
         return near or seats
 
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
         """The seat in front of which the body stands: of the motion before, or of the room."""
         before = [] if self.after is None or self.after.sitting is None else [self.after.sitting]
         known = before + seats + ([way.sitting for way in self._approaches] if seats else [])
-        near = (seat for seat in known if np.hypot(*(seat.feet_m - trajectory.position_m)) < _SAME_PLACE_M)
+        near = (seat for seat in known if distance_m(seat.feet_m, trajectory.position_m) < _SAME_PLACE_M)
         return next(near, None)
 
     def _seat_to_start_at(self, seats: list[Sitting]) -> Sitting | None:
@@ -276,7 +277,7 @@ class CandidateSampler:
         free = [seat for seat in seats if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
         free = free or ([way.sitting for way in self._approaches] if seats else [])
         free = preferred(free, steps[down].seat, self.floor.scene)
-        return free[int(self.rng.integers(len(free)))] if free else None
+        return random_choice(free, self.rng) if free else None
 
     def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
         """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
@@ -286,28 +287,28 @@ class CandidateSampler:
             return np.array(route_m[0], float)
         if first.place is not None and not (first.moves and first.place.is_goal):
             cells = self.floor.place_cells[first.place]
-            return cells[int(self.rng.integers(len(cells)))]
+            return random_choice(cells, self.rng)
         if first.moves and goes_to_target(first) and self.rng.random() < 0.8:
             spot = start_for_target(first, self.floor, self.rng)
             if spot is not None:
                 return spot
-        to_seat = first.direction == "seat" or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
+        to_seat = first.direction == Way.SEAT or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
         if first.moves and seats and to_seat and self.rng.random() < 0.7:
             spot = self._start_of_walk_to_seat(first)
             if spot is not None:
                 return spot
         cells = self._open_starts(first)
-        spot = cells[int(self.rng.integers(len(cells)))]
+        spot = random_choice(cells, self.rng)
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
 
     def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
         """Places to start at: for a straight walk those from which it has room, else those with most of it."""
-        if not step.moves or step.lower not in _USUAL_MPS or step.arc_deg or step.direction not in _STRAIGHT:
+        if not step.moves or step.lower not in _DEFAULT_MPS or step.arc_deg or step.direction not in _STRAIGHT:
             return self.floor.walkable_m
         if id(step) not in self._roomy_starts:
             cells, free_m = self.floor.straight_starts(step.direction)
             of_usual = _RUN_OF_USUAL if step.lower == "jog" else _OF_USUAL
-            enough_m = of_usual * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
+            enough_m = of_usual * _DEFAULT_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
             self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
         return self._roomy_starts[id(step)]
 
@@ -332,7 +333,7 @@ class CandidateSampler:
         near = [seat for seat in seats if self._is_meant(seat, named=bool(self.plan.steps[0].seat))]
         falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
         if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
-            sitting = near[int(self.rng.integers(len(near)))]
+            sitting = random_choice(near, self.rng)
             is_blocked = sitting.chair is None and not self.floor.clearance_at(sitting.feet_m) > 0
             cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
         else:
@@ -340,7 +341,7 @@ class CandidateSampler:
             cells = self.floor.walkable_m if first.place is None else self.floor.place_cells[first.place]
             if not len(cells):
                 raise NoTrajectory("no free floor")
-            spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
+            spot = np.array(self.start_m, dtype=float) if self.start_m else random_choice(cells, self.rng)
             facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
             facing = facing if self.heading_rad is None else self.heading_rad
             sitting = stool_at(spot, facing, self.body)
@@ -364,7 +365,7 @@ class CandidateSampler:
         """
         strict = self.heading_rad is not None and not named
         within_m = _AT_START_M if strict else _NEAR_START_M
-        if self.start_m is not None and np.hypot(*(seat.seat_m - self.start_m)) >= within_m:
+        if self.start_m is not None and distance_m(seat.seat_m, self.start_m) >= within_m:
             return False
         return not strict or abs(signed_angle_rad(seat.facing_rad, self.heading_rad)) < _FACES_AS_ASKED_RAD
 
@@ -398,11 +399,11 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, fi
     if target is not None:
         walk_to_seat(trajectory, step, target, first=first)
         return
-    trajectory.cost += 3.0 * (step.direction == "seat")
-    if step.direction == "circle":
+    trajectory.cost += 3.0 * (step.direction == Way.SEAT)
+    if step.direction == Shape.CIRCLE:
         walk_circle(trajectory, step, first=first, last=last)
     elif direction is None:
-        if step.direction == "seat" and not any("stool" in note or "no seat" in note for note in trajectory.notes):
+        if step.direction == Way.SEAT and not any("stool" in note or "no seat" in note for note in trajectory.notes):
             trajectory.notes.append(
                 f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room"
             )
@@ -415,17 +416,17 @@ def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
     """The direction that the sentence gives, with a few degrees of variation; None where it gives none."""
     x, y = trajectory.position_m
     jitter = float(np.clip(trajectory.rng.normal(0, 0.06), -0.15, 0.15))
-    if step.direction in ("left", "right"):
-        return jitter + (np.pi if step.direction == "left" else 0.0)
-    if step.direction == "towards":
+    if isinstance(step.direction, Side):
+        return jitter + (np.pi if step.direction == Side.LEFT else 0.0)
+    if step.direction == Way.TOWARDS:
         return float(np.arctan2(-y, -x)) + 0.3 * jitter
-    if step.direction == "away":
+    if step.direction == Way.AWAY:
         return float(np.arctan2(y, x)) + 0.3 * jitter
-    if step.direction == "forwards" and trajectory.moves[:-1]:
+    if step.direction == Way.FORWARDS and trajectory.moves[:-1]:
         return trajectory.heading_rad
-    if step.direction == "backwards":
+    if step.direction == Way.BACKWARDS:
         return trajectory.heading_rad + np.pi
-    if step.direction == "back":
+    if step.direction == Way.BACK:
         back_to = trajectory.last_direction_rad
         return back_to + np.pi if back_to is not None else trajectory.heading_rad + np.pi
     return None
@@ -439,7 +440,7 @@ def _facing_rad(step: Step, spot: Float[Array, "2"], scene: Scene) -> float:
     if aims:
         x, y = min(aims, key=lambda aim: float(np.hypot(*aim)))
         return float(np.arctan2(y, x))
-    away = float(np.arctan2(spot[1], spot[0]))
+    away = bearing_rad(spot)
     return away if step.facing == "away" else away + np.pi
 
 

@@ -6,9 +6,9 @@ import pytest
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.approaches import approaches
-from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
+from mmweaver.motion.planning.trajectory_sampler import CandidateSampler, starts_seated
 from rooms import WINDOW_M, room, sofa_room
 
 
