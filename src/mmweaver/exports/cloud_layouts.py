@@ -8,6 +8,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
+from mmweaver.exports.formats import export_format
 from mmweaver.stored_result import StoredResult
 
 START_S = 1_500_000_000  # of the stamps: a result has no date
@@ -22,6 +23,7 @@ KINECT_JOINTS = {
 }  # fmt: skip
 
 
+@export_format("radhar", "RadHAR's text of points")
 def write_radhar(result: StoredResult, out: Path) -> str:
     """`radhar.txt`: one block a point, as ROS prints the messages of ti_mmwave_rospkg.
 
@@ -50,6 +52,7 @@ def write_radhar(result: StoredResult, out: Path) -> str:
     return f"{len(points.frame)} points as RadHAR's text"
 
 
+@export_format("mars", "MARS's tables of points and joints")
 def write_mars(result: StoredResult, out: Path) -> str:
     """`radar_data.csv` and `kinect_data.csv` as in MARS: one row a point, and one row of 25 joints a frame.
 
