@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.core.antenna_tables import ANTENNAS
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.presets import ANTENNAS, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
