@@ -2,7 +2,7 @@
 
     recordings --fits, each in closed form--> findings --> Board
 
-Every fit says what it found, or why it could not see it. Reference: docs/board.md.
+Every fit reports what it found, or why it could not see it. Reference: docs/board.md.
 """
 
 import math

@@ -15,7 +15,7 @@ SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over th
 SEATED_MPS = 0.3  # a breathing chest is slower
 WINDOW_S = 8.0
 MIN_SLOW_FRAMES = 32
-LOWEST_HZ = 0.1
+MIN_HZ = 0.1
 WAVES = 4  # multiples of the body's phase that an echo at twice the range is fitted with
 
 
@@ -27,7 +27,7 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
     """
     profile, noise = evidence.moving_profile
     if not (evidence.body_bin >= 0).any():
-        raise CannotSeeError("nobody moves 13 dB above the noise")
+        raise CannotSeeError("no movement 13 dB above the noise")
     range_m, step_m = evidence.range_m, evidence.cube.config.range_resolution_m
     values, limited = np.full(len(profile), np.nan), np.zeros(len(profile), bool)
     for frame, body in enumerate(evidence.body_bin):
@@ -83,7 +83,7 @@ def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) ->
         trend = np.polyval(np.polyfit(np.arange(count), phase[part], 1), np.arange(count))
         energy = np.abs(np.fft.rfft((phase[part] - trend) * hann(count))) ** 2
         hz = np.fft.rfftfreq(count, period_s)
-        values.append(energy[(hz >= low_hz) & (hz < high_hz)].sum() / energy[hz >= LOWEST_HZ].sum())
+        values.append(energy[(hz >= low_hz) & (hz < high_hz)].sum() / energy[hz >= MIN_HZ].sum())
     return FrameValues(decibels(np.array(values)))
 
 
@@ -97,7 +97,7 @@ def _seated(evidence: SignalEvidence) -> tuple[int, np.ndarray]:
     profile = (np.abs(evidence.still - evidence.still.mean(axis=0)) ** 2).mean(axis=(0, 2))
     far = evidence.range_m >= NEAREST_BODY_M
     if not far.any() or profile[far].max() < SLOW_OVER_REST * np.median(profile[far]):
-        raise CannotSeeError("nobody sits and breathes: no range bin moves 20 dB above the others")
+        raise CannotSeeError("no seated person breathes: no range bin moves 20 dB above the others")
     cells = [cell for cell in moving_cells(evidence.cube) if cell.range_m >= NEAREST_BODY_M]
     if not cells:
         raise CannotSeeError("no range bin has a peak of movement")

@@ -25,7 +25,7 @@ KINECT_JOINTS = {
 
 @export_format("radhar", "RadHAR's text of points")
 def write_radhar(result: StoredResult, out: Path) -> str:
-    """`radhar.txt`: one block a point, as ROS prints the messages of ti_mmwave_rospkg.
+    """`radhar.txt`: one block per point, as ROS prints the messages of ti_mmwave_rospkg.
 
     x is ahead, y to the left, z up, in metres; velocity in m/s; bearing in degrees, positive to the left; intensity is
     the signal-to-noise ratio in dB.
@@ -54,7 +54,7 @@ def write_radhar(result: StoredResult, out: Path) -> str:
 
 @export_format("mars", "MARS's tables of points and joints")
 def write_mars(result: StoredResult, out: Path) -> str:
-    """`radar_data.csv` and `kinect_data.csv` as in MARS: one row a point, and one row of 25 joints a frame.
+    """`radar_data.csv` and `kinect_data.csv` as in MARS: one row per point, and one row of 25 joints per frame.
 
     Metres from the radar: X to the right, Y ahead, Z up; velocity in m/s; intensity is the SNR in dB. Hands, hand tips
     and thumbs, which the skeleton lacks, are the wrists. Raises InputError where there is no person, or several.

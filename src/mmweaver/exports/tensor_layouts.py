@@ -99,7 +99,7 @@ def write_rf_genesis(result: StoredResult, out: Path) -> str:
     Reference: Chen and Zhang, RF Genesis (SenSys 2023), as of its public repository.
     """
     adc = result.adc
-    np.save(out / "radar_frames.npy", _in_firing_order(adc).transpose(0, 2, 3, 1, 4).astype(np.complex128))
+    np.save(out / "radar_frames.npy", _firing_order(adc).transpose(0, 2, 3, 1, 4).astype(np.complex128))
     _write_json(out / "TI1843_config.json", rf_genesis_settings(adc.config))
     return f"{len(adc.samples)} frames of RF-Genesis"
 
@@ -145,7 +145,7 @@ def write_mmmesh(result: StoredResult, out: Path) -> str:
     if (result.folder / "adc_data.bin").is_file():
         (out / "adc").mkdir()
         adc = result.adc
-        for index, frame in enumerate(_in_firing_order(adc)):
+        for index, frame in enumerate(_firing_order(adc)):
             np.save(out / "adc" / f"{index:06d}.npy", frame.transpose(1, 2, 0, 3))
     return f"{frames} frames of mmMesh"
 
@@ -162,7 +162,7 @@ def write_drai(result: StoredResult, out: Path) -> str:
     return f"{len(images)} dynamic range-angle images"
 
 
-def _in_firing_order(adc: AdcCube) -> np.ndarray:
+def _firing_order(adc: AdcCube) -> np.ndarray:
     """(frame, loop, slot, rx, sample); those of a transmit code are in it already."""
     return adc.samples if adc.config.is_coded else adc.samples[:, :, list(adc.config.tx_order)]
 

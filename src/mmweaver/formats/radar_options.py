@@ -15,7 +15,7 @@ EXAMPLE = '{"tx": [[0, 0], [4, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}'
 
 @dataclass(frozen=True, kw_only=True)
 class RadarOptions:
-    """Choices that a radar's file leaves open; None: what the file says."""
+    """Choices that a radar's file leaves open; None keeps what the file says."""
 
     sub_frame: int | None = None
     antennas: AntennaTable | None = None
@@ -75,7 +75,7 @@ def joined_radar(
 
 
 def read_antennas(name_or_path: str) -> AntennaTable:
-    """A board's table by its name, or a JSON of one's own with places (x, z) in half wavelengths. Raises InputError."""
+    """A board's table by its name, or a JSON with places (x, z) in half wavelengths. Raises InputError."""
     path = Path(name_or_path)
     if name_or_path in ANTENNAS or path.suffix.lower() != ".json":
         return ANTENNAS[name_or_path]
