@@ -99,7 +99,6 @@ REVIEWED: dict[str, str] = {
             "it takes an echo at a known distance",
             "it takes an echo of known cross section",
             "the target's cross section is not known",
-            "or the true height of their middle (--body-z)",
             "begins in a T-pose",
             "z is up (--mesh-up z)",
             "mmweaver recognise score tells",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mmweaver.exports.export import FORMATS
 from mmweaver.formats.peer_arrays import LAYOUTS
-from mmweaver.formats.point_clouds.read_points import KINDS
+from mmweaver.formats.point_clouds.read_points import FORMATS as POINT_FORMATS
 from mmweaver.recordings.read_recording import PACKET_SUFFIXES
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES
 
@@ -26,7 +26,7 @@ def test_every_format_of_the_code_has_a_row():
     table = "\n".join(ROWS)
     for name in FORMATS:
         assert f"export --to {name}`" in table, name
-    for name in KINDS:
+    for name in POINT_FORMATS:
         assert f"(`{name}`)" in table, name
     for name in LAYOUTS:
         assert f"--layout {name}`" in table, name

@@ -19,7 +19,7 @@ from mmweaver.core.boards import typical_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, PointCloud
+from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.board_correction import corrected
@@ -147,7 +147,6 @@ def test_a_short_recording_says_how_far_its_drift_holds():
 def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
     text = found.text()
     assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
-    assert "elevation offset, CFAR threshold: they take point clouds of people" in text
     assert any(note.startswith("gain of echoes") for note in found.board.notes)
     assert set(found.to_values()) == {"board", "errors", "found", "not_seen", "warnings"}
     found.board.save(tmp_path / "made.json")
@@ -189,46 +188,6 @@ def test_a_recording_is_corrected_by_the_board_that_it_was_calibrated_from(board
     assert after < 0.1 * before
 
 
-def people(range_m: np.ndarray, phase_deg: float, middle_m: float, seed: int = 0) -> PointCloud:
-    """Twelve points of a body in each frame, seen with a phase error of the upper antennas."""
-    rng = np.random.default_rng(seed)
-    height_m = middle_m + rng.uniform(-0.5, 0.5, (len(range_m), 12))
-    far_m = np.repeat(range_m[:, None], 12, axis=1)
-    sine = height_m / far_m - np.radians(phase_deg) / np.pi  # rows are half a wavelength apart
-    z_m = far_m * sine
-    y_m = np.sqrt(far_m**2 - z_m**2)
-    frame = np.repeat(np.arange(len(range_m)), 12)
-    zero = np.zeros(frame.size)
-    return PointCloud(
-        frame=frame, x_m=rng.normal(0, 0.1, frame.size), y_m=y_m.ravel(), z_m=z_m.ravel(), radial_velocity_mps=zero,
-        snr_db=zero,
-    )  # fmt: skip
-
-
-def test_the_elevation_offset_comes_back_from_people_at_several_distances():
-    clouds = [people(np.full(80, distance), 9.0, -0.1, seed) for seed, distance in enumerate((1.2, 2.0, 3.0, 4.0))]
-    found = calibrate(*clouds, radar="awr1843")
-    assert found.board.elevation_phase_deg == pytest.approx(9.0, abs=2.0)
-    assert any("it takes a signal" in note for note in found.board.notes)
-
-
-def test_the_elevation_offset_at_one_distance_takes_the_true_height():
-    cloud = people(np.full(100, 1.8), -7.0, -0.1)
-    unseen = calibrate(cloud, radar="awr1843")
-    assert not unseen.board.elevation_phase_deg
-    assert "--body-z" in unseen.text()
-    found = calibrate(cloud, radar="awr1843", body_z_m=-0.1)
-    assert found.board.elevation_phase_deg == pytest.approx(-7.0, abs=1.5)
-
-
-def test_a_file_of_points_is_used_as_the_cloud_in_it(tmp_path: Path):
-    cloud = people(np.full(100, 1.8), -7.0, -0.1)
-    points = np.column_stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, np.ones(len(cloud.x_m))])
-    np.savez(tmp_path / "walk.npz", frame=cloud.frame, pts=points)
-    found, direct = (calibrate(one, radar="awr1843", body_z_m=-0.1) for one in (tmp_path / "walk.npz", cloud))
-    assert found.board.elevation_phase_deg == pytest.approx(direct.board.elevation_phase_deg, abs=0.1) != 0.0
-
-
 def test_where_a_skirt_ends():
     range_m = np.arange(100) * 0.05
     falling = 1e4 * 10 ** (-range_m * 8)
@@ -242,8 +201,6 @@ def test_where_a_skirt_ends():
 def test_what_cannot_be_calibrated_is_refused():
     with pytest.raises(InputError, match="which recordings"):
         calibrate()
-    with pytest.raises(InputError, match="--radar"):
-        calibrate(people(np.full(30, 2.0), 0.0, 0.0))
     other = replace(RADAR, name="other", num_samples=128, num_range_bins=128)
     ideal = Board()
     with pytest.raises(InputError, match="one at a time"):

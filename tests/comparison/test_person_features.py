@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.comparison.person_features import behind_body, echo_at_twice_the_range, seated_slow_time
+from mmweaver.comparison.person_features import behind_body, seated_slow_time
 from mmweaver.comparison.signal_evidence import CannotSeeError
 from tests.comparison.made_signals import RADAR, Point, evidence, samples, still
 
@@ -37,25 +37,12 @@ def test_energy_behind_a_walking_body(behind_m: float, near_m: float, far_m: flo
 
 
 def test_an_empty_room_and_a_cut_range_show_nothing_behind_a_body():
-    with pytest.raises(CannotSeeError, match="nobody moves"):
+    with pytest.raises(CannotSeeError, match="no movement"):
         behind_body(evidence(samples([still(2.0)])), 0.6, 1.0)
     with pytest.raises(CannotSeeError, match=r"4\.5 m"):
         behind_body(evidence(samples([walking(3.2, 1.0)]), with_samples=False), 1.0, 2.0)
     with pytest.raises(CannotSeeError, match="loops"):
         behind_body(evidence(samples([walking(2.0, 1.0)], config=replace(RADAR, num_loops=2))), 0.6, 1.0)
-
-
-def test_the_echo_at_twice_the_range_swings_twice_as_far():
-    frames = int(SECONDS / SLOW.frame_period_s)
-    people = [breathing(0.9, 1.0), still(2.4, 0.5)]
-    double = [*people, breathing(1.8, 0.14, times=2.0)]
-    single = [*people, breathing(1.8, 0.14)]
-    level = {
-        name: echo_at_twice_the_range(evidence(samples(points, frames=frames, config=SLOW, noise=0.003))).values
-        for name, points in {"double": double, "single": single}.items()
-    }
-    assert level["double"] == pytest.approx(20 * np.log10(0.14), abs=3.0)
-    assert np.all(level["single"] < level["double"] - 10)
 
 
 def test_slow_time_of_a_seated_person():
@@ -67,7 +54,7 @@ def test_slow_time_of_a_seated_person():
     assert np.all(seated_slow_time(seen, 7.0, 10.0).values < -33)
     with pytest.raises(CannotSeeError, match=r"12\.5 Hz"):
         seated_slow_time(seen, 11.0, 14.0)
-    with pytest.raises(CannotSeeError, match="nobody sits"):
+    with pytest.raises(CannotSeeError, match="no seated person"):
         seated_slow_time(evidence(samples([still(0.9)], frames=frames, config=SLOW)), 3.0, 5.0)
     with pytest.raises(CannotSeeError, match="needs 8 s"):
         seated_slow_time(evidence(samples([breathing(0.9, 1.0)], frames=40, config=SLOW)), 3.0, 5.0)

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.antenna_tables import ISK
 from mmweaver.core.errors import InputError
+from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.formats.radar_file import load_radar
@@ -46,7 +46,7 @@ def read(folder: Path, text: str) -> RadarConfig:
 
 def test_a_script_is_the_radar_of_the_same_cfg(tmp_path: Path):
     (tmp_path / "capture.cfg").write_text(CFG)
-    assert read(tmp_path, SCRIPT) == read_ti_cfg(tmp_path / "capture.cfg", RadarOptions(antennas=ISK))
+    assert read(tmp_path, SCRIPT) == read_ti_cfg(tmp_path / "capture.cfg", RadarOptions(antennas=ANTENNAS["isk"]))
 
 
 def test_lanes_order_and_beams(tmp_path: Path):

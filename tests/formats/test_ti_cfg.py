@@ -5,12 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.core.antenna_tables import AOP, BOOST_1642, ISK, ODS, AntennaTable
+from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
+from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.transmit_code import weights_of
 from mmweaver.core.virtual_array import azimuth_row, has_elevation
 from mmweaver.formats.radar_options import RadarOptions
 from mmweaver.formats.ti_cfg import read_ti_cfg
+
+AOP, BOOST_1642, ISK, ODS = (ANTENNAS[name] for name in ("aop", "boost1642", "isk", "ods"))
 
 # TI's best range resolution profile for three transmitters, the elevated one last.
 BEST_RANGE = """

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmweaver.core.presets import halfwave_positions, ti_1843
+from mmweaver.core.presets import ANTENNAS, halfwave_positions, ti_board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.transmit_code import tx_code_of
@@ -17,7 +17,7 @@ CHIRP = {
     "chirp_slope_hz_per_s": 60.012e12, "idle_time_s": 7e-6, "adc_start_time_s": 6e-6, "ramp_end_time_s": 65e-6,
     "num_samples": 64, "sample_rate_hz": 1.13e6, "num_loops": 32, "num_range_bins": 64,
 }  # fmt: skip
-TDM = ti_1843("three", **CHIRP)
+TDM = ti_board("three", ANTENNAS["boost"], tx_order=(0, 2, 1), **CHIRP)
 FOUR = replace(
     TDM, tx_position_m=halfwave_positions(((0.0, 0.0), (2.0, 1.6), (4.0, 0.0), (8.0, 0.0)), 79e9), tx_order=(0, 2, 3, 1)
 )

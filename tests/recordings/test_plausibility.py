@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.core.antenna_tables import ANTENNAS
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.presets import ANTENNAS, AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube

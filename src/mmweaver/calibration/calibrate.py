@@ -1,8 +1,8 @@
 """`mmweaver.calibrate`: the board that made some recordings, as far as they show it.
 
-    recordings, point clouds --fits, each in closed form--> findings --> Board
+    recordings --fits, each in closed form--> findings --> Board
 
-Every fit says what it found, or why it could not see it. Reference: docs/board.md.
+Every fit reports what it found, or why it could not see it. Reference: docs/board.md.
 """
 
 import math
@@ -13,28 +13,22 @@ from typing import Any
 
 # imported for their fits, which register themselves
 from mmweaver.calibration import antenna_fits, receiver_fits, time_fits  # noqa: F401
-from mmweaver.calibration.cloud_fits import fit_elevation
-from mmweaver.calibration.cloud_levels import DOING, fit_levels
 from mmweaver.calibration.finding import SIGNAL_FITS, Finding
 from mmweaver.calibration.target_fits import KnownTarget, fit_target, unknown_targets
 from mmweaver.comparison.compared_sides import signals_of
 from mmweaver.comparison.signal_evidence import SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
-from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
-from mmweaver.core.records import PointCloud
-from mmweaver.formats.point_clouds.read_points import read_points, recognised_kind
-from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import RawReading
 
 NEVER_SEEN = (
     Finding(title="coupling between antennas", text="it takes one target at many known directions"),
     Finding(title="element spacing", text="it takes a target at known directions"),
+    Finding(title="elevation offset", text="it takes a target at a known height"),
 )
-CLOUD_SUFFIXES = (".csv", ".dat", ".npz")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,23 +65,18 @@ def calibrate(
     radar: str | Path | RadarConfig | None = None,
     range_m: tuple[float, float] | None = None,
     range_bins: tuple[int, int] | None = None,
-    body_z_m: float | None = None,
-    doing: str | None = None,
     target: KnownTarget | None = None,
     name: str | None = None,
     **samples: Any,
 ) -> Calibration:
-    """The board that made the recordings: of a room with or without people, unlabelled; point clouds of people.
+    """The board that made the recordings: of a room with or without people, unlabelled.
 
     Args:
-        *recordings: Paths (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube,
-            an AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the
-            same settings.
-        radar: Of raw samples and of clouds: a preset's name, a file or a RadarConfig.
+        *recordings: Paths (what `mmweaver compare` takes), a RadarCube, an AdcCube, or what `process_recording` and
+            `Weaver.generate` give; all by one radar with the same settings.
+        radar: Of raw samples: a preset's name, a file or a RadarConfig.
         range_m: Ranges (near, far) in metres whose echoes show the antennas. Default: all.
         range_bins: The same as range bins (first, last).
-        body_z_m: True mean height over the radar of the people in clouds, m.
-        doing: A sentence about what they did. Default: they wave.
         target: What stands at a known distance in the signals.
         name: Name of the board.
         **samples: `layout`, `axes`, `iq_order` and `tx_order` of raw samples, see `read_recording`.
@@ -101,35 +90,15 @@ def calibrate(
     if not recordings:
         raise InputError("which recordings? give one or more")
     reading = RawReading(radar=radar, **samples)
-    clouds: list[PointCloud] = []
-    evidence: list[SignalEvidence] = []
-    for source in recordings:
-        cloud = _cloud_of(source)
-        if cloud is not None:
-            clouds.append(cloud)
-        else:
-            signals = signals_of(source, reading, "recording")
-            evidence += [SignalEvidence(one, _window(one.cube.config, range_m, range_bins)) for one in signals]
-    config = _one_radar(evidence, radar)
-    findings: list[Finding] = []
-    if evidence:
-        findings += [fit(evidence) for fit in SIGNAL_FITS]
-    else:
-        findings.append(Finding(title="IF response, noise, leakage, antennas, chirps, drift", text="it takes a signal"))
-    if target is not None and evidence:
-        findings += fit_target(evidence, target)
-    else:
-        findings += unknown_targets()
-    if clouds:
-        findings.append(fit_elevation(clouds, config, body_z_m))
-        if not any("gain_db" in one.fields for one in findings):
-            findings += fit_levels(clouds, config, _firmware(radar), doing or DOING)
-    else:
-        findings.append(Finding(title="elevation offset, CFAR threshold", text="they take point clouds of people"))
+    signals = [one for source in recordings for one in signals_of(source, reading, "recording")]
+    evidence = [SignalEvidence(one, _window(one.cube.config, range_m, range_bins)) for one in signals]
+    _check_same_radar(evidence)
+    findings = [fit(evidence) for fit in SIGNAL_FITS]
+    findings += unknown_targets() if target is None else fit_target(evidence, target)
     findings += NEVER_SEEN
     fields = {field: value for one in findings for field, value in one.fields.items()}
     missed = tuple(f"{one.title}: {one.text}" for one in findings if not one.is_found)
-    names = ", ".join(_name_of(source) for source in recordings)
+    names = ", ".join(Path(one).name if isinstance(one, str | Path) else type(one).__name__ for one in recordings)
     board = Board(name=name or f"board of {names}"[:200], made_from=names[:1000], notes=missed, **fields)
     return Calibration(board=board, findings=tuple(findings), warnings=_warnings(evidence))
 
@@ -150,28 +119,8 @@ def _window(
     return float(chosen.range_m[0]), float(chosen.range_m[-1])
 
 
-def _firmware(radar: str | Path | RadarConfig | None) -> FirmwareSettings:
-    """The settings of TI's point cloud that a preset or .cfg has, else its defaults."""
-    return FirmwareSettings() if radar is None or isinstance(radar, RadarConfig) else load_firmware(str(radar))
-
-
-def _cloud_of(source: Any) -> PointCloud | None:
-    """A point cloud, of a record or of a file that is one; None for anything else."""
-    if isinstance(source, PointCloud):
-        return source
-    if not isinstance(source, str | Path):
-        return None
-    path = Path(source)
-    may_be = path.suffix.lower() in CLOUD_SUFFIXES and path.is_file()
-    return read_points(path) if may_be and recognised_kind(path) is not None else None
-
-
-def _one_radar(evidence: Sequence[SignalEvidence], radar: str | Path | RadarConfig | None) -> RadarConfig:
-    """The radar of all recordings. Raises InputError where they differ, or where there is none."""
-    if not evidence:
-        if radar is None:
-            raise InputError("point clouds do not say which radar made them; give --radar")
-        return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+def _check_same_radar(evidence: Sequence[SignalEvidence]) -> None:
+    """Raises InputError where recordings were made by different radars."""
     first = evidence[0].cube.config
     for one in evidence[1:]:
         own = one.cube.config
@@ -180,8 +129,3 @@ def _one_radar(evidence: Sequence[SignalEvidence], radar: str | Path | RadarConf
             raise InputError(
                 f"{one.signal.name} was recorded with another radar or other settings; calibrate one at a time"
             )
-    return first
-
-
-def _name_of(source: Any) -> str:
-    return Path(source).name if isinstance(source, str | Path) else type(source).__name__

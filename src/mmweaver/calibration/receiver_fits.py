@@ -1,6 +1,6 @@
 """The receiver from any recording: IF response and noise figure from noise, leakage from the bins near range 0.
 
-Nothing need be known of the room. Noise is taken in the outer Doppler bins, where nobody moves. What has passed the
+The room may be unknown. Noise is taken in the outer Doppler bins, without movement. What has passed the
 receiver's IF filter carries its power response; its phase does not show.
 """
 

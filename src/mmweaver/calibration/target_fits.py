@@ -64,7 +64,7 @@ def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
     if not 0 < at < len(mean) - 1 or mean[at] < OVER_OTHERS * max(outer):
         raise CannotSeeError(f"no echo stands out within {REACH_M:g} m of {target.range_m:g} m")
     step_m = config.range_resolution_m
-    offsets = _between_bins(power[at - 1 : at + 2])  # each antenna on its own, in bins
+    offsets = _bin_offsets(power[at - 1 : at + 2])  # each antenna on its own, in bins
     found_m = range_m[at] + float(np.mean(offsets)) * step_m
     bias_m, error_m = found_m - target.range_m, float(np.std(offsets) / np.sqrt(len(offsets))) * step_m
     text = f"{100 * bias_m:+.1f} cm (+-{100 * error_m:.1f}): an echo from {target.range_m:g} m is at {found_m:.3f} m"
@@ -89,7 +89,7 @@ def _hann_response(offset: float) -> float:
     return float(np.sinc(offset) / max(1 - offset**2, 1e-9))
 
 
-def _between_bins(power: np.ndarray) -> np.ndarray:
+def _bin_offsets(power: np.ndarray) -> np.ndarray:
     """Places (antenna,) of tones in bins relative to the middle one, of power (3, antenna) under a Hann window."""
     before, middle, after = np.sqrt(power)
     # a Hann window's main lobe: neighbour over peak = (1 + d) / (2 - d) for a tone d bins towards it

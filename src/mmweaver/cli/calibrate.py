@@ -16,10 +16,7 @@ EXAMPLES = """examples:
   mmweaver calibrate empty.bin --radar profile.cfg --out board.json        # your room, nobody in it, some seconds
   mmweaver calibrate walk/ sit/ empty/ --out board.json                    # folders of mmweaver process: any recordings
   mmweaver calibrate adc.npy --radar radar.json --axes frame,loop,tx,rx,sample --out board.json
-  mmweaver calibrate near.csv middle.csv far.csv --radar iwr1443_mars --out board.json       # clouds of people
-  mmweaver calibrate cloud.csv --radar iwr1443_mars --body-z -0.15 --out board.json
   mmweaver calibrate reflector.bin --radar profile.cfg --target 2.50,-3.2 --out board.json    # a corner reflector
-  mmweaver calibrate squats.csv --radar iwr1443_mars --doing "a person squats" --out board.json
   mmweaver generate --demo --radar profile.cfg --board board.json --out like_mine/
 """
 
@@ -29,24 +26,17 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser = commands.add_parser(
         "calibrate", help="find the errors of your board in its recordings", epilog=EXAMPLES,
         description="Finds what recordings show of the board that made them: IF response, noise figure, leakage,"
-        " antenna gains and phases, first chirps, drift; of point clouds the elevation offset. Nothing need be known of"
+        " antenna gains and phases, first chirps, drift. Nothing need be known of"
         " the room. Says what it could not see and why; generate --board takes the file.",
     )  # fmt: skip
     parser.add_argument(
         "recordings", type=Path, nargs="+", metavar="RECORDING",
-        help="raw samples, a folder of mmweaver process, or a point cloud",
+        help="raw samples, or a folder of mmweaver process",
     )  # fmt: skip
     raw = parser.add_argument_group("what recordings do not bring")
     add_sample_options(raw)
     add_board_options(raw, rare=True)
     add_range_options(raw, what="whose echoes show the antennas (default: all)")
-    raw.add_argument(
-        "--body-z", type=number, metavar="M", dest="body_z_m",
-        help="the true mean height of the people in point clouds over the radar's level, in metres",
-    )  # fmt: skip
-    raw.add_argument(
-        "--doing", metavar="TEXT", help="a sentence that says what the people in point clouds did (default: they wave)"
-    )
     raw.add_argument(
         "--target", type=target, metavar="RANGE[,DBSM]",
         help="true distance in metres of the strongest echo near it, straight ahead, and its cross section: gives range"
@@ -78,11 +68,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=arguments.recordings)
     found = calibrate(
-        *arguments.recordings, radar=radar_of(arguments), layout=arguments.layout, axes=arguments.axes,
-        iq_order=arguments.iq_order, tx_order=arguments.tx_order, range_m=arguments.range_m,
-        range_bins=arguments.range_bins, body_z_m=arguments.body_z_m, doing=arguments.doing,
-        target=None if arguments.target is None else KnownTarget(*arguments.target), name=arguments.out.stem,
-    )  # fmt: skip
+        *arguments.recordings,
+        radar=radar_of(arguments),
+        range_m=arguments.range_m,
+        range_bins=arguments.range_bins,
+        target=None if arguments.target is None else KnownTarget(*arguments.target),
+        name=arguments.out.stem,
+        **{key: getattr(arguments, key) for key in ("layout", "axes", "iq_order", "tx_order")},
+    )
     found.board.save(arguments.out)
     if arguments.json:
         print(json.dumps(found.to_values(), indent=2, allow_nan=False, ensure_ascii=False))

@@ -182,7 +182,7 @@ def compare(
     Args:
         a: A recording, a result folder, a .mmw file, a stream folder, a folder of any of these; or a RadarCube, an
             AdcCube, what `Weaver.generate`, `process_recording` or `read_recording` give, or a list of any of these.
-        b: The same, to be told from `a`.
+        b: The same, to be compared with `a`.
         radar: The radar of raw samples that do not bring theirs: a preset, a file or a RadarConfig.
         radar_b: That of `b`. Default: `radar`.
         range_m: Ranges (near, far) in metres that are compared. Default: all that both show.
@@ -211,7 +211,7 @@ def compare_signals(
     range_m: tuple[float, float] | None = None,
 ) -> Comparison:
     """Compares signals in memory, one or more per side. Raises InputError where they have no common ranges."""
-    sides, notes = _with_same_detector(a, b)
+    sides, notes = _unify_detectors(a, b)
     labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
     every = [*sides[0], *sides[1]]
     for label, one in zip(labels, every, strict=True):
@@ -289,7 +289,7 @@ def _pooled(each: list[SideValue], by_recording: bool) -> SideValue:
     )
 
 
-def _with_same_detector(
+def _unify_detectors(
     a: Sequence[ComparedSignal], b: Sequence[ComparedSignal]
 ) -> tuple[list[list[ComparedSignal]], list[str]]:
     """Stored points only where both sides were detected in the same way; else CFAR for all."""

@@ -12,7 +12,7 @@ import numpy as np
 from mmweaver.core.seeding import stream
 
 DRAWS = 1000
-FEWEST_FOR_INTERVAL = 4
+MIN_FOR_INTERVAL = 4
 INTERVAL = (2.5, 97.5)
 
 Interval = tuple[float, float]
@@ -53,7 +53,7 @@ def spread_of(values: np.ndarray, *, in_order: bool, seed: int = 0) -> Spread:
     """Median, its interval and the spread of values without nan."""
     low, high = (float(one) for one in np.percentile(values, (10, 90)))
     interval = None
-    if len(values) >= FEWEST_FOR_INTERVAL:
+    if len(values) >= MIN_FOR_INTERVAL:
         interval = _interval(bootstrap_medians(values, seed, in_order=in_order))
     return Spread(
         median=float(np.median(values)), interval_95=interval, percentile_10_90=(low, high), units=len(values)
@@ -67,7 +67,7 @@ def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: b
     scale = float(np.sqrt((_variance(a) + _variance(b)) / 2 + tolerance**2))
     gap = float(np.median(b) - np.median(a))
     interval = None
-    is_enough = min(len(a), len(b)) >= FEWEST_FOR_INTERVAL
+    is_enough = min(len(a), len(b)) >= MIN_FOR_INTERVAL
     if is_enough:
         draws = [bootstrap_medians(one, seed + at, in_order=in_order) for at, one in enumerate((a, b))]
         interval = _interval(draws[1] - draws[0])

@@ -1,8 +1,7 @@
-"""Features of a moving person: energy behind the body, echo at twice the range, slow time of someone who sits."""
-
-from itertools import pairwise
+"""Features of a person: energy behind the moving body, and slow time of a seated one."""
 
 import numpy as np
+from scipy.signal import detrend
 
 from mmweaver.comparison.measured_feature import FrameValues, feature
 from mmweaver.comparison.signal_evidence import NEAREST_BODY_M, CannotSeeError, SignalEvidence, decibels
@@ -15,8 +14,7 @@ SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over th
 SEATED_MPS = 0.3  # a breathing chest is slower
 WINDOW_S = 8.0
 MIN_SLOW_FRAMES = 32
-LOWEST_HZ = 0.1
-WAVES = 4  # multiples of the body's phase that an echo at twice the range is fitted with
+MIN_HZ = 0.1
 
 
 def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameValues:
@@ -27,7 +25,7 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
     """
     profile, noise = evidence.moving_profile
     if not (evidence.body_bin >= 0).any():
-        raise CannotSeeError("nobody moves 13 dB above the noise")
+        raise CannotSeeError("no movement 13 dB above the noise")
     range_m, step_m = evidence.range_m, evidence.cube.config.range_resolution_m
     values, limited = np.full(len(profile), np.nan), np.zeros(len(profile), bool)
     for frame, body in enumerate(evidence.body_bin):
@@ -45,29 +43,6 @@ def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameV
     return FrameValues(values, at_most=bool(limited[seen].mean() > 0.5))
 
 
-@feature("echo_at_twice_the_range", "echo at twice a seated person's range", "dB", 5.0, whole_frames=True)
-def echo_at_twice_the_range(evidence: SignalEvidence) -> FrameValues:
-    """Power at twice the body's range whose phase swings by twice the breath, over the body's own power, in dB.
-
-    Radar -> body -> radar -> body -> radar: twice the way and twice the Doppler. The slow time of the bins at twice the
-    range is fitted with 1, w, w^2, w^3 of the body's phasor w = exp(j phase); the power in w^2 counts. Raises
-    CannotSeeError.
-    """
-    body, phase = _seated(evidence)
-    range_m = evidence.range_m
-    twice = np.abs(range_m - 2 * range_m[body]) <= max(2.5 * evidence.cube.config.range_resolution_m, 0.05)
-    if 2 * range_m[body] > range_m[-1] or not twice.any():
-        raise CannotSeeError(f"twice the body's {range_m[body]:.2f} m lies outside the range window")
-    basis = np.exp(1j * np.outer(phase, np.arange(WAVES)))
-    values = []
-    for part in _windows(len(phase), evidence.cube.config.frame_period_s):
-        there, own = evidence.still[part][:, twice], evidence.still[part][:, body]
-        fitted = np.linalg.lstsq(basis[part], there.reshape(len(there), -1), rcond=None)[0]
-        double = (np.abs(fitted[2].reshape(there.shape[1:])) ** 2).mean(axis=1).max()
-        values.append(double / (np.abs(own - own.mean(axis=0)) ** 2).mean())
-    return FrameValues(decibels(np.array(values)))
-
-
 def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) -> FrameValues:
     """Displacement of a seated person from `low_hz` to `high_hz` over all of it, one value per 8 s, in dB.
 
@@ -76,19 +51,16 @@ def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) ->
     period_s = evidence.cube.config.frame_period_s
     if 0.5 / period_s < high_hz:
         raise CannotSeeError(f"{1 / period_s:.1f} frames per second show nothing above {0.5 / period_s:.1f} Hz")
-    _, phase = _seated(evidence)
-    values = []
-    for part in _windows(len(phase), period_s):
-        count = len(phase[part])
-        trend = np.polyval(np.polyfit(np.arange(count), phase[part], 1), np.arange(count))
-        energy = np.abs(np.fft.rfft((phase[part] - trend) * hann(count))) ** 2
-        hz = np.fft.rfftfreq(count, period_s)
-        values.append(energy[(hz >= low_hz) & (hz < high_hz)].sum() / energy[hz >= LOWEST_HZ].sum())
+    phase, values = _seated_phase(evidence), []
+    for part in np.array_split(phase, max(1, int(len(phase) * period_s / WINDOW_S))):
+        energy = np.abs(np.fft.rfft(detrend(part) * hann(len(part)))) ** 2
+        hz = np.fft.rfftfreq(len(part), period_s)
+        values.append(energy[(hz >= low_hz) & (hz < high_hz)].sum() / energy[hz >= MIN_HZ].sum())
     return FrameValues(decibels(np.array(values)))
 
 
-def _seated(evidence: SignalEvidence) -> tuple[int, np.ndarray]:
-    """Range bin and phase (frame,) of somebody who sits. Raises CannotSeeError."""
+def _seated_phase(evidence: SignalEvidence) -> np.ndarray:
+    """Phase (frame,) of the range bin of a seated person. Raises CannotSeeError."""
     duration_s = len(evidence.still) * evidence.cube.config.frame_period_s
     if len(evidence.still) < MIN_SLOW_FRAMES or duration_s < WINDOW_S:
         raise CannotSeeError(f"slow time needs {WINDOW_S:g} s, and this is {duration_s:.1f} s")
@@ -97,11 +69,11 @@ def _seated(evidence: SignalEvidence) -> tuple[int, np.ndarray]:
     profile = (np.abs(evidence.still - evidence.still.mean(axis=0)) ** 2).mean(axis=(0, 2))
     far = evidence.range_m >= NEAREST_BODY_M
     if not far.any() or profile[far].max() < SLOW_OVER_REST * np.median(profile[far]):
-        raise CannotSeeError("nobody sits and breathes: no range bin moves 20 dB above the others")
+        raise CannotSeeError("no seated person breathes: no range bin moves 20 dB above the others")
     cells = [cell for cell in moving_cells(evidence.cube) if cell.range_m >= NEAREST_BODY_M]
     if not cells:
         raise CannotSeeError("no range bin has a peak of movement")
-    return int(np.argmin(np.abs(evidence.range_m - cells[0].range_m))), cells[0].phase_rad
+    return cells[0].phase_rad
 
 
 def _speed_mps(evidence: SignalEvidence) -> float:
@@ -111,13 +83,6 @@ def _speed_mps(evidence: SignalEvidence) -> float:
     power = evidence.power[frames, evidence.body_bin[frames]][:, moving]
     speed = np.abs(evidence.cube.grid.radial_velocity_mps[moving])
     return float(np.median(speed[power.argmax(axis=1)]))
-
-
-def _windows(frames: int, period_s: float) -> list[slice]:
-    """Runs of 8 s or a little more that fill the frames."""
-    count = max(1, int(frames * period_s / WINDOW_S))
-    edges = np.linspace(0, frames, count + 1).astype(int)
-    return [slice(low, high) for low, high in pairwise(edges)]
 
 
 @feature("behind_body_near", "moving energy 0.6 to 1 m behind the body", "dB", 4.0)

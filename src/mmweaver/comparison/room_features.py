@@ -35,7 +35,7 @@ def clutter_peak_over_median(evidence: SignalEvidence) -> FrameValues:
 def plane_wave_share(evidence: SignalEvidence) -> FrameValues:
     """Share of the best plane wave in the 20 strongest static range bins, their median: 1 for a lone far scatterer.
 
-    Several scatterers in a cell, and gains and phases of real channels, make it less. Raises CannotSeeError.
+    Several scatterers in a cell, and gains and phases of real channels, lower it. Raises CannotSeeError.
     """
     if evidence.cube.config.num_antennas < 3:
         raise CannotSeeError("fewer than three antennas")

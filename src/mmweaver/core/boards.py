@@ -16,8 +16,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 
 IDEAL_BOARD = Board()
-LARGEST_NUMBER = 2**31 - 1
-WIDEST_BAND_HZ = 10e9  # of one board
+MAX_NUMBER = 2**31 - 1
+MAX_BAND_HZ = 10e9  # of one board
 # spread between boards: mean and standard deviation, or lowest and highest
 IF_END_DB, IF_NEAR_DB = (-9.0, -4.5), (-5.0, -1.0)  # of power: last 5 % of the band, range bins 2 to 6
 NEAR_SHAPE = ((0, 1.0), (2, 1.0), (6, 0.95), (10, 0.6), (16, 0.35), (30, 0.0))  # range bin, share of IF_NEAR_DB
@@ -66,9 +66,9 @@ def compensated(board: Board) -> Board:
 def _number(name: str, seed: int) -> int:
     _, colon, digits = name.partition(":")
     if not colon:
-        return seed % (LARGEST_NUMBER + 1)
-    if not (digits.isascii() and digits.isdecimal() and len(digits) <= 10 and int(digits) <= LARGEST_NUMBER):
-        raise InputError(f"boards are typical:0 to typical:{LARGEST_NUMBER}, not {name[:100]!r}")
+        return seed % (MAX_NUMBER + 1)
+    if not (digits.isascii() and digits.isdecimal() and len(digits) <= 10 and int(digits) <= MAX_NUMBER):
+        raise InputError(f"boards are typical:0 to typical:{MAX_NUMBER}, not {name[:100]!r}")
     return int(digits)
 
 
@@ -106,7 +106,7 @@ def typical_board(config: RadarConfig, number: int) -> Board:
 def _spacing_m(config: RadarConfig) -> float | None:
     """Half a wavelength at the middle of the board's band, where the radar knows that."""
     low_hz, high_hz = config.frequency_limits_hz
-    return SPEED_OF_LIGHT_MPS / (low_hz + high_hz) if high_hz - low_hz < WIDEST_BAND_HZ else None
+    return SPEED_OF_LIGHT_MPS / (low_hz + high_hz) if high_hz - low_hz < MAX_BAND_HZ else None
 
 
 def _filters(config: RadarConfig, near_db: float, end_db: float) -> tuple[np.ndarray, np.ndarray]:

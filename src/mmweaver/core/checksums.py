@@ -17,7 +17,7 @@ from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular,
 
 SUMS_FILE = "SHA256SUMS"
 FIRST_LINE = "# mmweaver; check with: mmweaver verify DIR, or sha256sum -c SHA256SUMS"
-LARGEST_SUMS = 64 * 2**20  # bytes
+MAX_SUMS_BYTES = 64 * 2**20  # bytes
 _checked: dict[str, tuple[int, int, int]] = {}  # by path: inode, size and time of change when it was right
 
 
@@ -59,7 +59,7 @@ def read_sums(folder: Path) -> dict[str, str] | None:
     try:
         if not file.is_file():
             return None
-        data = read_bytes(file, max_bytes=LARGEST_SUMS)
+        data = read_bytes(file, max_bytes=MAX_SUMS_BYTES)
     except OSError as error:
         raise InputError(f"cannot read {file}: {error.strerror or error}") from None
     first, *lines = data.decode("utf-8", errors="replace").split("\n")

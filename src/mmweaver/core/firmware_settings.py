@@ -67,7 +67,7 @@ class FirmwareSettings:
         if self.second_peak is not None and not 0 < self.second_peak <= 1:
             raise InputError(f"multiObjBeamForming's threshold must lie in 0 to 1, not {self.second_peak:g}")
         if self.most_objects is not None and self.most_objects < 1:
-            raise InputError(f"the most objects a frame must be at least 1, not {self.most_objects}")
+            raise InputError(f"the most objects per frame must be at least 1, not {self.most_objects}")
 
     def with_threshold(self, threshold: int | float | None) -> "FirmwareSettings":
         """The same with this threshold of the CFAR in range, in counts; None, or no such CFAR, leaves it."""

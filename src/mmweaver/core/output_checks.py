@@ -9,7 +9,7 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.staging import finish_moving, is_staged, remove, staging_path, sweep
 
-LONGEST_NAME = 255  # bytes, where the file system does not say
+MAX_NAME_BYTES = 255  # bytes, where the file system does not say
 ADVICE = {
     errno.ENOSPC: "free some space or choose another --out",
     errno.EDQUOT: "free some space or choose another --out",
@@ -112,7 +112,7 @@ def _check_place(folder: Path, out: Path) -> None:
     sweep(nearest)
     probe = staging_path(nearest / "probe")
     try:
-        longest = os.pathconf(nearest, "PC_NAME_MAX") if hasattr(os, "pathconf") else LONGEST_NAME
+        longest = os.pathconf(nearest, "PC_NAME_MAX") if hasattr(os, "pathconf") else MAX_NAME_BYTES
         if any(len(os.fsencode(name)) > longest for name in (*folder.parts[len(nearest.parts) :], resolved(out).name)):
             raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
         probe.mkdir()

@@ -10,8 +10,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Rotation
 
-FARTHEST_M = 100.0
-MOST_RADARS = 8
+MAX_PLACE_M = 100.0
+MAX_RADARS = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,12 @@ class RadarPose:
     roll_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        limits = {**dict.fromkeys(("x_m", "y_m", "z_m"), FARTHEST_M), "yaw_deg": 360, "pitch_deg": 90, "roll_deg": 180}
+        limits = {
+            **dict.fromkeys(("x_m", "y_m", "z_m"), MAX_PLACE_M),
+            "yaw_deg": 360,
+            "pitch_deg": 90,
+            "roll_deg": 180,
+        }
         for name, limit in limits.items():
             value = getattr(self, name)
             if not (math.isfinite(value) and abs(value) <= limit):
@@ -108,7 +113,7 @@ AT_CAMERA = RadarPose()
 
 def check_poses(poses: tuple[RadarPose, ...]) -> None:
     """Raises InputError for too many radars, or two at the same place that look the same way."""
-    if len(poses) > MOST_RADARS:
-        raise InputError(f"give at most {MOST_RADARS} radars, not {len(poses)}")
+    if len(poses) > MAX_RADARS:
+        raise InputError(f"give at most {MAX_RADARS} radars, not {len(poses)}")
     if len(set(poses)) < len(poses):
         raise InputError("two radars stand at the same place and look the same way; move one of them")

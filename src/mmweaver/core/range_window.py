@@ -6,7 +6,7 @@ from dataclasses import replace
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 
-MAX_CUBE_BYTES = 4 * 2**20  # of a frame's cube, where nobody chose a window
+MAX_CUBE_BYTES = 4 * 2**20  # of a frame's cube, where no window was chosen
 BYTES_A_CELL = 8  # complex64
 
 
@@ -35,7 +35,7 @@ def with_range_bins(config: RadarConfig, first: int, last: int) -> RadarConfig:
 
 
 def default_range_bins(num_bins: int, cells_a_bin: int) -> int:
-    """How many of the nearest bins are kept where nobody chose: all, or as many as a cube of 4 MiB a frame holds.
+    """How many of the nearest bins are kept by default: all, or as many as a cube of 4 MiB per frame holds.
 
     `cells_a_bin`: Doppler bins times antennas.
 

@@ -9,13 +9,14 @@ import numpy as np
 from mmweaver.core.errors import InputError
 
 
-def record_fields(cls: type, values: dict[str, Any], place: str) -> dict[str, Any]:
+def record_fields(cls: type, values: dict[str, Any], place: str, *, partial: bool = False) -> dict[str, Any]:
     """The arguments of a dataclass, from the content of a JSON.
 
     Args:
         cls: The dataclass; its fields are int, bool, str, float, tuples of these, tables (np.ndarray), or these | None.
         values: Names and values; JSON has lists and whole floats where the record has tuples and floats.
         place: The file, for errors.
+        partial: Whether required fields may be missing.
 
     Returns:
         The values in the types of the fields.
@@ -28,7 +29,7 @@ def record_fields(cls: type, values: dict[str, Any], place: str) -> dict[str, An
         raise InputError(f"{place}: unknown key {', '.join(unknown)[:100]}")
     no_default = dataclasses.MISSING
     required = {name for name, one in fields.items() if one.default is no_default and one.default_factory is no_default}
-    if missing := sorted(required - set(values)):
+    if (missing := sorted(required - set(values))) and not partial:
         raise InputError(f"{place}: missing key {', '.join(missing)}")
     found = {}
     for name, value in values.items():

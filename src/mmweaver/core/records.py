@@ -245,7 +245,7 @@ class FreeSpace:
     y_m: np.ndarray  # (y,) centres of the rows
     is_free: GridMask  # free from the floor to head height
     is_seen: GridMask  # measured; a free cell that is not seen is assumed to be free
-    is_assumed: GridMask | None = None  # not free by what is seen, but probably: used where nobody finds room otherwise
+    is_assumed: GridMask | None = None  # probably free, though not seen to be: the last resort for a motion
 
 
 @dataclass(frozen=True, kw_only=True)

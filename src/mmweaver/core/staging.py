@@ -20,7 +20,7 @@ from pathlib import Path
 
 ABANDONED_S = 3600.0
 COMMITTED = ".mmweaver-committed"  # in a folder: complete new files that are being moved into place
-LONGEST_NAME = 60  # characters of the name that are kept, for file systems allow 255 bytes in all
+MAX_NAME = 60  # characters of the name that are kept, for file systems allow 255 bytes in all
 STAGED = re.compile(r"\..*\.mmweaver-(?P<place>[0-9a-f]{8})-(?P<process>\d+)-(?P<start>\d+)-\d+(\.[^.]{1,16})?")
 _PAUSES_S = (0.0, 0.02, 0.05, 0.1, 0.5, 1.0)  # threads of Zarr may still add files after one write has failed
 _number = itertools.count()
@@ -30,8 +30,8 @@ _swept: set[tuple[int, str]] = set()
 def staging_path(path: Path) -> Path:
     """A new temporary name next to `path`, with its suffix."""
     suffix = path.suffix if len(path.suffix) <= 16 else ""
-    stem = path.name.removesuffix(suffix).lstrip(".")[:LONGEST_NAME]
-    while len(stem.encode()) > 2 * LONGEST_NAME:
+    stem = path.name.removesuffix(suffix).lstrip(".")[:MAX_NAME]
+    while len(stem.encode()) > 2 * MAX_NAME:
         stem = stem[:-1]
     process = os.getpid()
     return path.with_name(f".{stem}.mmweaver-{_place()}-{process}-{_start_of(process)}-{next(_number)}{suffix}")

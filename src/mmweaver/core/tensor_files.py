@@ -24,7 +24,7 @@ def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, st
     from safetensors.torch import save
 
     own = {name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}
-    data = _in_order(save(own, metadata={**(header or {}), SHA256: sha256_of(own)}))
+    data = _sort_metadata(save(own, metadata={**(header or {}), SHA256: sha256_of(own)}))
     with atomic_file(file) as temporary:
         temporary.write_bytes(data)
 
@@ -52,7 +52,7 @@ def sha256_of(tensors: "dict[str, Tensor]") -> str:
     return digest.hexdigest()
 
 
-def _in_order(data: bytes) -> bytes:
+def _sort_metadata(data: bytes) -> bytes:
     """Sorts the entries of `__metadata__`, which safetensors writes in an order that differs from run to run.
 
     Reference: safetensors format: 8 bytes of length, a JSON header padded with spaces, the data.

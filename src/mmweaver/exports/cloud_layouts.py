@@ -8,6 +8,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
+from mmweaver.exports.formats import export_format
 from mmweaver.stored_result import StoredResult
 
 START_S = 1_500_000_000  # of the stamps: a result has no date
@@ -22,8 +23,9 @@ KINECT_JOINTS = {
 }  # fmt: skip
 
 
+@export_format("radhar", "RadHAR's text of points")
 def write_radhar(result: StoredResult, out: Path) -> str:
-    """`radhar.txt`: one block a point, as ROS prints the messages of ti_mmwave_rospkg.
+    """`radhar.txt`: one block per point, as ROS prints the messages of ti_mmwave_rospkg.
 
     x is ahead, y to the left, z up, in metres; velocity in m/s; bearing in degrees, positive to the left; intensity is
     the signal-to-noise ratio in dB.
@@ -50,8 +52,9 @@ def write_radhar(result: StoredResult, out: Path) -> str:
     return f"{len(points.frame)} points as RadHAR's text"
 
 
+@export_format("mars", "MARS's tables of points and joints")
 def write_mars(result: StoredResult, out: Path) -> str:
-    """`radar_data.csv` and `kinect_data.csv` as in MARS: one row a point, and one row of 25 joints a frame.
+    """`radar_data.csv` and `kinect_data.csv` as in MARS: one row per point, and one row of 25 joints per frame.
 
     Metres from the radar: X to the right, Y ahead, Z up; velocity in m/s; intensity is the SNR in dB. Hands, hand tips
     and thumbs, which the skeleton lacks, are the wrists. Raises InputError where there is no person, or several.

@@ -10,12 +10,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.zarr_arrays import consolidate
+from mmweaver.exports.formats import export_format
 from mmweaver.formats.npz_files import POINT_COLUMNS
 from mmweaver.stored_result import StoredResult
 
 MAX_NETCDF_BYTES = 2_000_000_000  # of a variable of netCDF 3
 
 
+@export_format("mat", "MATLAB", ending=".mat")
 def write_mat(result: StoredResult, out: Path) -> str:
     """`result.mat` (MATLAB 5): the cube (frame, range, doppler, antenna) complex single, its axes, points and joints.
 
@@ -38,6 +40,7 @@ def write_mat(result: StoredResult, out: Path) -> str:
     return "a MATLAB file"
 
 
+@export_format("netcdf", "netCDF 3, for xarray", ending=".nc")
 def write_netcdf(result: StoredResult, out: Path) -> str:
     """`result.nc` (netCDF 3): `cube_real` and `cube_imag`, for netCDF has no complex numbers, points and joints.
 
@@ -71,6 +74,7 @@ def write_netcdf(result: StoredResult, out: Path) -> str:
     return "a netCDF file"
 
 
+@export_format("zarr", "Zarr 3, for xarray")
 def write_zarr(result: StoredResult, out: Path) -> str:
     """`result.zarr` (Zarr 3): the dataset of `Generation.to_xarray`, complex cube included, for `xarray.open_zarr`.
 

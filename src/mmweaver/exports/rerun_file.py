@@ -9,9 +9,11 @@ import numpy as np
 from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.exports.formats import export_format
 from mmweaver.stored_result import StoredResult
 
 
+@export_format("rerun", "Rerun recording (.rrd)", ending=".rrd")
 def write_rerun(result: StoredResult, out: Path) -> str:
     """`result.rrd`: points, skeletons and range-Doppler maps over time; usage reports are switched off.
 

@@ -14,6 +14,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.exports.formats import export_format
 from mmweaver.stored_result import StoredResult
 
 FRAME = "radar"
@@ -25,6 +26,7 @@ def ros_axes(points_m: Float[Array, "*shape 3"]) -> Float[Array, "*shape 3"]:
     return np.stack([points_m[..., 1], -points_m[..., 0], points_m[..., 2]], axis=-1)
 
 
+@export_format("ros2", "ROS 2 bag")
 def write_ros2(result: StoredResult, out: Path) -> str:
     """A ROS 2 bag (SQLite): /radar/points (PointCloud2), /radar/skeleton_N (PoseArray), /radar/range_doppler_db.
 
@@ -56,6 +58,7 @@ def write_ros2(result: StoredResult, out: Path) -> str:
     return f"a ROS 2 bag of {len(power_db)} frames"
 
 
+@export_format("mcap", "MCAP, for Foxglove", ending=".mcap")
 def write_mcap(result: StoredResult, out: Path) -> str:
     """`result.mcap` with Foxglove's schemas: /radar/points (PointCloud), /radar/skeleton (SceneUpdate).
 
@@ -63,30 +66,30 @@ def write_mcap(result: StoredResult, out: Path) -> str:
     """
     need("export", "MCAP", "foxglove")
     import foxglove
-    from foxglove import messages as said
+    from foxglove import messages as schema
 
-    numeric = said.PackedElementFieldNumericType.Float32
+    numeric = schema.PackedElementFieldNumericType.Float32
     fields = [
-        said.PackedElementField(name=name, offset=4 * place, type=numeric) for place, name in enumerate(POINT_FIELDS)
+        schema.PackedElementField(name=name, offset=4 * place, type=numeric) for place, name in enumerate(POINT_FIELDS)
     ]
     context = foxglove.Context()
     points = foxglove.Channel(
-        "/radar/points", schema=said.PointCloud.get_schema(), message_encoding="protobuf", context=context
+        "/radar/points", schema=schema.PointCloud.get_schema(), message_encoding="protobuf", context=context
     )
     scene = foxglove.Channel(
-        "/radar/skeleton", schema=said.SceneUpdate.get_schema(), message_encoding="protobuf", context=context
+        "/radar/skeleton", schema=schema.SceneUpdate.get_schema(), message_encoding="protobuf", context=context
     )
     with foxglove.open_mcap(str(out / "result.mcap"), context=context):
         for index, time_s in enumerate(result.cube.grid.frame_time_s):
             stamp = round(float(time_s) * 1e9)
-            when = said.Timestamp(sec=stamp // 10**9, nsec=stamp % 10**9)
-            cloud = said.PointCloud(
+            when = schema.Timestamp(sec=stamp // 10**9, nsec=stamp % 10**9)
+            cloud = schema.PointCloud(
                 timestamp=when, frame_id=FRAME, point_stride=4 * len(POINT_FIELDS), fields=fields,
                 data=packed_points(result.points, index).tobytes(),
             )  # fmt: skip
             points.log(cloud.encode(), log_time=stamp)
             if result.poses:
-                scene.log(_skeletons(said, result, index, when).encode(), log_time=stamp)
+                scene.log(_skeletons(schema, result, index, when).encode(), log_time=stamp)
     return "an MCAP file"
 
 
@@ -116,11 +119,9 @@ def _cloud(make: dict[str, Any], header: Any, rows: Float[Array, "point 5"]) -> 
 
 
 def _array(make: dict[str, Any], values: np.ndarray, names: tuple[str, ...]) -> Any:
-    sizes = values.shape
-    strides = [int(np.prod(sizes[place:])) for place in range(len(sizes))]
     dims = [
-        make["MultiArrayDimension"](label=name, size=size, stride=stride)
-        for name, size, stride in zip(names, sizes, strides, strict=True)
+        make["MultiArrayDimension"](label=name, size=size, stride=int(np.prod(values.shape[place:])))
+        for place, (name, size) in enumerate(zip(names, values.shape, strict=True))
     ]
     return make["Float32MultiArray"](layout=make["MultiArrayLayout"](dim=dims, data_offset=0), data=values.ravel())
 
@@ -134,15 +135,15 @@ def _poses(make: dict[str, Any], header: Any, joints_m: Float[Array, "22 3"]) ->
     return make["PoseArray"](header=header, poses=poses)
 
 
-def _skeletons(said: Any, result: StoredResult, index: int, when: Any) -> Any:
+def _skeletons(schema: Any, result: StoredResult, index: int, when: Any) -> Any:
     """The bones of all people as lines."""
     entities = []
     for person, pose in enumerate(result.poses):
         joints_m = ros_axes(pose.joints_m[index])
-        ends = [said.Point3(x=float(x), y=float(y), z=float(z)) for bone in BONES for x, y, z in joints_m[list(bone)]]
-        lines = said.LinePrimitive(
-            type=said.LinePrimitiveLineType.LineList, thickness=0.03, points=ends,
-            color=said.Color(r=0.9, g=0.6, b=0.2, a=1.0),
+        ends = [schema.Point3(x=float(x), y=float(y), z=float(z)) for bone in BONES for x, y, z in joints_m[list(bone)]]
+        lines = schema.LinePrimitive(
+            type=schema.LinePrimitiveLineType.LineList, thickness=0.03, points=ends,
+            color=schema.Color(r=0.9, g=0.6, b=0.2, a=1.0),
         )  # fmt: skip
-        entities.append(said.SceneEntity(timestamp=when, frame_id=FRAME, id=f"person {person}", lines=[lines]))
-    return said.SceneUpdate(entities=entities)
+        entities.append(schema.SceneEntity(timestamp=when, frame_id=FRAME, id=f"person {person}", lines=[lines]))
+    return schema.SceneUpdate(entities=entities)

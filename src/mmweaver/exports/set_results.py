@@ -11,6 +11,7 @@ from typing import Any
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.version import __version__
 from mmweaver.datasets.room_sequences import read_labelled
+from mmweaver.exports.formats import export_format
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
 from mmweaver.result_folder import FILES, META_VERSION, plain, radar_meta
 from mmweaver.stored_result import StoredResult
@@ -44,6 +45,7 @@ def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
         )  # fmt: skip
 
 
+@export_format("results", "a result folder, of each sequence of a set")
 def write_results(result: StoredResult, out: Path) -> str:
     """A result folder: radar.npz, points.npz, pose.npz where there are people, radar.json, meta.json."""
     write_radar_npz(out / "radar.npz", result.cube)

@@ -11,12 +11,11 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
+from mmweaver.exports.formats import export_format
 from mmweaver.features import dynamic_range_angle
+from mmweaver.formats.peer_arrays import BOTH_ROWS, HUPR_FIRST_CHANNEL, HUPR_SHAPE, UPPER_TX
 from mmweaver.stored_result import StoredResult
 
-# HuPR: (Doppler, range, azimuth, elevation), and its 14 joints
-HUPR_SHAPE = (16, 64, 64, 8)
-HUPR_AZIMUTH_OF_TX = (0, 2, 4)  # the azimuth channel of receiver 0; the second transmitter is the elevated one
 HUPR_JOINTS = (
     "right_hip", "right_knee", "right_ankle", "left_hip", "left_knee", "left_ankle", "neck", "head", "left_shoulder",
     "left_elbow", "left_wrist", "right_shoulder", "right_elbow", "right_wrist",
@@ -39,6 +38,7 @@ def write_hupr_pair(horizontal: StoredResult, vertical: StoredResult, out: Path)
     return f"{written} by two radars"
 
 
+@export_format("hupr", "HuPR's range-Doppler-angle arrays", needs_samples=True, write_pair=write_hupr_pair)
 def write_hupr(result: StoredResult, out: Path) -> str:
     """`hori/%09d.npy`, complex128 (16 Doppler, 64 range from far to near, 64 azimuth, 8 elevation), and the joints.
 
@@ -79,17 +79,17 @@ def hupr_frame(
     spectrum = np.fft.fft(np.fft.fft(moving.astype(complex), axis=-1), axis=0)
     spectrum = spectrum[..., config.first_range_bin : config.first_range_bin + num_range][..., ::-1]
     channels = np.zeros((len(samples), num_range, HUPR_SHAPE[2], HUPR_SHAPE[3]), complex)
-    for tx, first in enumerate(HUPR_AZIMUTH_OF_TX):
+    for tx, first in enumerate(HUPR_FIRST_CHANNEL):
         for rx in range(config.num_rx):
-            channels[:, :, first + rx, int(tx == 1)] = spectrum[:, tx, rx]
-    both_rows = slice(2, 6)
-    channels[:, :, both_rows] = np.fft.fft(channels[:, :, both_rows], axis=3)
+            channels[:, :, first + rx, int(tx == UPPER_TX)] = spectrum[:, tx, rx]
+    channels[:, :, BOTH_ROWS] = np.fft.fft(channels[:, :, BOTH_ROWS], axis=3)
     angles = np.fft.fftshift(np.fft.fft(channels, axis=2), axes=(2, 3))
     doppler = np.fft.fftshift(angles, axes=0)
     first = len(samples) // 2 - kept // 2
     return doppler[first : first + kept, :, ::-1, ::-1]
 
 
+@export_format("rf_genesis", "RF-Genesis' radar frames", needs_samples=True)
 def write_rf_genesis(result: StoredResult, out: Path) -> str:
     """`radar_frames.npy`, complex128 (frame, tx, rx, chirp, sample), with `TI1843_config.json` in RF-Genesis' units.
 
@@ -99,7 +99,7 @@ def write_rf_genesis(result: StoredResult, out: Path) -> str:
     Reference: Chen and Zhang, RF Genesis (SenSys 2023), as of its public repository.
     """
     adc = result.adc
-    np.save(out / "radar_frames.npy", _in_firing_order(adc).transpose(0, 2, 3, 1, 4).astype(np.complex128))
+    np.save(out / "radar_frames.npy", _firing_order(adc).transpose(0, 2, 3, 1, 4).astype(np.complex128))
     _write_json(out / "TI1843_config.json", rf_genesis_settings(adc.config))
     return f"{len(adc.samples)} frames of RF-Genesis"
 
@@ -125,6 +125,7 @@ def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
     }  # fmt: skip
 
 
+@export_format("mmmesh", "mmMesh's point frames")
 def write_mmmesh(result: StoredResult, out: Path) -> str:
     """`points/%06d.npy`, float64 (point, 6): x, y, z in metres, velocity in m/s, energy, range in metres.
 
@@ -144,11 +145,12 @@ def write_mmmesh(result: StoredResult, out: Path) -> str:
     if (result.folder / "adc_data.bin").is_file():
         (out / "adc").mkdir()
         adc = result.adc
-        for index, frame in enumerate(_in_firing_order(adc)):
+        for index, frame in enumerate(_firing_order(adc)):
             np.save(out / "adc" / f"{index:06d}.npy", frame.transpose(1, 2, 0, 3))
     return f"{frames} frames of mmMesh"
 
 
+@export_format("drai", "dynamic range-angle images, 32 x 32")
 def write_drai(result: StoredResult, out: Path) -> str:
     """`y_NAME_e0_u0_p0_s0.npy`: dynamic range-angle images, float32 (frame, 32 range, 32 azimuth), linear power.
 
@@ -160,7 +162,7 @@ def write_drai(result: StoredResult, out: Path) -> str:
     return f"{len(images)} dynamic range-angle images"
 
 
-def _in_firing_order(adc: AdcCube) -> np.ndarray:
+def _firing_order(adc: AdcCube) -> np.ndarray:
     """(frame, loop, slot, rx, sample); those of a transmit code are in it already."""
     return adc.samples if adc.config.is_coded else adc.samples[:, :, list(adc.config.tx_order)]
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_pictures import read_animation
+from mmweaver.exports.formats import export_format
 from mmweaver.figures.animation import render_pictures
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.stored_result import StoredResult
@@ -15,11 +16,13 @@ from mmweaver.stored_result import StoredResult
 CODECS = {"mp4": ("libx264", {"crf": "23", "preset": "medium"}), "webm": ("libvpx-vp9", {"crf": "33", "b:v": "0"})}
 
 
+@export_format("mp4", "video, H.264", ending=".mp4")
 def write_mp4(result: StoredResult, out: Path) -> str:
     """`result.mp4` (H.264)."""
     return write_video(result, out / "result.mp4")
 
 
+@export_format("webm", "video, VP9", ending=".webm")
 def write_webm(result: StoredResult, out: Path) -> str:
     """`result.webm` (VP9)."""
     return write_video(result, out / "result.webm")

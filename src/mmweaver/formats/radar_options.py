@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from mmweaver.core.antenna_tables import ANTENNAS, AntennaTable, Places
+from mmweaver.core.antenna_tables import AntennaTable, antenna_table
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import halfwave_positions
+from mmweaver.core.presets import ANTENNAS, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import read_json
 
@@ -15,7 +15,7 @@ EXAMPLE = '{"tx": [[0, 0], [4, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}'
 
 @dataclass(frozen=True, kw_only=True)
 class RadarOptions:
-    """Choices that a radar's file leaves open; None: what the file says."""
+    """Choices that a radar's file leaves open; None keeps what the file says."""
 
     sub_frame: int | None = None
     antennas: AntennaTable | None = None
@@ -75,18 +75,12 @@ def joined_radar(
 
 
 def read_antennas(name_or_path: str) -> AntennaTable:
-    """A board's table by its name, or a JSON of one's own with places (x, z) in half wavelengths. Raises InputError."""
+    """A board's table by its name, or a JSON with places (x, z) in half wavelengths. Raises InputError."""
     path = Path(name_or_path)
     if name_or_path in ANTENNAS or path.suffix.lower() != ".json":
         return ANTENNAS[name_or_path]
     values: Any = read_json(path)
     try:
-        inverted = tuple(int(one) for one in values.get("rx_inverted", []))
-        tx, rx = _places(values["tx"]), _places(values["rx"])
+        return antenna_table(path.stem, values, str(path))
     except (ValueError, KeyError, TypeError, AttributeError):
         raise InputError(f"{path} is no table of antennas; write for example {EXAMPLE}, in half wavelengths") from None
-    return AntennaTable(name=path.stem, tx_halfwaves=tx, rx_halfwaves=rx, rx_inverted=inverted, source=str(path))
-
-
-def _places(rows: Any) -> Places:
-    return tuple((float(x), float(z)) for x, z in rows)

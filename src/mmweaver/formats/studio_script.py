@@ -43,7 +43,7 @@ def read_studio_script(path: Path | str, options: RadarOptions | None = None) ->
             the radar could not exist.
     """
     path = Path(path)
-    text = _without_comments(read_text(path, max_bytes=MAX_BYTES, errors="replace"))
+    text = _strip_comments(read_text(path, max_bytes=MAX_BYTES, errors="replace"))
     names = {name: float(number) for name, number in ASSIGNMENT.findall(text)}
     calls: dict[str, list[Line]] = {}
     for found in CALL.finditer(text):
@@ -63,7 +63,7 @@ def read_studio_script(path: Path | str, options: RadarOptions | None = None) ->
         return radar_from_ti(setup, options or RadarOptions())
 
 
-def _without_comments(text: str) -> str:
+def _strip_comments(text: str) -> str:
     """The script without -- and --[[ ]], lines kept."""
     kept, at = [], 0
     while (start := text.find("--", at)) >= 0:

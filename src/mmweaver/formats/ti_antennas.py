@@ -8,8 +8,9 @@ Visualizer.
 
 import numpy as np
 
-from mmweaver.core.antenna_tables import ANTENNAS, AntennaTable, table_of_virtual_array
+from mmweaver.core.antenna_tables import AntennaTable, table_of_virtual_array
 from mmweaver.core.errors import InputError
+from mmweaver.core.presets import ANTENNAS
 
 NUM_RX = 4
 TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mmweaver.core.antenna_tables import EVM_2944, ISK, AntennaTable
+from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import BAND_60_HZ, BAND_77_HZ, halfwave_positions
+from mmweaver.core.presets import ANTENNAS, BAND_60_HZ, BAND_77_HZ, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import default_range_bins
 from mmweaver.core.transmit_code import tx_code_of
@@ -137,7 +137,9 @@ def radar_from_ti(setup: TiSetup, options: RadarOptions) -> RadarConfig:
     """
     index = setup.chosen_frame(options.sub_frame)
     chirps, profile = setup.loop(index)
-    board = options.antennas or setup.antennas or (EVM_2944 if any(one.tx_mask >> 3 for one in chirps) else ISK)
+    board = (
+        options.antennas or setup.antennas or ANTENNAS["evm2944" if any(one.tx_mask >> 3 for one in chirps) else "isk"]
+    )
     lanes = options.lanes or setup.lvds_lanes
     sequence, repeats = _repeated_sequence(_weights(setup.tx_mask, chirps, profile, board))
     enabled = [tx for tx in range(len(board.tx_halfwaves)) if any(chirp[tx] for chirp in sequence)]

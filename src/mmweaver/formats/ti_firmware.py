@@ -33,9 +33,9 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
         )
     config = read_ti_cfg(path)
     device = "xwr16xx" if adc_buffer(lines)[1] == 1 else "xwr14xx"
-    own = {command: _without_sub_frame(found[-1]) for command, found in lines.items() if command in PLAIN_LENGTH}
+    own = {command: _drop_sub_frame(found[-1]) for command, found in lines.items() if command in PLAIN_LENGTH}
     with file_named(path):
-        cfars = {line.values[0]: line for line in map(_without_sub_frame, lines["cfarCfg"])}
+        cfars = {line.values[0]: line for line in map(_drop_sub_frame, lines["cfarCfg"])}
         if unknown := sorted(set(cfars) - {0.0, 1.0}):
             raise InputError(f"cfarCfg is for direction {unknown[0]:g}; known are 0 (range) and 1 (Doppler)")
         values: dict[str, bool | int] = {}
@@ -58,7 +58,7 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
         )
 
 
-def _without_sub_frame(line: Line) -> Line:
+def _drop_sub_frame(line: Line) -> Line:
     """A line with the numbers of SDK 1 first."""
     return Line(line.number, line.command, line.values[len(line.values) > PLAIN_LENGTH[line.command] :])
 

@@ -14,8 +14,8 @@ from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
 from mmweaver.dsp.tracking import PersonTrack, track_people
 from mmweaver.dsp.vital_signs import Rate, breathing_rate, heart_rate
 
-SHORTEST_VITAL_S = 8.0
-LEAST_CONTRAST = 20.0  # of a spectrogram, its peak over its median: less is noise
+MIN_VITAL_S = 8.0
+MIN_CONTRAST = 20.0  # of a spectrogram, its peak over its median: less is noise
 FASTEST_DB = -20.0  # of the spectrogram's peak: what counts as the fastest movement
 
 
@@ -86,7 +86,7 @@ class RecordingAnalysis:
 
 
 def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis:
-    """All that a recording of this length, with these loops a frame, can give; micro-Doppler needs its samples."""
+    """All that a recording of this length, with these loops per frame, can give; micro-Doppler needs its samples."""
     is_sequence = len(cube.values) > 1
     slow = slow_time_doppler(cube) if is_sequence else None
     cells = tuple(moving_cells(cube))
@@ -101,7 +101,7 @@ def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns
     """Of the cell whose breathing is clearest; None where no cell shows any."""
     found: list[VitalSigns] = []
     for cell in cells:
-        if len(cell.displacement_m) * period_s < SHORTEST_VITAL_S:
+        if len(cell.displacement_m) * period_s < MIN_VITAL_S:
             return None
         breathing = breathing_rate(cell.displacement_m, period_s)
         if breathing is not None and breathing.is_clear:
@@ -117,7 +117,7 @@ def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:
         found = micro_doppler(adc)
     except InputError:  # too few loops
         return None
-    return found if found.power.max() > LEAST_CONTRAST * np.median(found.power) else None
+    return found if found.power.max() > MIN_CONTRAST * np.median(found.power) else None
 
 
 def _people(cube: RadarCube) -> tuple[PersonTrack, ...]:

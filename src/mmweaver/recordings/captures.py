@@ -93,7 +93,7 @@ def read_capture(
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
     people = read_poses_npz(folder / POSE) if (folder / POSE).is_file() else ()
     if len(people) > 1:
-        raise InputError(f"{folder / POSE} holds {len(people)} people; a capture is of one person, or of nobody")
+        raise InputError(f"{folder / POSE} holds {len(people)} people; a capture is of one person at most")
     pose = people[0] if people else None
     if pose is not None:
         _check_times(folder, pose, cube)

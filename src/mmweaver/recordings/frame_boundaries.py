@@ -2,8 +2,8 @@
 
 Loops follow each other after a millisecond or so, frames after tens of them. Within a frame an echo that moves turns by
 the same angle from loop to loop, from frame to frame by any. Where every second step between frames is as those within,
-two frames are one; where steps within a frame are as different as those between frames, a frame is several. What stands
-still says nothing, nor do frames without a pause between them.
+two frames are one; where steps within a frame are as different as those between frames, a frame is several. Static
+echoes are no evidence, nor are frames without a pause between them.
 """
 
 from collections.abc import Iterator
@@ -15,8 +15,8 @@ from mmweaver.core.records import AdcCube
 FRAMES = 48  # that are looked at
 PARTS = (2, 3, 4)
 JUMP = 4.0  # times the change of a step within a frame
-LEAST_CHANGE = 0.05  # of the moving echoes' power: steps within a frame change by less
-FEWEST = 4  # steps of each kind
+MIN_CHANGE = 0.05  # of the moving echoes' power: steps within a frame change by less
+MIN_STEPS = 4  # steps of each kind
 
 
 def loops_of_other_frames(adc: AdcCube) -> Iterator[str]:
@@ -27,12 +27,17 @@ def loops_of_other_frames(adc: AdcCube) -> Iterator[str]:
     chirps = adc.samples[:FRAMES, :, 0]  # of one transmitter
     within, between = _changes(chirps.reshape(len(chirps), loops, -1))
     for parts in PARTS:
-        if loops % parts == 0 and loops > 2 * parts and len(between) >= FEWEST and _is_several(within, between, parts):
-            yield _said(loops, loops // parts, "echoes that move jump within each frame")
+        if (
+            loops % parts == 0
+            and loops > 2 * parts
+            and len(between) >= MIN_STEPS
+            and _is_several(within, between, parts)
+        ):
+            yield _advice(loops, loops // parts, "echoes that move jump within each frame")
             return
     for parts in PARTS:
-        if len(between) >= FEWEST * parts and _is_part(within, between, parts):
-            yield _said(loops, loops * parts, "echoes that move go on from one frame to the next without a pause")
+        if len(between) >= MIN_STEPS * parts and _is_part(within, between, parts):
+            yield _advice(loops, loops * parts, "echoes that move go on from one frame to the next without a pause")
             return
 
 
@@ -51,16 +56,16 @@ def _is_several(within: np.ndarray, between: np.ndarray, parts: int) -> bool:
     loops = within.shape[1] + 1
     seams = [number * loops // parts - 1 for number in range(1, parts)]
     typical = np.median(within, axis=0)
-    rest = max(np.median(np.delete(typical, seams)), LEAST_CHANGE)
+    rest = max(np.median(np.delete(typical, seams)), MIN_CHANGE)
     return bool(typical[seams].min() > max(JUMP * rest, np.median(between) / JUMP))
 
 
 def _is_part(within: np.ndarray, between: np.ndarray, parts: int) -> bool:
     is_last = np.arange(len(between)) % parts == parts - 1
     small = np.median(between[~is_last])
-    is_small = small < JUMP / 2 * max(np.median(within), LEAST_CHANGE)
-    return bool(is_small and np.median(between[is_last]) > JUMP * max(small, LEAST_CHANGE))
+    is_small = small < JUMP / 2 * max(np.median(within), MIN_CHANGE)
+    return bool(is_small and np.median(between[is_last]) > JUMP * max(small, MIN_CHANGE))
 
 
-def _said(own: int, likely: int, why: str) -> str:
+def _advice(own: int, likely: int, why: str) -> str:
     return f"{why}: the frames of the recording probably have {likely} loops, not {own}; --radar is probably another"

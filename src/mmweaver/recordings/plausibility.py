@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.core.antenna_tables import ANTENNAS
-from mmweaver.core.presets import PRESETS
+from mmweaver.core.presets import ANTENNAS, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
@@ -29,20 +28,20 @@ FRAMES_LOOKED_AT = 8
 PROBE_BYTES = 1 << 16
 FULL_SCALE = 32767
 CLIPPED_SHARE = 1e-3
-LEAST_CLIPPED = 1000  # counts; of a few counts many samples have the largest
+MIN_CLIPPED = 1000  # counts; of a few counts many samples have the largest
 OTHER_SIZE = 0.5  # times the mean size of the words, below which another type is likelier
-LEAST_LIKENESS = 0.4  # of chirps one loop apart
+MIN_LIKENESS = 0.4  # of chirps one loop apart
 BETTER_LIKENESS = 0.25  # that another layout must have more
 NO_LIKENESS = 0.05  # of chirps in noise, or of samples packed in a way that is not known
-LEAST_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
+MIN_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
 FITTING = 0.6  # how well static echoes fit the right antennas at least
 BETTER_BOARD = 0.15  # that another board's antennas must fit better
 BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
 SAME_LIKENESS = 0.05
-USUAL_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
+COMMON_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
 OTHER_PERIOD = 0.15  # of the time between frames
-FEWEST_MOVING_FRAMES = 6
-LEAST_TRAVEL = 6.0  # range bins that velocities must add up to: of hands and a trunk that sways the range says little
+MIN_MOVING_FRAMES = 6
+MIN_TRAVEL = 6.0  # range bins that velocities must add up to: hands and a swaying trunk move by less
 UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen with the other sign
 
 
@@ -57,12 +56,12 @@ def implausible(
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     if found := [*_number_type(path)]:
-        return found  # of other numbers nothing else can be said
+        return found  # other numbers make every other check meaningless
     found = [*_values(adc)]
     if any("constant" in text for text in found):
         return found  # too little to check more
     layout = [*wrong_lanes(few, iq_order)] or [*_layout(few), *_period(adc.config, frame_time_s)]
-    layout = layout or [*wrong_iq_order(few, iq_order)]  # of another radar's chirps it says nothing
+    layout = layout or [*wrong_iq_order(few, iq_order)]  # meaningless for another radar's chirps
     layout = layout or [*loops_of_other_frames(adc)]
     return [*found, *(layout or [*_transmitters(cube), *_velocity_sign(cube)])]
 
@@ -111,7 +110,7 @@ def _values(adc: AdcCube) -> Iterator[str]:
     few = adc.samples[:FRAMES_LOOKED_AT]
     parts = np.concatenate([np.real(few).ravel(), np.imag(few).ravel()])
     most = np.abs(parts).max(initial=0)
-    is_counts = np.isnan(adc.scale) and most >= LEAST_CLIPPED and adc.config.complex_samples
+    is_counts = np.isnan(adc.scale) and most >= MIN_CLIPPED and adc.config.complex_samples
     clipped = float((np.abs(parts) >= most - 1).mean()) if is_counts else 0.0
     if clipped > CLIPPED_SHARE:
         at = "full scale" if most >= FULL_SCALE else f"{most:.0f} counts"
@@ -140,7 +139,7 @@ def _layout(adc: AdcCube) -> Iterator[str]:
 
     own = alike(loop)
     layouts: dict[int, list[tuple[int, int, int]]] = {}
-    for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*USUAL_SAMPLES, config.num_samples})):
+    for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*COMMON_SAMPLES, config.num_samples})):
         if (lag := slots * rx * samples) * 4 <= flat.shape[1]:
             layouts.setdefault(lag, []).append((slots, rx, samples))
     every = {lag: alike(lag) for lag in layouts}
@@ -150,7 +149,7 @@ def _layout(adc: AdcCube) -> Iterator[str]:
             " alone, no samples, or samples packed in another way"
         )
         return
-    if own >= LEAST_LIKENESS and max(map(gain, layouts), default=0.0) <= BETTER_LIKENESS:
+    if own >= MIN_LIKENESS and max(map(gain, layouts), default=0.0) <= BETTER_LIKENESS:
         kinds = (flat[:2],)
         others = {lag: alike(lag) for lag in layouts if lag < loop and loop % lag == 0}
         likely = [lag for lag, likeness in others.items() if likeness > own - SAME_LIKENESS]
@@ -221,7 +220,7 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
             f" {found[own]:.2f}; try --antennas {board}, or another --radar"
         )
         return
-    if found and found[best] > max(found[own] + BETTER_ORDER, LEAST_ORDER):
+    if found and found[best] > max(found[own] + BETTER_ORDER, MIN_ORDER):
         yield (
             f"the transmitters fit the static echoes to {found[own]:.2f} in the order {','.join(map(str, own))}, to"
             f" {found[best]:.2f} in the order {','.join(map(str, best))}; try another --radar or --tx-order"
@@ -247,7 +246,7 @@ def _agreements_of_boards(cube: RadarCube) -> dict[str, float]:
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:
     """What comes nearer in range must have negative radial velocities, unless it may be too fast for the radar."""
     config = cube.config
-    if config.num_loops < 8 or len(cube.values) < FEWEST_MOVING_FRAMES:
+    if config.num_loops < 8 or len(cube.values) < MIN_MOVING_FRAMES:
         return
     power = range_doppler_power(remove_static(cube))
     level = power.sum(axis=(1, 2))
@@ -258,10 +257,10 @@ def _velocity_sign(cube: RadarCube) -> Iterator[str]:
     if np.percentile(steady_mps, 75) > UNFOLDED * np.abs(cube.grid.radial_velocity_mps).max():
         return
     expected = (speed[1:] + speed[:-1]) / 2 * config.frame_period_s
-    if np.ptp(np.cumsum(expected)) < LEAST_TRAVEL * config.range_resolution_m:
+    if np.ptp(np.cumsum(expected)) < MIN_TRAVEL * config.range_resolution_m:
         return
     sure = np.abs(expected) > 0.2 * config.range_resolution_m
-    if sure.sum() < FEWEST_MOVING_FRAMES - 1:
+    if sure.sum() < MIN_MOVING_FRAMES - 1:
         return
     agreement = float((travelled[sure] * expected[sure]).sum() / (expected[sure] ** 2).sum())
     if agreement < -0.5:

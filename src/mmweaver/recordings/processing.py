@@ -30,7 +30,7 @@ from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessedRecording:
-    """A recording's cube and point cloud, and what meta.json says of them."""
+    """A recording's cube and point cloud, and their meta.json."""
 
     adc: AdcCube | None  # None where the recording holds a cube and no samples
     cube: RadarCube

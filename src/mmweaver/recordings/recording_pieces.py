@@ -14,7 +14,7 @@ from mmweaver.stream_folder import is_stream, num_frames_of_stream
 
 
 class RecordingPieces:
-    """The frames of a recording, read when they are asked for.
+    """The frames of a recording, read on demand.
 
     An adc_data.bin, packets of a DCA1000, a .npy whose first axis is "frame" and a folder of `generate --stream` are
     read in part, a radar.npz is mapped; anything else is read at once, at the first use.

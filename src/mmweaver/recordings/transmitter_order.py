@@ -15,18 +15,18 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 
 CLEAR = 30.0  # times the power at the other velocities: cells that are static echoes
-FEWEST_CELLS = 12
+MIN_CELLS = 12
 Baseline = tuple[float, float]  # across and up, in half wavelengths
 
 
 def agreements(cube: RadarCube) -> dict[tuple[int, ...], float]:
     """How well the transmitters fit the receivers, 0 to 1, in each possible firing order.
 
-    Empty where nothing can be said: one transmitter, decoded ones, or too few static cells.
+    Empty without evidence: one transmitter, decoded ones, or too few static cells.
     """
     config = cube.config
     still = _static_cells(cube)
-    if config.is_coded or config.num_tx < 2 or len(still) < FEWEST_CELLS:
+    if config.is_coded or config.num_tx < 2 or len(still) < MIN_CELLS:
         return {}
     signal = still.reshape(-1, config.num_tx, config.num_rx)
     fired, found = list(config.tx_order), {}

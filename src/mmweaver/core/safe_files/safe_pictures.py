@@ -38,7 +38,7 @@ class Picture:
     image: "Image.Image"
     stored_size: tuple[int, int]  # (width, height) in the file
     orientation: int  # EXIF's, 1 to 8; 1 = as stored
-    focal_35mm: float | None = None  # EXIF's focal length in millimetres on 35 mm film; None where it is not said
+    focal_35mm: float | None = None  # EXIF's focal length in millimetres on 35 mm film; None where it is not given
 
 
 def open_picture(path: Path) -> Picture:
@@ -106,7 +106,7 @@ def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
 
 
 def _focal_35mm(exif: "Image.Exif") -> float | None:
-    """The focal length on 35 mm film, where it is said and some lens could have it."""
+    """The focal length on 35 mm film, where it is given and plausible for a lens."""
     value: Any = exif.get_ifd(_EXIF).get(_FOCAL_35MM)
     try:
         focal_mm = float(value)

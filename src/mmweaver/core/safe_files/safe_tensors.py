@@ -19,11 +19,11 @@ NO_TENSORS = "damaged or no safetensors file ({reason}); fetch or write it again
 
 
 def read_tensors(
-    path: Path | str, *, only: Iterable[str] | None = None, finite: bool = True
+    path: Path | str, *, only: Iterable[str] | None = None
 ) -> tuple[dict[str, "torch.Tensor"], dict[str, str]]:
     """The tensors of a safetensors file, or those named in `only`, and its metadata.
 
-    Raises InputError where it is another file or damaged, lacks one of `only`, or, with `finite`, has NaN or infinity.
+    Raises InputError where it is another file or damaged, lacks one of `only`, or has NaN or infinity.
     """
     from safetensors import safe_open
 
@@ -34,8 +34,7 @@ def read_tensors(
         if missing := [name for name in names if name not in set(file.keys())]:
             raise InputError(f"{path} holds no {missing[0]}; is it the right file?")
         tensors = {name: file.get_tensor(name) for name in names}
-    if finite:
-        check_finite(path, tensors)
+    check_finite(path, tensors)
     return tensors, metadata
 
 

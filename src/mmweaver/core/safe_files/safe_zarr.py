@@ -27,7 +27,7 @@ INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
 MAX_CHUNKS = 1_000_000
 ABSENT_CHUNKS = 1000  # of nothing but zeros, which Zarr need not write
 BYTES_OF_INDEX = 16  # of each chunk in a shard
-MOST_AXES = 16
+MAX_AXES = 16
 KEYS = {"name": "default", "configuration": {"separator": "/"}}
 TEXT = np.dtype("O")
 _PACKED = [[], ["zstd"], ["blosc"], ["crc32c"], ["zstd", "crc32c"], ["blosc", "crc32c"]]
@@ -35,7 +35,7 @@ _PACKED = [[], ["zstd"], ["blosc"], ["crc32c"], ["zstd", "crc32c"], ["blosc", "c
 
 @dataclass(frozen=True, kw_only=True)
 class ArrayPromise:
-    """What the metadata of an array says: shape, type (`TEXT` for texts), and how many bytes its files hold."""
+    """What the metadata of an array promises: shape, type (`TEXT` for texts), and how many bytes its files hold."""
 
     shape: tuple[int, ...]
     dtype: np.dtype
@@ -172,7 +172,7 @@ def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
         is_text = metadata["data_type"] == "string"
         dtype = TEXT if is_text else np.dtype(metadata["data_type"])
         inner = _inner_chunk(metadata["codecs"], chunk, is_text)
-        if dtype.kind not in "biufcO" or (dtype.kind == "O") != is_text or len(shape) > MOST_AXES:
+        if dtype.kind not in "biufcO" or (dtype.kind == "O") != is_text or len(shape) > MAX_AXES:
             raise ValueError("its type or shape")
         if metadata["chunk_grid"].get("name") != "regular" or metadata.get("chunk_key_encoding", KEYS) != KEYS:
             raise ValueError("its chunks are laid out in another way")

@@ -92,7 +92,7 @@ def read_mmfi(path: Path) -> LoggedCloud:
 
 @point_format("radhar", "text of RadHAR", lambda path, head: b"point_id:" in head)
 def read_radhar_text(path: Path) -> LoggedCloud:
-    """RadHAR's text: a message a point, point_id 0 begins a frame; x ahead, y left. Raises InputError."""
+    """RadHAR's text: one message per point, point_id 0 begins a frame; x ahead, y left. Raises InputError."""
     columns: dict[bytes, list[float]] = {}
     for name, word in RADHAR_LINE.findall(read_bytes(path, max_bytes=MAX_BYTES)):
         try:

@@ -198,7 +198,7 @@ def _compressed(raw: bytes) -> np.ndarray | None:
 
 
 def _spherical(raw: bytes) -> np.ndarray | None:
-    """Five units, then a point each: int8 elevation and azimuth, int16 Doppler, uint16 range and SNR."""
+    """Five units, then per point: int8 elevation and azimuth, int16 Doppler, uint16 range and SNR."""
     if len(raw) < 20 or (len(raw) - 20) % 8:
         return None
     elevation_unit, azimuth_unit, velocity_unit, range_unit, snr_unit = struct.unpack_from("<5f", raw)
