@@ -22,8 +22,6 @@ from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.dsp.cube import cube_values
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.adc_synthesis import AdcSynthesis

@@ -39,8 +39,6 @@ from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights

@@ -17,8 +17,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.scatterer_network import WeaverNetwork
-from studies.scores.scorecard import METRICS, Representations
-from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.training.network_examples import RoomExamples
 from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, batch_sampler

@@ -25,8 +25,6 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights

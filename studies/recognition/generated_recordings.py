@@ -19,7 +19,6 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
-from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.receiver import IDEAL, Receiver

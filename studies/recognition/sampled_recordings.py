@@ -26,10 +26,8 @@ from mmweaver.datasets.dataset_store import read_plan
 from mmweaver.datasets.room_sequences import LabelledData, read_labelled
 from mmweaver.dsp.cube import adc_from_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
-from mmweaver.training.activity_examples import augmented, compute_log_maps
-from mmweaver.training.activity_training import TRAIN_SPLITS
-from studies.fields.budgeted_fit import BudgetedRecipe
 from mmweaver.training.activity_training import TRAIN_SPLITS, augmented, compute_log_maps
+from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.finer_radar import interpolated, spectrum_on
 from studies.fields.sampling import finer_grid, sampled_grid

@@ -89,7 +89,6 @@ REVIEWED: dict[str, str] = {
             "cannot listen on □ port",
             "cannot be shared by □ processes evenly",
             "give a model of mmweaver recognise train by --model",
-            "needs the package moge",
             "make one: mmweaver export DIR --to rerun",
         ),
         CANNOT,

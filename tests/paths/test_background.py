@@ -11,8 +11,6 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.background import BackgroundRecording, agreeing_gain

@@ -8,23 +8,11 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.stages import Stages
 from mmweaver.methods import Learned, Physics, with_propagation
-from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.diffuse_clutter import (
-    ASIDE_M,
-    AT_M,
-    AZIMUTH_RAD,
-    LEVELS_DB,
-    MIN_RANGE_M,
-    SQUARE_METRES_A_METRE,
-    diffuse_clutter,
-    room_level,
-    seed_of_room,
-)
+from mmweaver.paths.diffuse_clutter import diffuse_clutter, room_level, seed_of_room
 from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.static_paths import Propagation
-from mmweaver.paths.diffuse_clutter import room_level, seed_of_room, unresolved_clutter
 from tests.rooms import back_wall, floor, scene_of
 
 # docs/decisions/diffuse-clutter.md: 300 patches a metre from 1 m on, to 75 degrees, rooms that differ by 12 dB

@@ -21,7 +21,6 @@ from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_second_order import second_order_paths
-from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import GivenRoom, SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread

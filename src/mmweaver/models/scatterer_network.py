@@ -16,7 +16,22 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.geometry.pinhole import pixel_coordinates
+from mmweaver.models.body_anchors import (
+    BODY_FEATURES,
+    GHOST_FEATURES,
+    NUM_ANCHORS,
+    NUM_GHOSTS,
+    Anchors,
+    body_anchors,
+    ghost_anchors,
+)
+from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
+from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_CHANNELS, Z_ENV
+from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.precision import in_full_precision
+from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
 from mmweaver.paths.mean_scatterers import MeanEchoes
 
 

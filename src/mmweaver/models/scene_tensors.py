@@ -12,14 +12,12 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
+from mmweaver.paths.diffuse_clutter import seed_of_room, unresolved_clutter
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.image_sources import apparent_direction
-from mmweaver.paths.radar_equation import direction_loss_db
-from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.radar_equation import pattern_towards_db
+from mmweaver.paths.radar_equation import direction_loss_db
 from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
-from mmweaver.paths.diffuse_clutter import seed_of_room, unresolved_clutter
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160

@@ -15,7 +15,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.people import MOST_SUBJECTS, check_subject, subject_of
-from mmweaver.motion.planning.separation import MIN_PELVIS_DISTANCE_M, are_separate
+from mmweaver.motion.planning.separation import are_separate
 
 Place = tuple[float, float]
 MOST_PEOPLE = 8
@@ -79,7 +79,7 @@ def compose_people(
             return tuple(people[index] for index in range(len(plans)))
     refused = plans[crowded]
     raise InputError(
-        f"there is no room for {len(plans)} people who keep {LEAST_PELVIS_DISTANCE_M:g} m apart: person {crowded + 1},"
+        f"there is no room for {len(plans)} people who keep {MIN_PELVIS_DISTANCE_M:g} m apart: person {crowded + 1},"
         f" {refused.text if refused else ''!r}, finds no place next to the others; try fewer people or other places"
         " (--at for each)"
     )

@@ -159,9 +159,7 @@ def _upright_pose(folder: Path, kind: str, picture: Path, turns: int) -> Pose:
     """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
     pose = scan_pose(folder, kind, picture)
     if pose is None:
-        raise InputError(
-            f"{folder}: photo {index} of the scan has no pose, by which photos are joined; choose another (--photo)"
-        )
+        raise InputError(f"{folder}: the scan says no pose for {picture.name}; photos are joined by their poses")
     quarter = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # counterclockwise
     return pose @ np.linalg.matrix_power(quarter, turns).T
 

@@ -13,9 +13,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.datasets.dataset_store import plan_text, read_plan
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.precision import exactly
-from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scatterer_network import ScattererNetwork, WeaverNetwork
-from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
 from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of

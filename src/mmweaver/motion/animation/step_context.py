@@ -72,7 +72,7 @@ class StepContext:
     @property
     def fewest(self) -> int:
         """The least number of repetitions where the sentence names none: 2 where it says "several times"."""
-        return 2 if self.style == "several" else 1
+        return 2 if self.step.several else 1
 
     def by_speed(self, slow: float, usual: float, fast: float) -> float:
         """One of three values, by the speed that the sentence names."""
@@ -137,7 +137,7 @@ class StepContext:
 
         Several without a number are two, or more where the time allows it.
         """
-        whole_body = self.style == "several" and not self.step.upper
+        whole_body = self.step.several and not self.step.upper
         count = self.count or (max(2, int(self.duration_s / natural_s)) if whole_body else usual)
         wanted = natural_s / self.step.pace * self.by_speed(1.35, 1.0, 0.8) * float(np.exp(self.rng.normal(0, 0.07)))
         each = float(np.clip(min(wanted, self.duration_s / count), least_s, most_s))
