@@ -12,7 +12,7 @@ from mmweaver.methods import Learned
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import WeightsCard, load_into, read_card
-from mmweaver.paths.mean_scatterers import MeanEchoes
+from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
 from mmweaver.paths.paths import Paths
 from mmweaver.paths.speckle import place_of, sample_cells
 from studies.paper.power_cells import CellSizes

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.cli.main import main
-from mmweaver.core.antenna_tables import ANTENNAS
+from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.formats.dca1000 import upright, write_bin
-from mmweaver.formats.radar_options import RadarOptions, with_options
+from mmweaver.formats.radar_options import RadarOptions
 from tests.advice.harness import Row, Try, Words, add, drop, edit, first, flag, instead, plus
 from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
 from tests.formats.test_peer_arrays import hupr_array, simulated_frame
@@ -54,9 +54,9 @@ def _fewer_transmitters() -> None:
 
 
 def _another_board() -> None:
-    aop = with_options(RADAR, RadarOptions(antennas=ANTENNAS["aop"]))
+    aop = RadarOptions(antennas=ANTENNAS["aop"]).applied(RADAR)
     adc = room(aop)
-    isk = with_options(aop, RadarOptions(antennas=ANTENNAS["isk"]))
+    isk = RadarOptions(antennas=ANTENNAS["isk"]).applied(aop)
     _recorded(replace(adc, samples=upright(adc.samples, aop)), aop, wrong=isk)
 
 

@@ -31,7 +31,7 @@ def test_as_much_comes_back_from_every_metre_as_was_recorded():
         range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
         profiles.append(np.histogram(range_m, np.arange(1.0, 7.1), weights=np.abs(paths.amplitude.numpy()) ** 2)[0])
         profiles[-1] = profiles[-1] / room_level(seed)
-        assert range_m.min() > MIN_RANGE_M - 1e-3
+        assert range_m.min() > NEAREST_M - 1e-3
     assert np.mean(profiles, axis=0) == pytest.approx(stated, rel=0.25)
     levels_db = 10 * np.log10([room_level(seed) for seed in range(100)])
     assert 0 <= levels_db.min() < 1 < 11 < levels_db.max() <= LEVELS_DB

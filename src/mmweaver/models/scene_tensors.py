@@ -12,7 +12,7 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.diffuse_clutter import seed_of_room, unresolved_clutter
+from mmweaver.paths.diffuse_clutter import diffuse_clutter, seed_of_room
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.image_sources import apparent_direction
 from mmweaver.paths.paths import Interaction, StaticPaths
@@ -176,7 +176,7 @@ class GivenRoom:
     ) -> "GivenRoom":
         """Of a scene. `seed`: another one has other phases and other clutter."""
         traced = RayTracedRoom(scene, config, seed, propagation)
-        others = [traced.paths.of_kind(Interaction.ROOM_ROOM)]
+        others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:
-            others.append(unresolved_clutter(config, seed_of_room(scene) + seed))
+            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
         return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

@@ -15,7 +15,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.people import MOST_SUBJECTS, check_subject, subject_of
-from mmweaver.motion.planning.separation import are_separate
+from mmweaver.motion.planning.separation import MIN_PELVIS_DISTANCE_M, are_separate
 
 Place = tuple[float, float]
 MOST_PEOPLE = 8
