@@ -176,7 +176,7 @@ VOTES = ("window", "three_windows", "recording")
 
 
 def zero_shot_table(results: Path) -> str:
-    """One row a recogniser and group of recordings, then the nested selection, then the confusion of windows."""
+    """One row a recogniser and group of recordings, then the confusion of windows."""
     lines, last = [], {}
     for source, names in GROUPS:
         rows = contexts_of(results, (source,))
@@ -187,13 +187,6 @@ def zero_shot_table(results: Path) -> str:
             lines.append([title, str(row["dataset"]["recordings"]), *scores, chance])
         last = rows[0]
     text = [markdown(["recogniser", "recordings", "windows of 2 s", "6 s", "a recording", "chance"], lines)]
-    (nested,) = records_of(results, "zero_shot/nested")
-    halves = [
-        f"{row['metrics']['window']['chosen_on']:.3f} on the {half} half, which chose; "
-        f"{row['metrics']['window']['value']:.3f} on the other"
-        for half, row in zip(("first", "second"), nested["rows"], strict=True)
-    ]
-    text += ["", f"Features, copies and trees chosen out of {nested['config']['candidates']}: {'; '.join(halves)}."]
     kinds = last["classes"]
     text += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
     text += [line("", *kinds), line(*["---"] * (1 + len(kinds)))]
