@@ -67,11 +67,6 @@ def codec_cuts_table(results: Path) -> str:
     return _margins_table(results, "codec_cuts/*")
 
 
-def codec_unusual_table(results: Path) -> str:
-    """The same of cubes unlike any that the codec was developed with."""
-    return _margins_table(results, "codec_unusual/*")
-
-
 def _margins_table(results: Path, sources: str) -> str:
     found, _ = _codec_scores(results, sources)
     sizes = sorted({size for _, size in found})

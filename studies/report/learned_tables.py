@@ -107,16 +107,6 @@ PEER_CLUTTER = RowTable(
         ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
     ),
 )  # fmt: skip
-RADAR_POSES = PivotTable(
-    sources=("radar_poses/test_room",),
-    rows=(("radar", "{pose}"), ("x,y,z,yaw,pitch,roll", "{words}"), ("rooms", "{num_rooms}")), across="{method}",
-    cells={name: ((f"{head}, RA / RD", f"{{metrics.ra_ssim:{form}.2}} / {{metrics.rd_ssim:{form}.2}}"),)
-           for name, head, form in (("zeros", "zeros", "fixed"), ("generic_room_physics", "other room", "fixed"),
-                                    ("weaver", "network", "fixed"),
-                                    ("physics_in_photographed_room", "physics", "fixed"),
-                                    ("difference", "network less physics", "interval"),
-                                    ("realization", "oracle", "fixed"))},
-)  # fmt: skip
 UNSEEN_METHODS = (
     "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
 )  # fmt: skip
@@ -211,7 +201,7 @@ COST = MatrixTable(
 LEARNED = {
     "peer_scores": PEERS, "peer_clutter": PEER_CLUTTER,
     "diffusion_scores": DIFFUSION,
-    "radar_poses": RADAR_POSES,
+
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING,

@@ -14,7 +14,6 @@ from studies.report.computed_tables import (
     activities_table,
     codec_cuts_table,
     codec_margins_table,
-    codec_unusual_table,
     codecs_table,
     statistics_table,
     zero_shot_table,
@@ -53,10 +52,6 @@ SAMPLING_RADIUS = PivotTable(
     cells={name: ((head, "{metrics.nmse_db:number}"),) for name, head in RADIUS_COLUMNS.items()},
     order=tuple(("sampled_places", str(radius)) for radius in range(1, 8)),
 )
-CODEC_CUTS_SECONDS = PivotTable(
-    sources=("codec_cuts/mmw", "codec_cuts/klt_context"), rows=(("signal", "{dataset.name}"),),
-    across="{record.method}, {size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
-)  # fmt: skip
 LOSSLESS = RowTable(
     sources=("lossless_codecs/*",),
     columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
@@ -368,8 +363,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
-    "codec_unusual": codec_unusual_table,
-    "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
+    "lossless_codecs": LOSSLESS.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
