@@ -103,13 +103,16 @@ def _middle(values: np.ndarray) -> float:
     return float(np.median(finite)) if len(finite) else np.nan
 
 
-def walkers(scene: Scene, seed: int) -> tuple[PoseSequence, ...]:
-    """Two people walking through the places of the recorded ones, one towards the radar and one away from it."""
+def walkers(scene: Scene, seed: int, moment_s: float = 0.0) -> tuple[PoseSequence, ...]:
+    """Two people walking through the places of the recorded ones, one towards the radar and one away from it.
+
+    `moment_s`: so much before or after the middle of the walk is the moment at which they are there.
+    """
     people = []
     distance_m = walkers_m(scene)
     for index, towards in enumerate(_directions()):
         pose = pose_of("walking", seconds=2.0, seed=seed + 10 * index)
-        middle = len(pose.time_s) // 2
+        middle = int(np.abs(pose.time_s - pose.time_s[len(pose.time_s) // 2] - moment_s).argmin())
         joints_m = pose.joints_m - pose.joints_m[middle, 0] * np.array([1.0, 1.0, 0.0])
         if index:
             joints_m = joints_m * np.array([-1.0, -1.0, 1.0])

@@ -56,3 +56,14 @@ def test_nobody_walks_behind_a_wall():
     for pose in walkers(scene_of((floor(), back_wall(2.5))), 0):
         at = [np.interp(0.0, pose.time_s, pose.joints_m[:, 0, axis]) for axis in range(2)]
         assert 1.9 < at[1] < 2.1
+
+
+def test_other_moments_of_the_walk_are_other_poses_at_the_same_places():
+    scene = scene_of((floor(), back_wall(5.2)))
+    first, other = (walkers(scene, 0, moment_s)[0] for moment_s in (0.0, 0.2))
+    now = [
+        np.stack([np.interp(0.0, one.time_s, one.joints_m[:, joint, 1]) for joint in range(22)])
+        for one in (first, other)
+    ]
+    assert abs(now[0][0] - now[1][0]) < 0.02
+    assert np.abs(now[0] - now[1]).max() > 0.1
