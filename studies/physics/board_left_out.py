@@ -7,7 +7,7 @@ hall (iwr6843_dca1000), a person who breathes (bgt60_breathing). Each is simulat
 bundled one, four photographed ones, a procedural office): two walkers at the places of the recorded ones, or as far
 along the same directions as the room lets them be seen, nobody, a person who breathes at 0.33 m; each four times, with
 other boards, clutter and people. Units are quarters of the single frames, and runs of 32 frames of the third. Of each
-unit all features of `mmweaver compare` are measured. Trees (settings of `real_or_simulated`) learn recorded or
+unit all features of `mmweaver compare` are measured. Trees learn recorded or
 simulated from two boards and judge the third; accuracy is the mean of the shares of recorded and of simulated units
 that are right, its interval a bootstrap over units. 0.5 is chance, and what trees reach that call everything simulated;
 so the ranking (area under the curve) stands next to it, and that of each feature alone.

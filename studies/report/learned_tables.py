@@ -178,12 +178,6 @@ def _gain(source: str) -> RowTable:
     )  # fmt: skip
 
 
-REAL_OR_SIMULATED = PivotTable(
-    sources=("real_or_simulated/*",),
-    rows=(("method", "{method}"), ("indistinguishable", "{metrics.accuracy.oracle.indistinguishable:percent.0}")),
-    across="{boards}", cell_template="{metrics.accuracy:percent_interval.1}",
-    head_template="accuracy of the classifier, {across} boards",
-)  # fmt: skip
 COST = MatrixTable(
     sources=("benchmark/weaver",), corner="what", prefixes=(("measured", ""),),
     lines=(
@@ -207,5 +201,5 @@ LEARNED = {
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
-    "real_or_simulated": REAL_OR_SIMULATED, "learned_cost": COST, "power_scores": POWER,
+    "learned_cost": COST, "power_scores": POWER,
 }  # fmt: skip
