@@ -3,6 +3,7 @@
 import argparse
 import ast
 import importlib
+from functools import cache
 from pathlib import Path
 from typing import Any, Protocol, cast, runtime_checkable
 
@@ -47,6 +48,7 @@ def inputs_of(parser: argparse.ArgumentParser, options: argparse.Namespace) -> l
     return list(dict.fromkeys(paths))
 
 
+@cache
 def study_files() -> dict[str, Path]:
     """{name: file} of every study, found without importing any."""
     return {file.stem: file for file in sorted(FOLDER.glob("*/*.py")) if _is_study(file)}

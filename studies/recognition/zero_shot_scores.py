@@ -15,9 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.seeding import stream
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.random_scene import VariationSample, sample_variation
 from mmweaver.recognition.scoring import Evaluation, report
 from studies.manifest import StudyRun
 from studies.provenance import provenance
@@ -41,15 +39,6 @@ METRICS = {
     "three_windows": "balanced accuracy of the mean vote of three windows (6 s)",
     "recording": "balanced accuracy of the mean vote of a whole recording",
 }
-
-
-def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[VariationSample]:
-    """The sampled conditions of each window in the order of `generate` (the first sample, if repeated)."""
-    return [
-        sample_variation(recipe.variation_of(label), stream(seed, "zero shot", label, index))
-        for index in range(each)
-        for label in recipe.activities
-    ]
 
 
 def score(name: str, recordings: Path, run: StudyRun) -> Path:

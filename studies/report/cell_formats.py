@@ -83,11 +83,6 @@ _STYLES = {
 }  # fmt: skip
 
 
-def _percentiles(metric: Mapping[str, Any], digits: str) -> str:
-    low, high = metric["percentiles_5_95"]
-    return f"{low:.{digits}f} to {high:.{digits}f}"
-
-
 def _edges_percent(metric: Mapping[str, Any], digits: str) -> str:
     low, high = metric["interval_95"]
     return f"{100 * low:.{digits}f} to {100 * high:.{digits}f} %"
@@ -95,13 +90,9 @@ def _edges_percent(metric: Mapping[str, Any], digits: str) -> str:
 
 # {name: text of a metric}; for what no number says
 _SPECIAL: dict[str, Callable[[Mapping[str, Any], str], str]] = {
-    "percentiles": _percentiles,
     "edges_percent": _edges_percent,
     "recorded": lambda metric, digits: ", ".join(f"{value:.3g}" for value in metric["recorded_5_50_95"]),
-    "nonzero": lambda metric, digits: f" ({number(metric['value'])})" if metric["value"] else "",
     "centimetres": lambda metric, digits: f"{100 * metric['value']:.1f} cm",
-    "limb": lambda metric, digits: metric["value"].removesuffix("_db"),
-    "last_words": lambda metric, digits: " ".join(metric["value"].split()[-2:]),
     "split": lambda metric, digits: {"train": "what it trained on", "test_room": "unseen kinds"}[metric["value"]],
 }
 

@@ -67,11 +67,6 @@ def codec_cuts_table(results: Path) -> str:
     return _margins_table(results, "codec_cuts/*")
 
 
-def codec_unusual_table(results: Path) -> str:
-    """The same of cubes unlike any that the codec was developed with."""
-    return _margins_table(results, "codec_unusual/*")
-
-
 def _margins_table(results: Path, sources: str) -> str:
     found, _ = _codec_scores(results, sources)
     sizes = sorted({size for _, size in found})
@@ -176,7 +171,7 @@ VOTES = ("window", "three_windows", "recording")
 
 
 def zero_shot_table(results: Path) -> str:
-    """One row a recogniser and group of recordings, then the nested selection, then the confusion of windows."""
+    """One row a recogniser and group of recordings, then the confusion of windows."""
     lines, last = [], {}
     for source, names in GROUPS:
         rows = contexts_of(results, (source,))
@@ -187,13 +182,6 @@ def zero_shot_table(results: Path) -> str:
             lines.append([title, str(row["dataset"]["recordings"]), *scores, chance])
         last = rows[0]
     text = [markdown(["recogniser", "recordings", "windows of 2 s", "6 s", "a recording", "chance"], lines)]
-    (nested,) = records_of(results, "zero_shot/nested")
-    halves = [
-        f"{row['metrics']['window']['chosen_on']:.3f} on the {half} half, which chose; "
-        f"{row['metrics']['window']['value']:.3f} on the other"
-        for half, row in zip(("first", "second"), nested["rows"], strict=True)
-    ]
-    text += ["", f"Features, copies and trees chosen out of {nested['config']['candidates']}: {'; '.join(halves)}."]
     kinds = last["classes"]
     text += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
     text += [line("", *kinds), line(*["---"] * (1 + len(kinds)))]

@@ -107,40 +107,6 @@ PEER_CLUTTER = RowTable(
         ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
     ),
 )  # fmt: skip
-PEER_CLOUDS = RowTable(
-    sources=("peer_clouds/mars_test",),
-    labels={
-        "centroid": "one point at the middle of the joints (baseline)",
-        "random_real_frame": "a recorded cloud of some other moment (baseline)",
-        "rf_genesis_as_released": "RF-Genesis, as released",
-        "rf_genesis_repaired": "RF-Genesis, repaired",
-        "simulator": "our physics",
-        "neighbouring_frame": "the recorded cloud of the frame before (oracle)",
-    },
-    columns=(
-        ("clouds", "{label}"), ("Chamfer, m", "{metrics.chamfer_m:interval.3}"),
-        ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"), ("centroid, m", "{metrics.centroid_m:fixed.2}"),
-        ("Doppler TV", "{metrics.doppler:fixed.2}"), ("empty", "{metrics.empty:percent.0}"),
-        ("CPU-s, 400 frames", "{seconds.cpu:.0f}"),
-    ),
-)  # fmt: skip
-WHOLE_ROOM = RowTable(
-    sources=("whole_room/test_room",),
-    columns=(
-        ("made by", "{method}"), ("rooms", "{num_rooms}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
-        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
-    ),
-)  # fmt: skip
-RADAR_POSES = PivotTable(
-    sources=("radar_poses/test_room",),
-    rows=(("radar", "{pose}"), ("x,y,z,yaw,pitch,roll", "{words}"), ("rooms", "{num_rooms}")), across="{method}",
-    cells={name: ((f"{head}, RA / RD", f"{{metrics.ra_ssim:{form}.2}} / {{metrics.rd_ssim:{form}.2}}"),)
-           for name, head, form in (("zeros", "zeros", "fixed"), ("generic_room_physics", "other room", "fixed"),
-                                    ("weaver", "network", "fixed"),
-                                    ("physics_in_photographed_room", "physics", "fixed"),
-                                    ("difference", "network less physics", "interval"),
-                                    ("realization", "oracle", "fixed"))},
-)  # fmt: skip
 UNSEEN_METHODS = (
     "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
 )  # fmt: skip
@@ -178,16 +144,6 @@ CAPTURE_TUNING = RowTable(
         ("Chamfer, m", "{metrics.chamfer_m:interval.2}"),
     ),
 )  # fmt: skip
-PHOTOGRAPHED, SCANNED = (
-    RowTable(
-        sources=(f"photographed_room/{result}",),
-        columns=(
-            ("echoes of the room", "{method}"), ("RA SSIM", "{metrics.ra_ssim:interval.2}"),
-            ("RA difference, dB", "{metrics.ra_difference_db:fixed.2}"),
-        ),
-    )
-    for result in ("echoes", "scan")
-)  # fmt: skip
 PAPER_COLUMNS = (
     ("cSSIM", "{metrics.cssim:fixed.3}"), ("PSNR, dB", "{metrics.psnr_db:fixed.1}"),
     ("NMSE, all cells, dB", "{metrics.nmse_db:fixed.2}"), ("active, dB", "{metrics.nmse_active_db:fixed.2}"),
@@ -222,12 +178,6 @@ def _gain(source: str) -> RowTable:
     )  # fmt: skip
 
 
-REAL_OR_SIMULATED = PivotTable(
-    sources=("real_or_simulated/*",),
-    rows=(("method", "{method}"), ("indistinguishable", "{metrics.accuracy.oracle.indistinguishable:percent.0}")),
-    across="{boards}", cell_template="{metrics.accuracy:percent_interval.1}",
-    head_template="accuracy of the classifier, {across} boards",
-)  # fmt: skip
 COST = MatrixTable(
     sources=("benchmark/weaver",), corner="what", prefixes=(("measured", ""),),
     lines=(
@@ -243,13 +193,13 @@ COST = MatrixTable(
     ),
 )  # fmt: skip
 LEARNED = {
-    "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
+    "peer_scores": PEERS, "peer_clutter": PEER_CLUTTER,
     "diffusion_scores": DIFFUSION,
-    "whole_room": WHOLE_ROOM, "radar_poses": RADAR_POSES,
+
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN,
     "other_radars": OTHER_RADARS,
-    "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED, "scanned_room": SCANNED,
+    "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
-    "real_or_simulated": REAL_OR_SIMULATED, "learned_cost": COST, "power_scores": POWER,
+    "learned_cost": COST, "power_scores": POWER,
 }  # fmt: skip

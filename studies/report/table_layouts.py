@@ -93,25 +93,19 @@ class MetricTable:
 
     Attributes:
         lines: (metric, label), or (metric, label, columns) where its templates differ; None for all metrics.
-        joined: source of another result with the same rows, whose same metric is `joined`.
     """
 
     sources: tuple[str, ...]
     columns: Columns
     lines: tuple[tuple[Any, ...], ...] | None = None
-    joined: str | None = None
     missing: str = ""
 
     def render(self, results: Path) -> str:
-        rows = contexts_of(results, self.sources)
-        others = rows if self.joined is None else contexts_of(results, (self.joined,))
         lines = []
-        for row, other in zip(rows, others, strict=True):
+        for row in contexts_of(results, self.sources):
             for name, label, *own in self.lines or tuple((name, name) for name in row["metrics"]):
                 metric = row["metrics"][name]
-                context = {**row, "metric": metric, "joined": other["metrics"][name], "name": name, "label": label,
-                           "joined_n": other["n"], "gait": cell("{dataset.name}", row).removeprefix("CMU "),
-                           **_words(name, metric, other["metrics"][name])}  # fmt: skip
+                context = {**row, "metric": metric, "name": name, "label": label, **_words(name, metric)}
                 templates = own[0] if own else tuple(template for _, template in self.columns)
                 lines.append([cell(template, context, self.missing) for template in templates])
         return markdown([head for head, _ in self.columns], lines)
@@ -120,14 +114,13 @@ class MetricTable:
 UNITS = ("mps2", "mps", "hz", "deg", "m", "s")
 
 
-def _words(name: str, metric: Mapping[str, Any], joined: Mapping[str, Any]) -> dict[str, str]:
+def _words(name: str, metric: Mapping[str, Any]) -> dict[str, str]:
     """Name without its unit, the unit after a comma or a space, and on which side of the recorded spread it lies."""
     stem, _, unit = name.rpartition("_")
-    low = joined.get("percentiles_5_95", metric.get("recorded_5_50_95", [0.0]))[0]
+    low = metric.get("recorded_5_50_95", [0.0])[0]
     outside = "" if metric.get("inside", True) else "below" if metric["value"] < low else "above"
     return {
         "words": (stem if unit in UNITS else name).replace("_", " "), "outside": outside,
-        "comma_unit": f", {metric['unit']}" if metric["unit"] else "",
         "space_unit": f" {metric['unit']}" if metric["unit"] else "",
     }  # fmt: skip
 

@@ -14,7 +14,6 @@ from studies.report.computed_tables import (
     activities_table,
     codec_cuts_table,
     codec_margins_table,
-    codec_unusual_table,
     codecs_table,
     statistics_table,
     zero_shot_table,
@@ -53,34 +52,6 @@ SAMPLING_RADIUS = PivotTable(
     cells={name: ((head, "{metrics.nmse_db:number}"),) for name, head in RADIUS_COLUMNS.items()},
     order=tuple(("sampled_places", str(radius)) for radius in range(1, 8)),
 )
-NOISE_METRICS = ("distribution_distance", "neighbour_correlation")
-NOISE_COUNTS = ("points_a_frame", "false_points_a_frame", "missed_points_a_frame")
-RENDERED_NOISE = RowTable(
-    sources=("rendered_noise/scatterers",),
-    columns=(
-        ("signal", "{dataset.name}"),
-        ("noise_floor_db", "{metrics.noise_floor_db.baseline.without_noise:number} / {metrics.noise_floor_db:number}"),
-        *((name, f"{{metrics.{name}.baseline.without_noise:number}} / {{metrics.{name}:number}}"
-                 f"{{metrics.{name}.oracle.capture:nonzero}}") for name in (*NOISE_METRICS, *NOISE_COUNTS)),
-    ),
-)  # fmt: skip
-TRACKS = RowTable(
-    sources=("scatterer_tracks/tracks",),
-    columns=(
-        ("frames", "{frames}"), ("numbers a track", "{values_of_track}"),
-        ("nmse_db, tracks", "{metrics.nmse_db:number}"),
-        ("nmse_db, free points", "{metrics.nmse_db.baseline.free_points:number}"),
-        ("CPU s of all", "{seconds.all:.0f}"),
-    ),
-)  # fmt: skip
-CODEC_CUTS_SECONDS = PivotTable(
-    sources=("codec_cuts/mmw", "codec_cuts/klt_context"), rows=(("signal", "{dataset.name}"),),
-    across="{record.method}, {size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
-)  # fmt: skip
-CODEC_LIMITS = PivotTable(
-    sources=("codec_limits/*",), rows=(("signal", "{dataset.name}"), ("bytes", "{size.bytes_allowed:,}")),
-    across="{record.method}", cell_template="{metrics.nmse_active_db:number} / {metrics.nmse_db:number}",
-)  # fmt: skip
 LOSSLESS = RowTable(
     sources=("lossless_codecs/*",),
     columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
@@ -219,20 +190,6 @@ MARS_VALIDATE_ROWS = (
 MARS_VALIDATE = replace(
     MARS, sources=("mars_validate/*",), labels={name: name.replace("_", " ") for name in MARS_VALIDATE_ROWS}
 )
-MICRO_DOPPLER = MetricTable(
-    sources=("micro_doppler/library",), joined="micro_doppler/recorded",
-    columns=(
-        ("gait (clips, ours)", "{gait} ({joined_n}, {n})"), ("figure", "{words}{comma_unit}"),
-        ("recorded: median (95 %)", "{joined:interval.2}"), ("their 5 to 95 %", "{joined:percentiles.2}"),
-        ("ours: median (95 %)", "{metric:interval.2}"), ("frozen body", "{metric.baseline.frozen:.2f}"),
-        ("outside", "{outside}"), ("ours inside", "{metric.share_inside:percent.0}"),
-    ),
-)  # fmt: skip
-COMPOSE_TIMES = RowTable(
-    sources=("compose_times/distance_field",),
-    columns=(("room", "{dataset.name}"), ("mean, s", "{metrics.mean_s:number}"),
-             ("slowest, s", "{metrics.worst_s:number}"), ("first, s", "{metrics.first_s:number}")),
-)  # fmt: skip
 REALISM = MetricTable(
     sources=("motion_realism/library",),
     columns=(
@@ -401,42 +358,21 @@ FAULTS = RowTable(
             ("large", "no larger file"), ("disk", "small disk"))),
     ),
 )  # fmt: skip
-RANDOM_KILLS = RowTable(
-    sources=("trust/random_kills",),
-    columns=(("command", "`{dataset.name}`"), ("killed", "{n}"), ("survived", "{metrics.survived:.0f}")),
-)
-HOSTILE_INPUT = RowTable(
-    sources=("trust/hostile_input",),
-    columns=(
-        ("reader", "{dataset.name}"), ("cases", "{n}"),
-        *((head, f"{{metrics.{name}:.0f}}") for head, name in (
-            ("refused", "refused"), ("accepted", "accepted"), ("failed", "failed"))),
-        ("slowest (CPU s)", "{metrics.slowest_s:.2f}"), ("largest (MB)", "{metrics.largest_mb:.0f}"),
-    ),
-)  # fmt: skip
-DAMAGED_SETS = RowTable(
-    sources=("trust/damaged_sets",),
-    columns=(("set", "{dataset.name}"), ("damage", "{kind}"), ("tried", "{n}"),
-             ("refused in one line", "{metrics.refused:.0f}"), ("accepted", "{metrics.accepted:.0f}")),
-)  # fmt: skip
 
 TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
-    "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
-    "codec_unusual": codec_unusual_table,
-    "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
-    "codec_limits": CODEC_LIMITS.render,
+    "lossless_codecs": LOSSLESS.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
     "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
     "mars_validate": MARS_VALIDATE.render,
-    "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
+    "motion_realism": REALISM.render,
     "mars_exercises": MARS_EXERCISES.render,
-    "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
+    "kitml": KITML.render, "strangers": STRANGERS.render,
     **{name: table.render for name, table in UNREAD.items()},
     "activities": activities_table, "captions_draws": CAPTIONS_DRAWS.render, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, **{name: table.render for name, table in ZERO_SHOT.items()},
@@ -446,8 +382,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "recogniser_gain": GAIN_BY_NETWORK.render, "recogniser_clutter": GAIN_BY_CLUTTER.render,
     "sampled_recordings": SAMPLED.render,
     "labelled_recognition": LABELLED.render,
-    "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
-    "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
+    "injected_faults": FAULTS.render,
     "ablation": ablation_table, "ablation_power": partial(ablation_table, folder="ablation_power"),
     **{name: table.render for name, table in (*LEARNED.items(), *BOARDS.items())},
 }  # fmt: skip

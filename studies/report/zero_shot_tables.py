@@ -10,12 +10,6 @@ CURVE = PivotTable(
     sources=("zero_shot/curve",), rows=(("real recordings of each", "{real_recordings_each}"),), across="{generated}",
     cells=CURVE_CELLS, missing="0.200 (chance)",
 )  # fmt: skip
-LIMBS = PivotTable(
-    sources=("zero_shot/limbs",), rows=(("", "{limb:limb}"),), across="{dataset.name:last_words}",
-    cells={name: ((head, "{metrics.window:.3f} ({from_db:.1f} to {to_db:.1f} dB)"),)
-           for name, head in (("faintest third", "faintest third"), ("middle third", "middle"),
-                              ("brightest third", "brightest"))},
-)  # fmt: skip
 ANEW = RowTable(
     sources=("zero_shot/anew",),
     columns=(
@@ -24,4 +18,4 @@ ANEW = RowTable(
         ("chance", "{metrics.window.baseline.chance:.2f}"),
     ),
 )  # fmt: skip
-ZERO_SHOT = {"zero_shot_curve": CURVE, "zero_shot_limbs": LIMBS, "zero_shot_anew": ANEW}
+ZERO_SHOT = {"zero_shot_curve": CURVE, "zero_shot_anew": ANEW}

@@ -29,9 +29,27 @@ from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.scene.affordances import RANGE_WINDOW_M, SECONDS, share_of
 from studies.scene.room_contact import ALLOWED_M, ON_SEAT_M, sampled
-from studies.scene.room_sentences import SENTENCES
 from studies.study import Reads
 
+SENTENCES = {
+    "kinect2_living_room": (
+        "user seated on couch drinking water", "a person walks towards the radar, then waves with the left hand",
+        "she sits down on the couch", "someone does jumping jacks", "a man boxes quickly",
+        "he stands up",
+    ),
+    "kinect_dining_room": (
+        "a person walks away from the radar", "someone waves with both hands", "she claps",
+        "a man walks towards the radar and stops", "he squats", "she raises her right hand",
+    ),
+    "redwood_chair_corner": (
+        "a person waves with the right hand", "someone claps", "she squats", "he jumps",
+        "a woman raises her left hand", "a man boxes",
+    ),
+    "tum_office_desk": (
+        "a person sits and drinks", "someone walks to the right, then claps", "a man does jumping jacks",
+        "she walks towards the radar", "he stands up and waves", "someone turns around",
+    ),
+}  # fmt: skip
 SEEDS = range(10)
 MARKS = Path(__file__).with_name("real_rooms_classes.json")
 FLOOR_MARKS = "floor-other"

@@ -4,7 +4,6 @@ Here a sample of events of the quick commands; all events of all commands are th
 `python -m studies run injected_faults` makes the table of docs/trust.md.
 """
 
-import random
 import sys
 from pathlib import Path
 
@@ -17,7 +16,6 @@ from studies.trust.fault_injection import Fault, may_mount
 from studies.trust.faulted_commands import faulted_commands, prepare_inputs
 from studies.trust.faulted_runs import FaultedRuns
 from studies.trust.injected_faults import faults_of
-from studies.trust.random_kills import KilledRuns, killed_commands
 
 QUICK = ("process",)
 ALL = tuple(command.name for command in faulted_commands(Path()))
@@ -78,11 +76,3 @@ def test_points_are_spread_from_the_first_event_to_the_last():
     faults = list(faults_of(9, 3))
     assert [fault.number for fault in faults if fault.kind == "kill"] == [1, 5, 9]
     assert [fault.number for fault in faults_of(2) if fault.kind == "once"] == [1, 2]
-
-
-@pytest.mark.slow  # the kinds of faults of test_a_sample_of_events hold the same behaviour
-@pytest.mark.parametrize("name", ["generate", "train", "dataset --workers 2"])
-def test_random_kills(name: str, tmp_path: Path):
-    prepare_inputs(tmp_path / "inputs", which=("data",))
-    killed = KilledRuns(killed_commands(tmp_path / "inputs")[name], tmp_path / "runs", random.Random(14))
-    assert killed.problems(10) == []

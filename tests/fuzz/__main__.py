@@ -2,8 +2,6 @@
 
 make fuzz SECONDS=3600 SEED=7
 python -m tests.fuzz --total 10000 --seed 7 --keep failures/
-
-`python -m studies run hostile_input --seed N` does the same and makes the table of docs/security.md.
 """
 
 import argparse

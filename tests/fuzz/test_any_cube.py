@@ -94,7 +94,7 @@ def test_bytes_are_used_and_never_exceeded(depth: int):
         assert len(data) <= num_bytes
         assert len(data) >= min(0.97 * num_bytes, num_bytes - WORDS * (num_bytes <= SMALL_FILE)) or left_db < FLOAT32_DB
 
-    hold(depth, 12, example, drawn=CUBES, num_bytes=st.integers(256, 4000), keep_noise=st.booleans())
+    hold(depth, 6, example, drawn=CUBES, num_bytes=st.integers(256, 4000), keep_noise=st.booleans())
 
 
 @deep
@@ -110,4 +110,4 @@ def test_quality_is_met_and_exceeded_only_by_files_that_cannot_be_smaller(depth:
             worse = compress_cube(cube, quality_db=max(1.0, quality_db - 0.5), keep_noise=keep_noise)
             assert found_db > -FLOAT32_DB or len(worse) <= len(data) + FEW_BYTES
 
-    hold(depth, 12, example, drawn=CUBES, quality_db=st.floats(1, 90), keep_noise=st.booleans())
+    hold(depth, 6, example, drawn=CUBES, quality_db=st.floats(1, 90), keep_noise=st.booleans())

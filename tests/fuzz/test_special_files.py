@@ -96,7 +96,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
             "FIFO": str(folder / "fifo")}  # fmt: skip
 
 
-@pytest.mark.parametrize("special", ["FIFO", "/dev/zero"])
+@pytest.mark.parametrize("special", ["FIFO", pytest.param("/dev/zero", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("command", "name"), _options())
 def test_it_is_refused_at_once(
     command: str, name: str, special: str, files: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]

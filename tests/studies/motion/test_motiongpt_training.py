@@ -16,7 +16,6 @@ from studies.motion import motiongpt_scores
 from studies.motion.motion_language import LanguageRecipe
 from studies.motion.motion_tokenizer import TokenizerRecipe
 from studies.motion.motiongpt_data import ACTIVITIES, library_examples
-from studies.motion.motiongpt_pictures import draw_strips
 from studies.motion.motiongpt_training import MotiongptRecipe, statistics, train
 from studies.motion.motiongpt_weights import save_weights
 
@@ -49,8 +48,7 @@ def test_the_recipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         low, high = metric["interval_95"]
         assert low <= metric["value"] <= high
     clip = MotionGPT.load(file).generate("a person walks", seconds=2.0)
-    draw_strips({"a person walks": clip.joints_m}, tmp_path / "strips.png")
-    assert (tmp_path / "strips.png").stat().st_size > 5000
+    assert clip.joints_m.shape == (40, 22, 3)
 
 
 def test_the_root_counts_more():

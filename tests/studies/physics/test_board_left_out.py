@@ -1,17 +1,13 @@
-"""The classifier of boards left out, on made units; and what rooms count as within the recorded range."""
+"""The classifier of boards left out, on made units."""
 
 import numpy as np
 
 from mmweaver.comparison.compare_signals import FEATURES
 from studies.physics.board_left_out import (
-    RANGES,
     accuracy,
     alone,
     chances,
-    expected_within,
-    perfectly_within,
     ranking,
-    room_rows,
     verdicts,
     walkers,
 )
@@ -45,32 +41,6 @@ def test_each_feature_ranks_alone_where_both_show_it():
     assert found["by_points_width"]["value"] == 1.0
     assert 0.2 < found["by_points_depth"]["value"] < 0.8
     assert "by_drift" not in found
-
-
-def test_rooms_within_the_recorded_range_are_counted():
-    names = [feature.name for feature in FEATURES]
-    column = names.index("antenna_spread")
-    rooms = {str(room): np.full((4, len(FEATURES)), np.nan) for room in range(3)}
-    for value, room in zip((1.0, 3.0, 4.0), rooms.values(), strict=True):
-        room[:, column] = value
-    found = room_rows(rooms)["antenna_spread"]
-    assert found["within"] == 2
-    assert found["value"] == 3.0
-    assert found["oracle"] == {"of_2_recordings": 1.0, "of_3_recordings": 1.5}
-    assert set(RANGES) <= set(names)
-
-
-def test_rooms_of_a_perfect_simulator_are_within_as_often_as_draws_of_one_distribution():
-    rng = np.random.default_rng(0)
-    for recordings, expected in ((2, 2.0), (3, 3.0)):
-        drawn = rng.normal(size=(40_000, recordings + 6))
-        recorded, rooms = drawn[:, :recordings], drawn[:, recordings:]
-        within = ((rooms > recorded.min(axis=1)[:, None]) & (rooms < recorded.max(axis=1)[:, None])).sum(axis=1)
-        chance = perfectly_within(recordings, 6)
-        assert np.abs(np.bincount(within, minlength=7) / len(within) - chance).max() < 0.01
-        assert expected_within(6)[f"of_{recordings}_recordings"] == expected
-    assert abs(perfectly_within(3, 6)[4:].sum() - 34 / 84) < 1e-9  # four or more of six
-    assert abs(perfectly_within(2, 6)[4:].sum() - 6 / 28) < 1e-9
 
 
 def test_two_people_walk_through_the_recorded_places():

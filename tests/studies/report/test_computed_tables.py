@@ -46,7 +46,7 @@ def test_the_best_codec_is_bold_and_margins_are_to_the_best_baseline(tmp_path: P
     assert codec_margins_table(tmp_path).endswith("| walk | 1.00 / - / 1.00 | 1.00 / - / 1.00 † |")
 
 
-def test_zero_shot_has_groups_nested_selection_and_confusion(tmp_path: Path):
+def test_zero_shot_has_groups_and_confusion(tmp_path: Path):
     def metric(value: float) -> dict[str, Any]:
         return {"value": value, "interval_95": [value - 0.1, value + 0.1], "baseline": {"chance": 0.2},
                 "confusion": [[3, 1], [0, 4]]}  # fmt: skip
@@ -56,10 +56,7 @@ def test_zero_shot_has_groups_nested_selection_and_confusion(tmp_path: Path):
                  "metrics": {key: metric(value) for key in ("window", "three_windows", "recording")}}
                 for value in values]  # fmt: skip
         put(tmp_path, f"zero_shot/{method}", rows)
-    halves = [{"metrics": {"window": {"value": value, "chosen_on": 0.92}}} for value in (0.87, 0.89)]
-    put(tmp_path, "zero_shot/nested", halves, config={"candidates": 24})
     table = zero_shot_table(tmp_path)
-    assert "out of 24: 0.920 on the first half, which chose; 0.870 on the other" in table
     assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
     assert "| *second half* | 7 | 0.880" in table
     assert "| a | 3 | 1 |" in table
