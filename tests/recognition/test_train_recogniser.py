@@ -13,6 +13,7 @@ pytest.importorskip("sklearn")
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
+from mmweaver.recognition.background_mask import WindowFilter
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
@@ -27,7 +28,6 @@ from mmweaver.recognition.recogniser import (
 from mmweaver.recognition.scoring import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
-from mmweaver.recognition.window_filter import WindowFilter
 from tests.recognition.clouds import in_all_frames, with_others
 from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
 

@@ -109,7 +109,7 @@ def trace_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_f
     """Traces one sequence without its signal. Raises InputError where the motion does not fit the room."""
     pose = pose_of(spec, scene, simulator.config, num_frames)
     nodes_m, visibility = simulator.trace(pose, num_frames=num_frames, seed=spec.seed)
-    joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
+    joints, velocity = _frame_joints(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
     return TracedSequence(
         spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility
     )
@@ -136,11 +136,11 @@ def generate_sequence(
     parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed)]
     grid = CubeGrid.of(config, num_frames)
     cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
-    joints, velocity = _at_frames(pose, grid, config)
+    joints, velocity = _frame_joints(pose, grid, config)
     return GeneratedSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
 
 
-def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple[np.ndarray, np.ndarray]:
+def _frame_joints(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple[np.ndarray, np.ndarray]:
     """Joints and their velocities at the middle of each frame, (frame, 22, 3)."""
     return joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
 

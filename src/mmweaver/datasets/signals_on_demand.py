@@ -37,7 +37,7 @@ from mmweaver.scene.photo.posed_photo import PosedPhoto
 
 GEOMETRY = "geometry"
 POWER_TOLERANCE_DB = 0.2  # processors differ by less than 0.01 dB, other people or weights by more than 1
-MOST_ROOMS = 8  # prepared at a time
+MAX_ROOMS = 8  # prepared at a time
 FARTHEST_M = 1000.0
 
 
@@ -144,7 +144,7 @@ class SignalsOnDemand:
         if room not in self._rooms:
             if self.method not in METHODS:
                 raise InputError(f"{self.files.folder} is of method {self.method!r}, which is not installed here")
-            while len(self._rooms) >= MOST_ROOMS:
+            while len(self._rooms) >= MAX_ROOMS:
                 self._rooms.popitem(last=False)
             self._rooms[room] = self._scene(room), METHODS[self.method]()
         self._rooms.move_to_end(room)

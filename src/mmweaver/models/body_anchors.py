@@ -12,7 +12,7 @@ from torch import Tensor
 from mmweaver.core.skeleton import NUM_JOINTS, PARENTS, joint
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import pixel_coordinates
-from mmweaver.models.precision import in_full_precision
+from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 from mmweaver.paths.image_method import mirrored
 
@@ -58,7 +58,7 @@ def anchor_places(joints: Tensor) -> Tensor:
     return joints[..., first, :] * (1 - share) + joints[..., second, :] * share
 
 
-@in_full_precision
+@full_precision
 def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
     place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
@@ -87,7 +87,7 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> 
     )  # fmt: skip
 
 
-@in_full_precision
+@full_precision
 def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Echoes over one face of the room: (room, frame, ghost)."""
     place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)

@@ -64,7 +64,7 @@ class FrameMotion:
         middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
         return torch.from_numpy(middle_m[self.num_before :]).float()
 
-    def at_nodes(self, clock: FrameClock) -> np.ndarray:
+    def node_joints_m(self, clock: FrameClock) -> np.ndarray:
         """Joints of the frames whose signal is wanted at the clock's nodes, (frame, node, 22, 3)."""
         joints_m, velocity_mps = (part[self.num_before :].double().numpy() for part in self.segments(clock))
         late_s = np.stack([segment.node_s for segment in clock.segments])[..., None, None]

@@ -31,10 +31,10 @@ def find_weights(source: str | Path, *, revision: str | None = None) -> Path:
         return path
     if not HUB_NAME.fullmatch(str(source)) or path.suffix == ".safetensors":
         raise InputError(f"{source} does not exist; give a .safetensors file that mmweaver train wrote, or its folder")
-    return _of_hub(str(source), revision)
+    return _download(str(source), revision)
 
 
-def _of_hub(name: str, revision: str | None) -> Path:
+def _download(name: str, revision: str | None) -> Path:
     need("weaver", f"{name} is no file here; a name on the Hub", "huggingface_hub")
     from huggingface_hub import hf_hub_download
 

@@ -161,7 +161,7 @@ class LearnedRoom:
         count = joints_m.shape[1]
         sight = aspect(joints_m.flatten(0, 1)).unflatten(0, (-1, count))
         if count == 1:
-            return self._from_reference(sample_moving(echoes[:, 0], sight[:, 0], self.config, subject))
+            return self._retimed(sample_moving(echoes[:, 0], sight[:, 0], self.config, subject))
         middle_s = torch.from_numpy(self.renderer.clock.middle_s)
         return sample_moving_segments(echoes, sight, middle_s, self.config, subject)
 
@@ -181,7 +181,7 @@ class LearnedRoom:
         reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
         return torch.cat([place_of(echoes).float()[:, :NUM_ANCHORS], reflected_m], dim=1)
 
-    def _from_reference(self, paths: Paths) -> Paths:
+    def _retimed(self, paths: Paths) -> Paths:
         """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""
         clock = self.renderer.clock
         middle_loop = doppler_window_middle(self.config.num_loops)

@@ -19,7 +19,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.recognition.background_mask import NO_CELLS
+from mmweaver.recognition.background_mask import NO_CELLS, WindowFilter
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
@@ -27,7 +27,6 @@ from mmweaver.recognition.spatiotemporal_features import spatiotemporal_features
 from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
 from mmweaver.recognition.window_features import UNPREDICTABLE, Row, body_features, window_features
-from mmweaver.recognition.window_filter import WindowFilter
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)

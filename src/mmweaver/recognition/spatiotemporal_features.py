@@ -114,7 +114,7 @@ def _timeline(window: PointRecording, body: PointCloud) -> Row:
 
     curves = {"share": count / len(part), "velocity": mean(velocity), "speed": mean(np.abs(velocity))}
     curves |= {name: mean(values - np.median(values)) for name, values in places.items()}
-    row: Row = {"order_lasts": float(end_s - begin_s), **_by_segment("order", curves)}
+    row: Row = {"order_lasts": float(end_s - begin_s), **_segment_row("order", curves)}
     speed = np.abs(velocity)
     fast = speed >= np.quantile(speed, 0.8)
     for name, values in places.items():
@@ -124,7 +124,7 @@ def _timeline(window: PointRecording, body: PointCloud) -> Row:
     return row | _turns(time_s, velocity, begin_s, end_s)
 
 
-def _by_segment(word: str, curves: Mapping[str, np.ndarray]) -> Row:
+def _segment_row(word: str, curves: Mapping[str, np.ndarray]) -> Row:
     return {
         f"{word}_{name}_{index}": float(value) for name, curve in curves.items() for index, value in enumerate(curve)
     }
@@ -178,10 +178,10 @@ def _sides(window: PointRecording, body: PointCloud) -> Row:
         curves.append(np.convolve(curve, np.ones(3) / 3, mode="same"))
     row["side_left_with_right"] = correlation(curves[0] + curves[2], curves[1] + curves[3])
     row["side_high_with_low"] = correlation(curves[0] + curves[1], curves[2] + curves[3])
-    return row | _from_rest(window.cloud, body)
+    return row | _rest_offsets(window.cloud, body)
 
 
-def _from_rest(cloud: PointCloud, body: PointCloud) -> Row:
+def _rest_offsets(cloud: PointCloud, body: PointCloud) -> Row:
     """Where motion is relative to the points at rest near it."""
     near = np.hypot(cloud.x_m - np.median(body.x_m), cloud.y_m - np.median(body.y_m)) < NEAR_M
     rest = cloud.select(near & (np.abs(cloud.radial_velocity_mps) < 0.1))
@@ -221,7 +221,7 @@ def _course(window: PointRecording, body: PointCloud) -> Row:
     }  # fmt: skip
     frames = np.bincount(body.frame, energy)
     return {
-        **_by_segment("course", curves),
+        **_segment_row("course", curves),
         "course_lasts": float(end_s - begin_s),
         "course_fastest_away": max(float(np.quantile(velocity, 0.98)), 0.0),
         "course_fastest_near": max(float(-np.quantile(velocity, 0.02)), 0.0),

@@ -187,7 +187,7 @@ def perform(
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, amplitude)
     if not moves and who.wider_m:
-        joints_m = with_feet_apart(joints_m, who.wider_m)
+        joints_m = spread_feet(joints_m, who.wider_m)
     is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
     usual_sway = prior.calm_sway_mps if once or is_event else prior.held_sway_mps if is_held else prior.sway_mps
     sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
@@ -256,7 +256,7 @@ def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np
     return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
 
 
-def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
+def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
     """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
 
     Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.

@@ -139,7 +139,7 @@ def fitted(
         known = recognition_features([made.points(window) for window in labelled], made.names)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         own, options = own_trees(made, known, labels, fewest_recordings(labelled, task.recordings.labels), options)
-        made = made.with_recorded(known, labels, options.labelled_weight)
+        made = made.joined(known, labels, options.labelled_weight)
         meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
     trees = made.trees(options)
     if unlabelled:

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.background_mask import NO_CELLS, Cells, background_cells
+from mmweaver.recognition.background_mask import NO_CELLS, Cells, WindowFilter, background_cells
 from mmweaver.recognition.generated_sequences import COLUMNS
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
@@ -18,7 +18,6 @@ from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, grow_trees
 from mmweaver.recognition.window_augmentation import PerformanceVariation, WindowAugmentation, augmented, varied
-from mmweaver.recognition.window_filter import WindowFilter
 
 SEQUENCES = 40  # people per activity
 SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
@@ -69,7 +68,7 @@ class TrainingWindows:
         own = self.own_weights
         return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
-    def with_recorded(
+    def joined(
         self, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"], weight: float
     ) -> "TrainingWindows":
         """These windows and recorded ones, which weigh `weight` times as much in each label."""
@@ -136,7 +135,7 @@ def generated_windows(
             f"the radar sees nothing of {missing[0]!r}: no window of it was generated; check radar, mount and sentences"
         )
     windows = [
-        _in_front_of(background, window, stream(options.seed, "behind", number))
+        _add_background(background, window, stream(options.seed, "behind", number))
         for number, (_, window) in enumerate(pairs)
     ]
     for copy in range(options.copies):
@@ -144,8 +143,8 @@ def generated_windows(
             rng = stream(options.seed, "disturbed", window.name, number, copy)
             first, frames = window.first_frame, window.num_frames
             another = varied(sequence, first, frames, rng, radar, options.variation, once=once)
-            windows.append(_in_front_of(background, augmented(another, rng, how), rng))
-    points = WindowFilter(busy=background_cells(background), radar=radar).without(persistent)
+            windows.append(_add_background(background, augmented(another, rng, how), rng))
+    points = WindowFilter(busy=background_cells(background), radar=radar).masking(persistent)
     windows = [points(window) for window in windows]
     names = tuple(window_row(windows[0]))
     return TrainingWindows(
@@ -158,7 +157,7 @@ def generated_windows(
     )
 
 
-def _in_front_of(
+def _add_background(
     background: Sequence[PointRecording], window: PointRecording, rng: np.random.Generator
 ) -> PointRecording:
     """The window with the points of a stretch of the recorded empty place."""
