@@ -86,16 +86,22 @@ def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) ->
     counts = [_shape(folder / room / "seed")[0] for room in rooms if (folder / room / "seed").is_dir()]
     shown = next((room for room in rooms if (folder / room / "seed").is_dir()), rooms[0])
     facts = {
-        "radar": plan["radar"], "frames of each sequence": plan["num_frames"], "seed": plan["seed"],
-        "rooms": f"{len(rooms)}, of the kinds {', '.join(plan['kinds'])}", "board": plan.get("board", "ideal"),
+        "radar": plan["radar"],
+        "frames of each sequence": plan["num_frames"],
+        "seed": plan["seed"],
+        "rooms": f"{len(rooms)}, of the kinds {', '.join(plan['kinds'])}",
+        "board": plan.get("board", "ideal"),
         "splits": "train, validation (kinds of rooms), and what a test holds out: room, layout, person, activity",
         "plan": "`plan.json`; radar: `radar.json`; checksums: `SHA256SUMS`, checked by `mmweaver verify`",
-    }  # fmt: skip
+    }
     text = _head(
-        "mit", "Simulated FMCW radar signals of people in furnished rooms", sum(counts), facts,
+        "mit",
+        "Simulated FMCW radar signals of people in furnished rooms",
+        sum(counts),
+        facts,
         "Rooms, people and motions are drawn from the seed; the same command gives the same bits.",
         command_of(plan, Path("OUT")).removesuffix(" --repair"),
-    )  # fmt: skip
+    )
     rows = [*_arrays(folder, axes), *_arrays(folder, (shown,))]
     where = f"A Zarr group for each room; shapes are those of `{shown}`."
     create_once(folder / CARD_FILE, text + _table(rows, where) + USE.format(folder="OUT", more=""))
@@ -108,17 +114,23 @@ def write_set_card(folder: Path) -> None:
     about = read_json(folder / SET_FILE)
     options = about.get("options", {})
     facts = {
-        "radar": about["radar"]["name"], "labels": ", ".join(about["activities"]), "seed": options.get("seed", "-"),
-        "method": about.get("method", "-"), "board": options.get("board", "-"),
+        "radar": about["radar"]["name"],
+        "labels": ", ".join(about["activities"]),
+        "seed": options.get("seed", "-"),
+        "method": about.get("method", "-"),
+        "board": options.get("board", "-"),
         "splits": f"train, validation, test by {options.get('split_by', 'person')}; `split_...` has others",
         "settings": f"`{SET_FILE}`; leak report: `leaks.json`; checksums: `SHA256SUMS`, checked by `mmweaver verify`",
-    }  # fmt: skip
+    }
     store = folder / STORE
     text = _head(
-        "unknown", "Simulated FMCW radar signals of labelled activities", _shape(store / "label")[0], facts,
+        "unknown",
+        "Simulated FMCW radar signals of labelled activities",
+        _shape(store / "label")[0],
+        facts,
         "Whoever made the set owns its rooms: choose a licence before it is published.",
         made_by(about.get("command")),
-    )  # fmt: skip
+    )
     rows = list(_arrays(store, sorted(entry.name for entry in store.iterdir() if entry.is_dir())))
     more = "A set made from results may hold recorded ones. " if about.get("from_results") else ""
     where = f"One Zarr group, `{STORE}`, which xarray opens."
@@ -152,10 +164,12 @@ def _arrays(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
                 continue
             kind = about["data_type"]
             yield (
-                file.parent.relative_to(folder).as_posix(), ", ".join(about.get("dimension_names") or ()),
-                " x ".join(map(str, about["shape"])), kind if isinstance(kind, str) else json.dumps(kind),
+                file.parent.relative_to(folder).as_posix(),
+                ", ".join(about.get("dimension_names") or ()),
+                " x ".join(map(str, about["shape"])),
+                kind if isinstance(kind, str) else json.dumps(kind),
                 about.get("attributes", {}).get("units", ""),
-            )  # fmt: skip
+            )
 
 
 def _shape(array: Path) -> list[int]:

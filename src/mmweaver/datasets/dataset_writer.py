@@ -76,9 +76,14 @@ def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
         put_array(root, name, getattr(grid, of_grid), (name,))
     put_array(root, "antenna_position_m", grid.antenna_position_m, ("antenna", "axis"))
     root.attrs.update(
-        {"made_by": "mmweaver dataset", "radar": parse_json(config.to_json(), "the radar"), "joints": list(JOINT_NAMES),
-         "wavelength_m": config.wavelength_m, "checksums": SUMS_FILE}
-    )  # fmt: skip
+        {
+            "made_by": "mmweaver dataset",
+            "radar": parse_json(config.to_json(), "the radar"),
+            "joints": list(JOINT_NAMES),
+            "wavelength_m": config.wavelength_m,
+            "checksums": SUMS_FILE,
+        }
+    )
     (stage / PLAN_FILE).write_text(plan.to_json(), encoding="utf-8")
     (stage / RADAR_FILE).write_text(config.to_json(), encoding="utf-8")
     write_sums(stage)
@@ -186,11 +191,16 @@ def _put_clutter(group: Any, static: np.ndarray) -> None:
 def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
     spec, sequences = generated.spec, generated.sequences
     return {
-        "kind": spec.kind, "layout": spec.layout, "lighting": spec.lighting, "checksums": SUMS_FILE,
-        "activity": [s.spec.activity for s in sequences], "text": [s.spec.text for s in sequences],
-        "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
+        "kind": spec.kind,
+        "layout": spec.layout,
+        "lighting": spec.lighting,
+        "checksums": SUMS_FILE,
+        "activity": [s.spec.activity for s in sequences],
+        "text": [s.spec.text for s in sequences],
+        "split": [s.spec.split for s in sequences],
+        "index": [s.spec.index for s in sequences],
         "refused": [list(entry) for entry in generated.refused],
-    }  # fmt: skip
+    }
 
 
 METADATA = "zarr.json"

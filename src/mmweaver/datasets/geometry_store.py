@@ -35,10 +35,14 @@ ROOMS = ("room", "photographed")
 FARTHEST_M = 1e4  # of joints and of what a room is made of; what is beyond is damage
 # Arrays of a prepared room (`room_arrays`): shape and kind of numbers.
 ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
-    "count": ((len(STATIC_KINDS),), "iu"), "place_m": (("path", 3), "f"), "amplitude": (("path", 2), "f"),
-    "mirrored_last_m": (("mirrored", 3), "f"), "mirrored_way_m": (("mirrored", "tx", "rx"), "f"),
-    "face": (("face", 4, 3), "f"), "face_half_m": (("face", 2), "f"),
-}  # fmt: skip
+    "count": ((len(STATIC_KINDS),), "iu"),
+    "place_m": (("path", 3), "f"),
+    "amplitude": (("path", 2), "f"),
+    "mirrored_last_m": (("mirrored", 3), "f"),
+    "mirrored_way_m": (("mirrored", "tx", "rx"), "f"),
+    "face": (("face", 4, 3), "f"),
+    "face_half_m": (("face", 2), "f"),
+}
 
 
 def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[TracedSequence, ...]) -> None:

@@ -70,9 +70,14 @@ class GeneratedRoom:
 
 
 def generate_room(
-    spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False, board: Board = IDEAL_BOARD,
+    spec: RoomSpec,
+    config: RadarConfig,
+    num_frames: int,
+    *,
+    geometry_only: bool = False,
+    board: Board = IDEAL_BOARD,
     propagation: Propagation = ALL_PATHS,
-) -> GeneratedRoom:  # fmt: skip
+) -> GeneratedRoom:
     """Generates a room and simulates all its sequences with one board; about 0.35 CPU-seconds per sequence.
 
     Signals have the paths that `propagation` says, by default all: second order and clutter, too. With `geometry_only`
@@ -81,9 +86,12 @@ def generate_room(
     room = make_room(spec.kind, spec.layout, spec.seed)
     true_scene = room.scene(spec.lighting)
     simulator = Simulator(
-        true_scene, config, board=board, micro_seed=seed_of_room(true_scene),
+        true_scene,
+        config,
+        board=board,
+        micro_seed=seed_of_room(true_scene),
         propagation=FIRST_ORDER if geometry_only else propagation,
-    )  # fmt: skip
+    )
     photo = room.photo(spec.lighting, noise=True)
     one = trace_sequence if geometry_only else generate_sequence
     made, refused = [], []
@@ -93,9 +101,13 @@ def generate_room(
         except InputError as error:
             refused.append((sequence.index, str(error)))
     return GeneratedRoom(
-        spec=spec, photo=photo, static=_static_clutter(simulator), sequences=tuple(made), refused=tuple(refused),
+        spec=spec,
+        photo=photo,
+        static=_static_clutter(simulator),
+        sequences=tuple(made),
+        refused=tuple(refused),
         geometry=_geometry(simulator, photo) if geometry_only else None,
-    )  # fmt: skip
+    )
 
 
 def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:

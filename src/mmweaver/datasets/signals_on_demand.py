@@ -119,9 +119,15 @@ class SignalsOnDemand:
         pose = self.motion(index, subject)
         board: dict[str, Any] = {} if self.board.is_ideal else {"board": self.board}
         cube = method(
-            scene, (pose,), self.config, num_frames=self.num_frames, seed=int(self._seed[index]), keep_adc=False,
-            stages=Stages(), **board,
-        ).cube  # fmt: skip
+            scene,
+            (pose,),
+            self.config,
+            num_frames=self.num_frames,
+            seed=int(self._seed[index]),
+            keep_adc=False,
+            stages=Stages(),
+            **board,
+        ).cube
         if abs(moving_power_db(cube) - self._power_db[index]) > POWER_TOLERANCE_DB:
             raise InputError(
                 f"{self.files.folder}: mmweaver {__version__} makes another signal of sequence {index} than"
@@ -135,9 +141,12 @@ class SignalsOnDemand:
         near = {"low": -FARTHEST_M, "high": FARTHEST_M}
         joints_m = stored_sequence(self.files, self._group, self.below, "motion_m", index, shape, **near)
         return PoseSequence(
-            time_s=self._time_s.astype(np.float64), joints_m=joints_m.astype(np.float64), subject=subject,
-            height_m=float(self._height_m[index]), girth=float(self._girth[index]),
-        )  # fmt: skip
+            time_s=self._time_s.astype(np.float64),
+            joints_m=joints_m.astype(np.float64),
+            subject=subject,
+            height_m=float(self._height_m[index]),
+            girth=float(self._girth[index]),
+        )
 
     def _prepared(self, room: int) -> tuple[Scene, Method]:
         """The room and a method of its own, which keeps what it prepared of it."""

@@ -18,13 +18,23 @@ from mmweaver.paths.image_method import mirrored
 
 # from joint, to joint, how far along (above 1: past the second)
 _MIDDLE = (
-    ("hip", "knee", 0.35), ("hip", "knee", 0.7), ("knee", "ankle", 0.35), ("knee", "ankle", 0.7),
-    ("shoulder", "elbow", 0.5), ("elbow", "wrist", 0.5), ("elbow", "wrist", 1.4), ("ankle", "foot", 1.2),
-)  # fmt: skip
+    ("hip", "knee", 0.35),
+    ("hip", "knee", 0.7),
+    ("knee", "ankle", 0.35),
+    ("knee", "ankle", 0.7),
+    ("shoulder", "elbow", 0.5),
+    ("elbow", "wrist", 0.5),
+    ("elbow", "wrist", 1.4),
+    ("ankle", "foot", 1.2),
+)
 _TORSO = (
-    ("neck", "head", 2.0), ("pelvis", "spine2", 0.5), ("left_hip", "spine3", 0.5), ("right_hip", "spine3", 0.5),
-    ("left_shoulder", "spine2", 0.5), ("right_shoulder", "spine2", 0.5),
-)  # fmt: skip
+    ("neck", "head", 2.0),
+    ("pelvis", "spine2", 0.5),
+    ("left_hip", "spine3", 0.5),
+    ("right_hip", "spine3", 0.5),
+    ("left_shoulder", "spine2", 0.5),
+    ("right_shoulder", "spine2", 0.5),
+)
 ANCHORS: tuple[tuple[int, int, float], ...] = (
     *((index, index, 0.0) for index in range(NUM_JOINTS)),
     *((joint(f"{side}_{a}"), joint(f"{side}_{b}"), part) for a, b, part in _MIDDLE for side in ("left", "right")),
@@ -74,17 +84,29 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> 
     unit = bone / length[..., None]
     features = torch.stack(
         [
-            *(place / 3).unbind(-1), distance / 3, 1 / distance, radial / 2, speed.norm(dim=-1) / 2,
-            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side,
+            *(place / 3).unbind(-1),
+            distance / 3,
+            1 / distance,
+            radial / 2,
+            speed.norm(dim=-1) / 2,
+            *unit.unbind(-1),
+            (unit * towards).sum(-1).abs(),
+            side,
             *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
-            place[..., 2] - floor[:, None, None], *clear.unbind(-1), in_view, _depth_behind(distance, towards),
+            place[..., 2] - floor[:, None, None],
+            *clear.unbind(-1),
+            in_view,
+            _depth_behind(distance, towards),
         ],
         dim=-1,
-    )  # fmt: skip
+    )
     return Anchors(
-        range_m=distance, velocity_mps=radial, direction=-towards[..., [0, 2]], features=features,
+        range_m=distance,
+        velocity_mps=radial,
+        direction=-towards[..., [0, 2]],
+        features=features,
         share=torch.ones_like(distance),
-    )  # fmt: skip
+    )
 
 
 @full_precision
@@ -116,11 +138,19 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) ->
     left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_REFLECTORS, None], cos)
     material = room.plane_features[:, None, :NUM_REFLECTORS, None, :5].expand(*cos.shape, 5)
     features = torch.stack(
-        [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
-         own_height.expand_as(far) / 2, torch.log10(left + 1e-4) / 2,
-         *to_image.unbind(-1)[::2]],
+        [
+            near.expand_as(far) / 3,
+            far / 3,
+            radial / 2,
+            cos,
+            *torch.tanh(3 * margin).unbind(-1),
+            height / 2,
+            own_height.expand_as(far) / 2,
+            torch.log10(left + 1e-4) / 2,
+            *to_image.unbind(-1)[::2],
+        ],
         dim=-1,
-    )  # fmt: skip
+    )
     return Anchors(
         range_m=((near + far) / 2).flatten(-2),
         velocity_mps=radial.flatten(-2),

@@ -43,9 +43,14 @@ class FrameMotion:
         time_s = frames[:, None] * config.frame_period_s + middle_s
         joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
         return cls(
-            joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s),
-            num_before=before, height_m=pose.height_m, girth=pose.girth,
-        )  # fmt: skip
+            joints_m=joints_m,
+            velocity_mps=velocity_mps,
+            subject=pose.subject,
+            num_segments=len(middle_s),
+            num_before=before,
+            height_m=pose.height_m,
+            girth=pose.girth,
+        )
 
     def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
         """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""

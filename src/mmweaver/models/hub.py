@@ -49,9 +49,13 @@ def _download(name: str, revision: str | None) -> Path:
 
 
 def push_to_hub(
-    source: str | Path, repo_id: str, *, card: str | Path | None = None, private: bool = False,
+    source: str | Path,
+    repo_id: str,
+    *,
+    card: str | Path | None = None,
+    private: bool = False,
     revision: str | None = None,
-) -> str:  # fmt: skip
+) -> str:
     """Uploads weights with their model card, and nothing else, to a model repository, which is made if it is not there.
 
     Who uploads is who logged in with `hf auth login`, or the owner of the token in HF_TOKEN.

@@ -84,9 +84,12 @@ def labelled_alone(made: TrainingWindows, features: Features, labels: Labels) ->
 
 # unlabelled recordings ----------------------------------------------------------------------------------------------
 def self_trained(
-    made: TrainingWindows, features: Features, trees: TreeEnsemble, options: TrainingOptions,
+    made: TrainingWindows,
+    features: Features,
+    trees: TreeEnsemble,
+    options: TrainingOptions,
     follows: Bool[np.ndarray, " window"] | None = None,
-) -> tuple[TreeEnsemble, dict[str, Any]]:  # fmt: skip
+) -> tuple[TreeEnsemble, dict[str, Any]]:
     """The trees to use, and what was done: the same trees where the guard refuses.
 
     Confident labels of unlabelled windows (window, feature) join the generated ones. `follows`, as `following` gives

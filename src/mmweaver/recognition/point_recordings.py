@@ -54,10 +54,12 @@ class PointRecording:
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
         return replace(
-            self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames,
+            self,
+            cloud=replace(cloud, frame=cloud.frame - first),
+            num_frames=num_frames,
             first_frame=self.first_frame + first,
             joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
-        )  # fmt: skip
+        )
 
 
 # reading ------------------------------------------------------------------------------------------------------------

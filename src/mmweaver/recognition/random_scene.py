@@ -154,10 +154,11 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
         cos, sin = np.cos(panel.turn_rad), np.sin(panel.turn_rad)
         flat.append(_plane("panel", panel.centre_m, (sin, -cos, 0), (cos, sin, 0), panel.material, panel.half_size_m))
     vertices_m = [
-        plane.centre_m + CORNERS[:, 0] * plane.half_size_m[0] * plane.axis_u
+        plane.centre_m
+        + CORNERS[:, 0] * plane.half_size_m[0] * plane.axis_u
         + CORNERS[:, 1] * plane.half_size_m[1] * plane.axis_v
         for plane in flat
-    ]  # fmt: skip
+    ]
     faces = 4 * np.arange(len(flat))[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])
     x_m, y_m = np.arange(-HALF_M, HALF_M, CELL_M), np.arange(0.0, 2 * HALF_M, CELL_M)
     free = np.ones((len(y_m), len(x_m)), bool)
@@ -185,6 +186,11 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
 def _plane(kind: str, centre: tuple, normal: tuple, u: tuple, material: str, half: tuple[float, float]) -> Plane:
     n, axis = np.asarray(normal, float), np.asarray(u, float)
     return Plane(
-        kind=kind, centre_m=np.asarray(centre, float), normal=n, axis_u=axis, axis_v=np.cross(n, axis),
-        half_size_m=half, material=material,
-    )  # fmt: skip
+        kind=kind,
+        centre_m=np.asarray(centre, float),
+        normal=n,
+        axis_u=axis,
+        axis_v=np.cross(n, axis),
+        half_size_m=half,
+        material=material,
+    )

@@ -41,9 +41,12 @@ def contradictions(recordings: Sequence[PointRecording], radar: Quantisation) ->
     if len(x) < FEWEST:
         return []
     found = [
-        *_check_places(x, y), *_check_velocities(np.abs(velocity), radar), *_check_ways(recordings, radar),
-        *_check_neighbours(recordings, radar), *_check_others(recordings, radar),
-    ]  # fmt: skip
+        *_check_places(x, y),
+        *_check_velocities(np.abs(velocity), radar),
+        *_check_ways(recordings, radar),
+        *_check_neighbours(recordings, radar),
+        *_check_others(recordings, radar),
+    ]
     return [f"{line}; {WHAT_TO_DO.get(todo, todo)}" for line, todo in found]
 
 

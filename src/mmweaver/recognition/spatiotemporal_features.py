@@ -143,9 +143,13 @@ def _turns(time_s: np.ndarray, velocity: np.ndarray, begin_s: float, end_s: floa
     momentum = np.histogram(time_s, edges, weights=velocity)[0] if len(edges) > 1 else np.zeros(1)
     changes = int((np.diff(np.sign(momentum[momentum != 0])) != 0).sum())
     return {
-        "order_away": away, "order_near": near, "order_away_less_near": away - near,
-        "turns": float(changes), "turns_hz": changes / max(lasts_s, 0.2), "order_tilt": float(velocity.mean()),
-    }  # fmt: skip
+        "order_away": away,
+        "order_near": near,
+        "order_away_less_near": away - near,
+        "turns": float(changes),
+        "turns_hz": changes / max(lasts_s, 0.2),
+        "order_tilt": float(velocity.mean()),
+    }
 
 
 # sides and heights --------------------------------------------------------------------------------------------------
@@ -215,10 +219,13 @@ def _course(window: PointRecording, body: PointCloud) -> Row:
 
     aside, range_m = body.x_m - np.median(body.x_m), body.range_m
     curves = {
-        "share": total / max(float(total.sum()), 1e-12), "velocity": mean(velocity),
-        "up": mean(body.z_m - np.median(body.z_m)), "out": mean(range_m - np.median(range_m)), "aside": mean(aside),
+        "share": total / max(float(total.sum()), 1e-12),
+        "velocity": mean(velocity),
+        "up": mean(body.z_m - np.median(body.z_m)),
+        "out": mean(range_m - np.median(range_m)),
+        "aside": mean(aside),
         "spread": np.sqrt(np.maximum(mean(aside**2) - mean(aside) ** 2, 0)),
-    }  # fmt: skip
+    }
     frames = np.bincount(body.frame, energy)
     return {
         **_segment_row("course", curves),

@@ -97,10 +97,14 @@ def task_variation(mount: Mount) -> Variation:
     """The ranges of places, rooms and radars: wide, but for what is known of the mount."""
     near, far = mount.distance_m or (1.0, 3.2)
     known = Variation(
-        distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
-        far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
-        noise_db=NOISE_DB, arms_db=ARMS_DB,
-    )  # fmt: skip
+        distance_m=(near, far),
+        near_m=(max(near - 0.4, 0.5), near + 0.3),
+        far_m=(max(far - 0.5, near + 0.6), far + 0.8),
+        radar_height_m=(0.7, 1.6),
+        wall_m=(far + 0.6, far + 3.0),
+        noise_db=NOISE_DB,
+        arms_db=ARMS_DB,
+    )
     if mount.height_m is not None:
         known = replace(known, radar_height_m=(mount.height_m - HEIGHT_SPREAD_M, mount.height_m + HEIGHT_SPREAD_M))
     if mount.height_m is None and mount.tilt_deg is None:
@@ -175,10 +179,15 @@ def perform(
     turned_rad = np.radians(prior.heading_of_performance_deg)
     window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
     pose = compose(
-        scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
-        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person, may_touch=False,
+        scheduled,
+        scene,
+        seed=int(rng.integers(2**31)),
+        range_window_m=window,
+        start_m=None if moves and rng.random() < 0.5 else now.start_m,
+        person=person,
+        may_touch=False,
         heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
-    ).pose  # fmt: skip
+    ).pose
     if is_event:
         spare_s = max(seconds * tempo - needed_s, 0.0)
         before_s = max(late_s / LATEST_S * LATEST_EVENT * spare_s, REST_S[0])
@@ -205,8 +214,9 @@ def perform(
     before_s, after_s = rng.uniform(*REST_S, size=2)
     return Performance(
         pose=_rested(pose, float(before_s), float(after_s)),
-        lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
-    )  # fmt: skip
+        lasts_s=float(before_s + time_s[-1] + after_s),
+        surroundings=now,
+    )
 
 
 def lasting(plan: MotionPlan) -> MotionPlan:

@@ -96,15 +96,24 @@ class TrainingWindows:
         """Trees, and the importance of each feature to them."""
         which = np.ones(len(self.label), bool) if which is None else which
         return grow_trees(
-            self.features[which], self.label[which], self.weights[which], int(self.label.max()) + 1,
-            trees=options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share, seed=options.seed,
-        )  # fmt: skip
+            self.features[which],
+            self.label[which],
+            self.weights[which],
+            int(self.label.max()) + 1,
+            trees=options.trees,
+            leaf_size=options.leaf_size,
+            feature_share=options.feature_share,
+            seed=options.seed,
+        )
 
 
 def generated_windows(
-    sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
-    background: Sequence[PointRecording] = (), persistent: Cells = NO_CELLS,
-) -> TrainingWindows:  # fmt: skip
+    sequences: Sequence[PointRecording],
+    task: RecognitionTask,
+    options: TrainingOptions,
+    background: Sequence[PointRecording] = (),
+    persistent: Cells = NO_CELLS,
+) -> TrainingWindows:
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
     Args:
@@ -122,11 +131,14 @@ def generated_windows(
     """
     shows_room, once = not (task.firmware.static_removal or background), task.recordings.has_single_performances
     how = WindowAugmentation(
-        cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
+        cell_m=task.radar.range_resolution_m,
+        velocity_step_mps=task.radar.velocity_resolution_mps,
         most_objects=WindowAugmentation().most_objects if shows_room else 0,
         crowded_share=CROWDED_SHARE if shows_room else 0.0,
-        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
-    )  # fmt: skip
+        reversed_share=0.0,
+        reflected_share=0.0,
+        snr_cut_db=SNR_CUT_DB,
+    )
     step_s, radar = task.recordings.window_s / OVERLAP, Quantisation.of(task)
     pairs = [(one, window) for one in sequences for window in windows_of(one, task.recordings, step_s)]
     found = {window.label for _, window in pairs}

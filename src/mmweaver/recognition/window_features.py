@@ -29,9 +29,13 @@ def window_features(window: PointRecording) -> Row:
     """Named features of the moving points of one window."""
     points = replace(window, cloud=window.cloud.select(is_moving(window.cloud)))
     return {
-        **_speeds(points), **_duty(points), **_places(points), **_travel(points), **_couplings(points.cloud),
+        **_speeds(points),
+        **_duty(points),
+        **_places(points),
+        **_travel(points),
+        **_couplings(points.cloud),
         **_rhythm(points),
-    }  # fmt: skip
+    }
 
 
 def moving_points(window: PointRecording) -> float:
@@ -170,9 +174,12 @@ def _couplings(cloud: PointCloud) -> Row:
     speed = np.abs(velocity)
     aside_m = np.abs(cloud.x_m - np.median(cloud.x_m)) if len(speed) else cloud.x_m
     pairs = {
-        "velocity_up": (velocity, up_m), "velocity_range": (velocity, range_m), "speed_up": (speed, up_m),
-        "speed_range": (speed, range_m), "speed_aside": (speed, aside_m),
-    }  # fmt: skip
+        "velocity_up": (velocity, up_m),
+        "velocity_range": (velocity, range_m),
+        "speed_up": (speed, up_m),
+        "speed_range": (speed, range_m),
+        "speed_aside": (speed, aside_m),
+    }
     row = {name: correlation(*pair) if len(speed) >= 2 * FEWEST else np.nan for name, pair in pairs.items()}
     for axis, value in {"range": range_m, "up": up_m}.items():
         row[f"{axis}_away_less_near"] = _difference(value[velocity > 0], value[velocity < 0])

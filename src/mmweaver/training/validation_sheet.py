@@ -33,9 +33,15 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
             axes, own = grid[row][column], _middle(getattr(truth, name)[row])
             title, shown = ("ground truth", own) if column % 2 == 0 else (made, _middle(getattr(network, name)[row]))
             image = axes.imshow(
-                10 * np.log10(np.maximum(shown / own.max(), 1e-12)), origin="lower", aspect="auto", cmap="inferno",
-                vmin=-SPAN_DB, vmax=0, extent=(*extents[name], near, far), interpolation="nearest",
-            )  # fmt: skip
+                10 * np.log10(np.maximum(shown / own.max(), 1e-12)),
+                origin="lower",
+                aspect="auto",
+                cmap="inferno",
+                vmin=-SPAN_DB,
+                vmax=0,
+                extent=(*extents[name], near, far),
+                interpolation="nearest",
+            )
             if row == 0:
                 axes.set_title(f"{title}: {name.replace('_', '-')}", fontsize=9)
             if row == count - 1:
