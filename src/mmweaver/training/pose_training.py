@@ -212,11 +212,6 @@ def _sampler(windows: PoseWindows, recipe: PoseRecipe, purpose: str) -> BatchSam
     def draw(step: int, share: Share) -> PoseBatch:
         batch = windows.batch(recipe.batch_size, stream(recipe.seed, purpose, step))
         own = slice(share[0], None, share[1])
-        return PoseBatch(
-            values=batch.values[own],
-            is_there=batch.is_there[own],
-            middle_m=batch.middle_m[own],
-            joints_m=batch.joints_m[own],
-        )
+        return PoseBatch(**{name: values[own] for name, values in vars(batch).items()})
 
     return draw
