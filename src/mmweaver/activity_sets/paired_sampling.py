@@ -138,7 +138,7 @@ def paired_draws(
 def _placing(places: list[StartPlace], place: int, rng: np.random.Generator) -> dict[str, Any]:
     """A start and a heading at a place."""
     start_m = places[place].sampled_m(rng)
-    return {"place": place, "start_m": start_m, "heading_rad": round(float(rng.uniform(-np.pi, np.pi)), 4)}
+    return {"place": place, "start_m": start_m, "heading_rad": round(rng.uniform(-np.pi, np.pi), 4)}
 
 
 def _own(

@@ -125,10 +125,10 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         tempo=float(np.exp(prior.tempo_of_person * tempo)),
         amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),
-        wider_m=float(rng.uniform(*prior.wider_m)),
-        linger=float(rng.uniform(*prior.linger)),
+        wider_m=rng.uniform(*prior.wider_m),
+        linger=rng.uniform(*prior.linger),
         on_way=float(np.exp(rng.uniform(*np.log(prior.on_way)))),
-        at_turns=float(rng.uniform(*prior.at_turns)),
+        at_turns=rng.uniform(*prior.at_turns),
     )
 
 
@@ -169,7 +169,7 @@ def perform(
     tempo = float(who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own))
     usual = prior.single_amplitude if once else prior.usual_amplitude
     amplitude = float(usual * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own))
-    late_s = 0.0 if once else float(rng.uniform(0.0, LATEST_S))
+    late_s = 0.0 if once else rng.uniform(0.0, LATEST_S)
     lead_s = 0.0 if once or is_event else LEAD_S + late_s
     needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
     scheduled = schedule(plan if once or is_event else repeated(plan, needed_s), needed_s)
