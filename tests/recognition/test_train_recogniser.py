@@ -103,7 +103,7 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
 
 @pytest.mark.usefixtures("drawn")
 def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(task_file: Path, tmp_path: Path):
-    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    model = small_recogniser(task_file)
     people = drawn_sequences(model.settings, 3, first=50)
     turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
     for found, expected in ((people, False), (turned, True)):
