@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float
 
 from mmweaver.core.records import PointCloud
 
-MAX_POINTS = 40  # a frame; of more, the strongest are kept
+MAX_POINTS = 40  # per frame; the strongest are kept
 COLUMNS = 5  # x right, y ahead, z up in metres, radial velocity in m/s, strength over the recording's median in dB
 REACH_M = 1.2  # of a body about the middle of its points; what is farther off is the room
 MIN_MOVING = 5  # points, for the middle of those that move to stand for the person

@@ -5,8 +5,8 @@
     joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
                                                                 (anchored to the body and its images)
 
-The network says how strong each echo is on average and where it lies; phases are sampled when a signal is made, for
-nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
+The network predicts the mean strength and the position of each echo; phases are unpredictable and are sampled when a
+signal is made. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
 Reference: paper, section "Generalization via Hypernetworks".
 """
 

@@ -36,7 +36,7 @@ def background_cells(empty_place: Sequence[PointRecording]) -> Cells:
 
 
 def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantisation | None = None) -> Cells:
-    """Cells, and those around, in which something moves that is certainly nobody; none if unsure.
+    """Cells, and those around, with persistent motion that is certainly not the subject; none if unsure.
 
     Args:
         recordings: Ten or more, in some of which somebody walks; labels are not used.
@@ -52,7 +52,7 @@ def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantis
     found = [_moving_cells(one, max(IN_FRAMES * one.num_frames, 1.0)) for one in recordings]
     cells, count = np.unique(np.concatenate(found), axis=0, return_counts=True)
     cells = cells[count >= NEARLY_ALL * len(recordings)]
-    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: nobody walks
+    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: no walker
     walks = np.isfinite(goes_on).sum(axis=0)
     often = (np.nan_to_num(goes_on) >= GOES_ON).sum(axis=0) >= MOSTLY * np.maximum(walks, 1)
     return _dilated(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
@@ -103,7 +103,7 @@ def _moving_cells(recording: PointRecording, min_frames: float) -> Cells:
 
 
 def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
-    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: nobody."""
+    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: no walker."""
     cloud = recording.cloud.select(is_moving(recording.cloud))
     stretch, cell = cloud.frame // max(round(STRETCH_S * recording.frame_rate_hz), 1), _cells_of(cloud)
     point_m = np.stack([cloud.x_m, cloud.y_m], axis=1)

@@ -1,4 +1,4 @@
-"""Recordings of a task that nobody made: people of a population perform its sentences in front of its radar.
+"""Generated recordings of a task: people of a population perform its sentences in front of its radar.
 
 Sequences are kept in a folder as they are made, so an interrupted run resumes with the same bits.
 """

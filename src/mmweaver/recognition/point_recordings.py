@@ -101,7 +101,7 @@ def read_task_recording(file: Path, settings: RecordingSettings, label: str = ""
         file = file / POINTS_FILE
     cloud, frames = _read_cloud(file, settings)
     name = file.parent.name if file.name == POINTS_FILE else file.stem
-    frames = frames or settings.window_frames  # without any frame it lasts a window, for all that is known
+    frames = frames or settings.window_frames  # without any frame it counts as one window
     return PointRecording(name=name, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label)
 
 

@@ -1,7 +1,7 @@
-"""Do recordings fit what a task says of radar and columns? Their points alone are asked, no labels.
+"""Do recordings agree with the radar and the columns of a task? Their points alone decide, no labels.
 
-Whoever moves is later where the velocities say; nobody stands behind the radar; velocities are multiples of the radar's
-step. Where recordings contradict the task, a recogniser has learned from another board than the one that is before it.
+Displacement follows from velocity; no point lies behind the radar; velocities are multiples of the radar's step. Where
+recordings contradict the task, the recogniser was trained for another board than the one that recorded.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.spatiotemporal_features import near_median
 
 LAG_S = 0.5  # over which ways are compared with velocities
-MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which nobody goes anywhere; beyond, it is another echo
+MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which there is no displacement; beyond, it is another echo
 FEWEST = 200  # points, and a tenth as many ways
 RELATED, OPPOSED = 0.6, -0.4  # correlations
 SLOWEST, FASTEST = 0.6, 1.6  # ways relative to what velocities say

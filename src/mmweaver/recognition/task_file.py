@@ -2,8 +2,8 @@
 
 radar = "profile.cfg"
 window_s = 2.0
-background = "empty_place.dat"     # optional: a recording of the place with nobody in it
-unlabelled = "some_recordings/"    # optional: recordings whose activities nobody has written down
+background = "empty_place.dat"     # optional: a recording of the empty place
+unlabelled = "some_recordings/"    # optional: recordings without labels
 
 [activities]
 walking = ["a person walks", "a person walks slowly"]
