@@ -34,7 +34,7 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.room_generation import GeneratedSequence, generate_sequence, pose_of
+from mmweaver.datasets.room_generation import generate_sequence, pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
@@ -120,7 +120,7 @@ def ideal_board(case: Case) -> Board:
 def true_cube(room: StoredRoom, index: int, seed_of_plan: int, board: Board = IDEAL_BOARD) -> RadarCube:
     """One sequence simulated anew, with all paths: what the data set keeps may be geometry of first order."""
     case = Case(room, index, room, seed_of_plan, room.lighting)
-    return _simulated(case, case.true_scene, 0, ALL_PATHS, board, subject=None, noise_seed=None).cube
+    return _simulated(case, case.true_scene, 0, ALL_PATHS, board, subject=None, noise_seed=None)[1]
 
 
 def simulated(
@@ -131,13 +131,13 @@ def simulated(
 
     def method(case: Case) -> RadarCube:
         spec = case.spec
-        made = _simulated(
+        joints_m, cube = _simulated(
             case, scene_of(case), micro_seed, propagation, board_of(case), subject=spec.person + skin,
             noise_seed=spec.seed + OTHER,
         )  # fmt: skip
-        if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
+        if np.abs(joints_m - case.joints[0]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
-        return made.cube
+        return cube
 
     return method
 
@@ -145,11 +145,14 @@ def simulated(
 def _simulated(
     case: Case, scene: Scene, micro_seed: int, propagation: Propagation, board: Board, *, subject: int | None,
     noise_seed: int | None,
-) -> GeneratedSequence:  # fmt: skip
+) -> tuple[np.ndarray, RadarCube]:  # fmt: skip
+    """Joints at the frames, and the cube."""
     config, frames = case.room.config, len(case.joints[0])
     seed = seed_of_room(scene) + micro_seed
     simulator = Simulator(scene, config, micro_seed=seed, propagation=propagation, board=board)
-    return generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
+    made = generate_sequence(case.spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise_seed)
+    assert made.cube is not None
+    return made.joints_m, made.cube
 
 
 def learned(

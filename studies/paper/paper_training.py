@@ -16,7 +16,7 @@ from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.network_examples import power_maps
 from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
-from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
+from mmweaver.training.validation_sheet import MAX_ROWS, draw_sheet
 from studies.paper.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
 from studies.paper.paper_loss import paper_loss
 from studies.paper.paper_method import field_of_image, unit_sqrt_mw
@@ -117,7 +117,7 @@ def train_paper(
     if start is not None:
         network.load_state_dict(start)
     trainer = Trainer(
-        PaperLearner(network, perceiver, config, shown=lambda: unseen[:MOST_ROWS]), recipe, out, compute=compute,
+        PaperLearner(network, perceiver, config, shown=lambda: unseen[:MAX_ROWS]), recipe, out, compute=compute,
         train=_drawing(rooms, recipe, recipe.seed), validation=_drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
         is_tuning=start is not None, **options,
     )  # fmt: skip

@@ -22,7 +22,7 @@ from torch import Tensor, nn
 from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
-from mmweaver.models.precision import in_full_precision
+from mmweaver.models.precision import full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
@@ -199,7 +199,7 @@ def _surfaces(view: SceneTensors) -> Tensor:
     return torch.stack([point.norm(dim=1), cosine, (view.depth_m > 0).float()], 1)
 
 
-@in_full_precision
+@full_precision
 def _looked_up(surface: Tensor, direction: Tensor, camera_from_radar: Tensor, camera: Tensor) -> Tensor:
     """Values (room, 3, place) of the surface in directions (room, place, 2); zeros beyond the picture."""
     ahead = (1 - direction.square().sum(-1)).clamp(min=0.0).sqrt()

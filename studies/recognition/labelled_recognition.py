@@ -43,7 +43,7 @@ def accuracy(
     options, own, training = TrainingOptions(trees=TREES), None, made
     if trains.any() and generated:
         own, options = own_trees(made, features[trains], labels[trains], each, options)
-        training = made.with_recorded(features[trains], labels[trains], options.labelled_weight)
+        training = made.joined(features[trains], labels[trains], options.labelled_weight)
     elif trains.any():
         training, options = labelled_alone(made, features[trains], labels[trains]), replace(options, leaf_size=OWN_LEAF)
     trees = joined_trees(training.trees(options), own)

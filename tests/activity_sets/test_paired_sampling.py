@@ -11,7 +11,7 @@ from mmweaver.activity_sets.paired_sampling import (
     paired_draws,
     places_of,
     shuffled,
-    why_placed_apart,
+    unpaired_reasons,
 )
 from mmweaver.core.errors import InputError
 from mmweaver.generate import Weaver
@@ -55,9 +55,9 @@ def test_a_label_that_needs_another_place_than_the_others_has_its_own_draw_of_th
         assert (falls.is_shared, falls.place) == (False, 1)
         assert (falls.subject, falls.seed, falls.index) == (waves.subject, waves.seed, waves.index)
     flat = [draw for each in draws for draw in each]
-    reasons = why_placed_apart(flat, [0, 1, 2] * 6, ["waves", "walks", "falls"])
+    reasons = unpaired_reasons(flat, [0, 1, 2] * 6, ["waves", "walks", "falls"])
     assert all("'falls' starts elsewhere 6 times" in reasons[name] for name in ("start_place", "heading"))
-    assert not why_placed_apart([waves for waves, _, _ in draws], [0] * 6, ["waves"])
+    assert not unpaired_reasons([waves for waves, _, _ in draws], [0] * 6, ["waves"])
 
 
 def test_a_room_that_never_serves_is_refused():

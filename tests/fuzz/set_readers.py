@@ -21,10 +21,9 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.datasets import activity_store, geometry_store
 from mmweaver.datasets.checked_folder import CheckedFolder
-from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import read_radar, read_rooms
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
-from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
+from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.static_paths import FIRST_ORDER
@@ -114,21 +113,14 @@ def _write_geometry(folder: Path, config: RadarConfig) -> None:
     }  # fmt: skip
     room = room_of(arrays, [["wall", "plaster"], ["floor", "wood"]], config, FIRST_ORDER)
     nodes = len(FrameClock(config).node_s)
-    joints_m = rng.normal(size=(2, 22, 3)).astype("f4")
     seen = Visibility(
         skin=rng.random((2, geometry_store.DEFAULT_NUM_POINTS)) < 0.5,
         over_faces=rng.random((2, 2, geometry_store.GHOST_POINTS)) < 0.5,
         occluded=rng.random((2, 8)) < 0.5,
     )
-    motion = TracedSequence(
-        spec=SequenceSpec(index=0, person=0, activity="walking", text="a person walks", seed=0, split="train"),
-        joints_m=joints_m,
-        joint_velocity_mps=joints_m,
-        node_joints_m=rng.normal(size=(2, nodes, 22, 3)).astype("f4"),
-        visibility=seen,
-    )
+    trace = rng.normal(size=(2, nodes, 22, 3)).astype("f4"), seen
     geometry = RoomGeometry(room=room, photographed=room)
-    geometry_store.write_geometry(zarr.open_group(folder, mode="w"), geometry, (motion,))
+    geometry_store.write_geometry(zarr.open_group(folder, mode="w"), geometry, [trace])
     assert (folder / GEOMETRY).is_dir()
 
 

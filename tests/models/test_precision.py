@@ -2,13 +2,13 @@
 
 import torch
 
-from mmweaver.models.precision import in_full_precision
+from mmweaver.models.precision import full_precision
 
 
 def test_products_inside_are_exact_and_bf16_comes_in_as_float32():
     a, b = torch.randn(4, 4), torch.randn(4, 4)
 
-    @in_full_precision
+    @full_precision
     def product(x, y, name):
         assert name == "kept"
         return x @ y

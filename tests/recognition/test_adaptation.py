@@ -11,7 +11,7 @@ from mmweaver.recognition.adaptation import (
     generated_worth,
     own_trees,
     self_trained,
-    with_neighbours,
+    smoothed_votes,
 )
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.training_windows import TrainingOptions, TrainingWindows
@@ -88,7 +88,7 @@ def test_joined_trees_vote_as_both_do_and_are_read_back(made: TrainingWindows, t
     features, labels = np.tile([[0.0], [1.0]], (10, 1)), np.tile([0, 1], 10)
     own, others = own_trees(made, features, labels, 3, OPTIONS)
     assert own is not None
-    mixed = made.with_recorded(features, labels, 0.1).trees(others)
+    mixed = made.joined(features, labels, 0.1).trees(others)
     both = joined_trees(mixed, own)
     asked = np.array([[0.0], [0.5], [1.05], [np.nan]])
     mean = (mixed.probabilities(asked) + own.probabilities(asked)) / 2
@@ -117,7 +117,7 @@ def test_windows_follow_each_other_within_a_recording():
 
 def test_neighbours_vote_along():
     votes = np.array([[0.9, 0.1], [0.4, 0.6], [0.8, 0.2], [0.1, 0.9]])
-    mean = with_neighbours(votes, np.array([False, True, True, False]))
+    mean = smoothed_votes(votes, np.array([False, True, True, False]))
     assert np.allclose(mean[:, 0], [0.65, 0.7, 0.6, 0.1])
     assert np.allclose(mean.sum(axis=1), 1)
 

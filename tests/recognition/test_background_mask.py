@@ -8,7 +8,7 @@ from mmweaver.recognition.background_mask import (
     background_cells,
     left_out_lines,
     persistent_motion_cells,
-    without_motion_in,
+    remove_motion,
 )
 from mmweaver.recognition.point_recordings import PointRecording
 from tests.recognition.clouds import in_all_frames, recording_of
@@ -30,17 +30,17 @@ def walker(number: int) -> Way:
 
 def test_a_fan_of_the_empty_place_is_left_out_and_nothing_else():
     cells = background_cells([in_all_frames([FAN, BOX], FRAMES)])
-    cloud = without_motion_in(in_all_frames([FAN, BOX, SOMEBODY], FRAMES), cells).cloud
+    cloud = remove_motion(in_all_frames([FAN, BOX, SOMEBODY], FRAMES), cells).cloud
     assert sorted(set(cloud.radial_velocity_mps)) == [SOMEBODY[2], BOX[2]]
     assert len(cloud.frame) == 2 * FRAMES
     beside, far = (-1.3, 3.3, 1.0), (-1.9, 3.3, 1.0)
-    assert set(without_motion_in(in_all_frames([beside, far], FRAMES), cells).cloud.x_m) == {far[0]}
+    assert set(remove_motion(in_all_frames([beside, far], FRAMES), cells).cloud.x_m) == {far[0]}
 
 
 def test_whoever_walks_through_the_empty_place_masks_nothing():
     walked = recording_of(np.arange(FRAMES), y_m=1 + 0.15 * np.arange(FRAMES), velocity_mps=1.5)
     assert background_cells([walked]).shape == background_cells([]).shape == (0, 2)
-    assert without_motion_in(walked, NO_CELLS) is walked
+    assert remove_motion(walked, NO_CELLS) is walked
 
 
 def test_a_fan_is_found_without_an_empty_place_where_people_walk_elsewhere():

@@ -14,8 +14,8 @@ from mmweaver.recognition.subject_simulation import (
     perform,
     performer,
     slow_at_turns,
+    spread_feet,
     task_variation,
-    with_feet_apart,
 )
 from mmweaver.recognition.task_file import Mount
 from mmweaver.recognition.train_pose import POSE_PRIOR
@@ -112,13 +112,13 @@ def drawn_stance(apart_m: float) -> np.ndarray:
 
 
 def test_legs_that_are_apart_already_are_not_spread():
-    np.testing.assert_array_equal(with_feet_apart(drawn_stance(0.6), 0.2), drawn_stance(0.6))
+    np.testing.assert_array_equal(spread_feet(drawn_stance(0.6), 0.2), drawn_stance(0.6))
 
 
 def test_the_body_is_over_the_foot_that_stands():
     both = np.repeat(drawn_stance(0.2), 2, axis=0)
     both[1, [joint("left_ankle"), joint("left_foot")], 2] += 0.3
-    wider = with_feet_apart(both, 0.2)
+    wider = spread_feet(both, 0.2)
     standing = wider[:, joint("right_ankle"), 0] - wider[:, joint("pelvis"), 0]
     np.testing.assert_allclose(standing - both[:, joint("right_ankle"), 0], (-0.1, 0.0), atol=1e-9)
     np.testing.assert_allclose(wider[:, joint("right_ankle")], wider[:1, joint("right_ankle")].repeat(2, 0))

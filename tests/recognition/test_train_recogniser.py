@@ -13,6 +13,7 @@ pytest.importorskip("sklearn")
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition import train_recogniser as training
+from mmweaver.recognition.background_mask import WindowFilter
 from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.quantisation import Quantisation
@@ -27,7 +28,6 @@ from mmweaver.recognition.recogniser import (
 from mmweaver.recognition.scoring import feature_distances, score_recordings
 from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.train_recogniser import train_recogniser
-from mmweaver.recognition.window_filter import WindowFilter
 from tests.recognition.clouds import in_all_frames, with_others
 from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
 
@@ -103,7 +103,7 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
 
 @pytest.mark.usefixtures("drawn")
 def test_recordings_that_contradict_the_task_are_told_by_scores_and_training(task_file: Path, tmp_path: Path):
-    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    model = small_recogniser(task_file)
     people = drawn_sequences(model.settings, 3, first=50)
     turned = [replace(one, cloud=replace(one.cloud, x_m=one.cloud.y_m, y_m=one.cloud.x_m)) for one in people]
     for found, expected in ((people, False), (turned, True)):

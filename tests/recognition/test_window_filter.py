@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from mmweaver.recognition.background_mask import background_cells
+from mmweaver.recognition.background_mask import WindowFilter, background_cells, remove_multipath
 from mmweaver.recognition.point_recordings import PointRecording
-from mmweaver.recognition.window_filter import WindowFilter, without_multipath
 from tests.recognition.clouds import RADAR, in_all_frames, recording_of
 
 FRAMES = 20
@@ -21,7 +20,7 @@ def recording(*groups: Group) -> PointRecording:
 
 
 def test_an_echo_behind_the_person_is_left_out():
-    found = without_multipath(recording((0.0, 2.0, 0.5, 4), (1.2, 2.8, 0.5, 2))).cloud
+    found = remove_multipath(recording((0.0, 2.0, 0.5, 4), (1.2, 2.8, 0.5, 2))).cloud
     assert len(found.frame) == 4 * FRAMES
     assert found.x_m.max() < 0.5
 
@@ -36,19 +35,19 @@ def test_an_echo_behind_the_person_is_left_out():
 )
 def test_others_stay(groups: list[Group]):
     one = recording(*groups)
-    assert without_multipath(one) is one
+    assert remove_multipath(one) is one
 
 
 def test_a_runner_is_not_an_echo_of_where_they_were():
     frame = np.repeat(np.arange(FRAMES), 4)
     one = recording_of(frame, y_m=1.0 + 0.3 * frame, velocity_mps=3.0)
-    assert without_multipath(one) is one
+    assert remove_multipath(one) is one
 
 
 def test_something_farther_counts_while_the_person_is_away():
     both = recording((0.0, 2.0, 0.5, 3), (1.5, 4.0, 0.5, 2))
     away = PointRecording(**vars(both) | {"cloud": both.cloud.select((both.cloud.y_m > 3) | (both.cloud.frame < 10))})
-    found = without_multipath(away).cloud
+    found = remove_multipath(away).cloud
     assert set(found.frame[found.y_m > 3.0]) == set(range(11, FRAMES))
 
 

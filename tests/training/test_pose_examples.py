@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
-from mmweaver.models.point_frames import MOST_POINTS, middle_m, near, point_frames
+from mmweaver.models.point_frames import MAX_POINTS, middle_m, near, point_frames
 from mmweaver.recognition.train_pose import posed_frames
 from mmweaver.training.pose_training import Disturbance, PoseWindows, disturbed
 from tests.training.moving_arm import moving_arm
@@ -43,7 +43,7 @@ def test_points_follow_the_joints():
 
 def test_the_wall_is_no_part_of_the_person():
     frames = point_frames(moving_arm(0).cloud, 45)
-    assert frames.values.shape == (45, MOST_POINTS, 5)
+    assert frames.values.shape == (45, MAX_POINTS, 5)
     assert not frames.is_there[40:].any()
     middle = middle_m(frames)
     assert middle[1] == pytest.approx(2.0, abs=0.3)
@@ -53,6 +53,6 @@ def test_the_wall_is_no_part_of_the_person():
 def test_windows_come_from_anywhere():
     windows = PoseWindows(recordings=[posed_frames(moving_arm(k)) for k in range(3)], window_frames=8)
     batch = windows.batch(6, np.random.default_rng(0))
-    assert batch.values.shape == (6, 8, MOST_POINTS, 5)
+    assert batch.values.shape == (6, 8, MAX_POINTS, 5)
     assert batch.joints_m.shape == (6, 8, 22, 3)
     assert len({float(one) for one in batch.middle_m[:, 0]}) == 6

@@ -25,7 +25,7 @@ from mmweaver.activity_sets.paired_sampling import (
     paired_draws,
     places_of,
     shuffled,
-    why_placed_apart,
+    unpaired_reasons,
 )
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
 from mmweaver.core.boards import find_board
@@ -217,7 +217,7 @@ class SetBuilder:
             _ = self.plan
         text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
         held = create_once(self.out / SET_FILE, text)
-        if held != text and _without_command(held) != _without_command(text):
+        if held != text and _comparable(held) != _comparable(text):
             raise InputError(f"{self.out} holds a set of other settings; choose another folder or the same settings")
 
     def _description(self) -> dict[str, Any]:
@@ -306,7 +306,7 @@ class SetBuilder:
             "energy": [float(part["energy_db"]) for part in parts],
         }
         with staged_folder(self.out, overwrite=True) as stage:
-            signals = self._geometry(heights) if options.iq == "none" else self._of_parts("iq")
+            signals = self._geometry(heights) if options.iq == "none" else self._part_arrays("iq")
             arrays = {
                 "joints_m": [part["joints"] for part in parts],
                 "points": [part["points"] for part in parts],
@@ -319,12 +319,12 @@ class SetBuilder:
                 more["file_size"] = sizes
             found = circumstances(arrays["joints_m"], np.asarray(columns["label"]), **more)
             found["start_place"] = np.concatenate([found["start_place"], found["room"]], axis=1)
-            reasons = why_placed_apart([one.draw for one in plan], columns["label"], self.labels)
+            reasons = unpaired_reasons([one.draw for one in plan], columns["label"], self.labels)
             write_leaks(stage, found, columns, self.labels, reasons)
             (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")
             shutil.copyfile(self.out / SET_FILE, stage / SET_FILE)
 
-    def _of_parts(self, name: str) -> Iterator[np.ndarray]:
+    def _part_arrays(self, name: str) -> Iterator[np.ndarray]:
         """An array of each part, one in memory at a time."""
         return (np.asarray(read_npz(self._part_file(number))[name]) for number in range(len(self.plan)))
 
@@ -334,13 +334,13 @@ class SetBuilder:
             method=self.weaver.method_name,
             board=self.weaver.board_of(self.request_of(self.plan[0]), self.rooms[0])[0],
             rooms=[(room.scene.photo, room.views) for room in self.rooms],
-            time_s=next(self._of_parts("motion_time")),
-            motions_m=self._of_parts("motion"),
+            time_s=next(self._part_arrays("motion_time")),
+            motions_m=self._part_arrays("motion"),
             sequences={
                 "seed": np.array([self.request_of(one).seed for one in self.plan], np.int64),
                 "height_m": np.array(heights),
                 **{
-                    name: np.array([float(each) for each in self._of_parts(name)])
+                    name: np.array([float(each) for each in self._part_arrays(name)])
                     for name in ("girth", "moving_power_db")
                 },
             },
@@ -407,7 +407,7 @@ def write_leaks(
     return report
 
 
-def _without_command(text: str) -> Any:
+def _comparable(text: str) -> Any:
     """What a set follows from: words such as --quiet may differ when it is resumed."""
     found = parse_json(text, SET_FILE)
     return found | {"command": ""} if isinstance(found, dict) else found

@@ -60,13 +60,16 @@ def leak_report(
     reasons = INHERENT | (reasons or {})
     rows = {
         name: {
-            "accuracy": round(leak.accuracy, 4), "interval_99": [round(leak.low, 4), round(leak.high, 4)],
-            "chance": round(leak.chance, 4), "sequences": leak.number, "leaks": leak.leaks,
+            "accuracy": round(leak.accuracy, 4),
+            "interval_99": [round(leak.low, 4), round(leak.high, 4)],
+            "chance": round(leak.chance, 4),
+            "sequences": leak.number,
+            "leaks": leak.leaks,
             "labels": {label_names[one]: round(accuracy, 4) for one, accuracy in leak.of_labels.items()},
             **({"cannot_be_avoided": reasons[name]} if name in reasons else {}),
         }
         for name, leak in found.items()
-    }  # fmt: skip
+    }
     verdict = f"leaks: {', '.join(avoidable)}" if avoidable else "leaks: none found"
     if why := list(dict.fromkeys(reasons[name] for name in avoidable if name in reasons)):
         verdict += f" ({'; '.join(why)})"
@@ -74,9 +77,12 @@ def leak_report(
     chance = next(iter(found.values())).chance
     part = f"part of the activities themselves: {', '.join(shown)} (chance {chance:.2f})" if shown else ""
     return {
-        "schema_version": 4, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
+        "schema_version": 4,
+        "verdict": verdict,
+        "inherent": part,
+        "classifier": "1-nearest neighbour, unseen groups",
         "of": rows,
-    }  # fmt: skip
+    }
 
 
 def verdict_of(report: dict[str, Any]) -> str:
@@ -95,11 +101,15 @@ def circumstances(
     right_m, ahead_m = (np.sum(direction[:, None] * body[..., :2], axis=-1) for direction in (facing, ahead))
     posture = np.stack([right_m, ahead_m, body[..., 2]], axis=-1)
     rows = {
-        "start_place": first_m[:, joint("pelvis"), :2], "heading": facing, "duration": [len(one) for one in joints_m],
-        "order": order, "order_in_cycle": order % len(set(label.tolist())), **more,
+        "start_place": first_m[:, joint("pelvis"), :2],
+        "heading": facing,
+        "duration": [len(one) for one in joints_m],
+        "order": order,
+        "order_in_cycle": order % len(set(label.tolist())),
+        **more,
         "start_posture": posture.reshape(len(posture), -1),
         "end_place": [one[-1, joint("pelvis"), :2] for one in joints_m],
-    }  # fmt: skip
+    }
     return {name: np.asarray(values, np.float64).reshape(len(joints_m), -1) for name, values in rows.items()}
 
 

@@ -138,7 +138,7 @@ def paired_draws(
 def _placing(places: list[StartPlace], place: int, rng: np.random.Generator) -> dict[str, Any]:
     """A start and a heading at a place."""
     start_m = places[place].sampled_m(rng)
-    return {"place": place, "start_m": start_m, "heading_rad": round(float(rng.uniform(-np.pi, np.pi)), 4)}
+    return {"place": place, "start_m": start_m, "heading_rad": round(rng.uniform(-np.pi, np.pi), 4)}
 
 
 def _own(
@@ -170,7 +170,7 @@ def obstacle_of(request: Request, scene: Scene, sentence: str) -> str:
     return ""
 
 
-def why_placed_apart(draws: Sequence[Draw], label: Sequence[int], label_names: Sequence[str]) -> dict[str, str]:
+def unpaired_reasons(draws: Sequence[Draw], label: Sequence[int], label_names: Sequence[str]) -> dict[str, str]:
     """Why start place and heading are not those of the other labels, by circumstance; empty where all are shared."""
     own = Counter(label_names[one] for draw, one in zip(draws, label, strict=True) if not draw.is_shared)
     if not own:
@@ -241,7 +241,7 @@ def sentence_draws(
 
     Raises InputError where nothing serves one of the rest.
     """
-    refused = without_place(requests, scene, seed)
+    refused = unplaceable(requests, scene, seed)
     texts = [text for text in requests if text not in refused]
     if not texts:
         return [], refused
@@ -257,7 +257,7 @@ def sentence_draws(
     ], refused
 
 
-def without_place(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
+def unplaceable(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
     """Why each sentence that the room has no place for wherever the planner tries cannot be made, by sentence."""
     refused: dict[str, str] = {}
     for text, request in requests.items():
@@ -291,7 +291,7 @@ def folder_leaks(
     }
     found = circumstances([pose.joints_m for pose in poses], label, **more)
     index = np.asarray([draw.index for draw in draws])
-    reasons = why_placed_apart(draws, label.tolist(), names)
+    reasons = unpaired_reasons(draws, label.tolist(), names)
     if words := differing_descriptions(requests):
         described = ", ".join(repr(one) for one in words)
         reasons["height"] = f"the sentences describe different people ({described}); word all 'a person' to have none"

@@ -49,10 +49,10 @@ def run_store(
 
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
     from mmweaver.activity_sets.confounders import verdict_of
-    from mmweaver.activity_sets.paired_sampling import without_place
+    from mmweaver.activity_sets.paired_sampling import unplaceable
     from mmweaver.cli.activity_set import make_with_bar
 
-    refused = without_place(requests, room.scene, arguments.seed)
+    refused = unplaceable(requests, room.scene, arguments.seed)
     kept = [text for text in requests if text not in refused]
     if not kept:
         raise InputError(f"none of the sentences could be made; the first: {next(iter(refused.values()))}")

@@ -42,8 +42,15 @@ SCHEMA_VERSION = 2
 SPLITS = ("train", "validation", "test")
 SPLIT_KEYS = ("subject", "place", "room", "sentence")
 STRINGS = ("label_name", "text", "split", *(f"split_{key}" for key in SPLIT_KEYS))
-NUMBERS = {"label": "int32", "subject": "int32", "place": "int32", "room": "int32", "draw": "int32",
-           "heading": "float32", "height": "float32"}  # fmt: skip
+NUMBERS = {
+    "label": "int32",
+    "subject": "int32",
+    "place": "int32",
+    "room": "int32",
+    "draw": "int32",
+    "heading": "float32",
+    "height": "float32",
+}
 IQ_KINDS = ("float16", "float32", "none")
 MADE_BY = "mmweaver dataset"
 MOST = 2**31 - 1  # of a number that counts something
@@ -51,9 +58,14 @@ FARTHEST_M = 1000.0  # of joints and points; what is beyond is damage
 
 
 def write_set(
-    folder: Path, config: RadarConfig, labels: tuple[str, ...], columns: dict[str, Any], arrays: dict[str, np.ndarray],
-    signals: Iterable[np.ndarray] | SetGeometry, kind: str,
-) -> None:  # fmt: skip
+    folder: Path,
+    config: RadarConfig,
+    labels: tuple[str, ...],
+    columns: dict[str, Any],
+    arrays: dict[str, np.ndarray],
+    signals: Iterable[np.ndarray] | SetGeometry,
+    kind: str,
+) -> None:
     """Writes a new store into the folder: `columns` along the sequences, `arrays` as described above, `signals` packed
     one by one by `zarr_arrays.packed_iq` to a kind of IQ_KINDS, or what they are made from on demand.
     """
@@ -64,8 +76,10 @@ def write_set(
     group.attrs["radar"] = parse_json(config.to_json(), "the radar")
     group.attrs["label_names"] = list(labels)
     coordinates = {
-        "frame_time": grid.frame_time_s, "range": grid.range_m, "radial_velocity": grid.radial_velocity_mps,
-    }  # fmt: skip
+        "frame_time": grid.frame_time_s,
+        "range": grid.range_m,
+        "radial_velocity": grid.radial_velocity_mps,
+    }
     for name, values in coordinates.items():
         put_array(group, name, np.asarray(values, np.float64), (name,))
     put_array(group, "antenna_position_m", grid.antenna_position_m, ("antenna", "axis"))
@@ -183,10 +197,15 @@ def _activity_set(files: CheckedFolder, group: ZarrFolder) -> ActivitySet:
     joints_m = group.numbers("joints_m", pose, kinds="f", **near)
     is_made = group.has_group(GEOMETRY)
     return ActivitySet(
-        files=files, arrays=group, config=config, label_names=labels, columns=columns, joints_m=joints_m,
+        files=files,
+        arrays=group,
+        config=config,
+        label_names=labels,
+        columns=columns,
+        joints_m=joints_m,
         on_demand=SignalsOnDemand(files, f"{STORE}/{GEOMETRY}/", config, joints_m.shape[1]) if is_made else None,
         points=group.numbers("points", ("point", len(POINT_COLUMNS)), kinds="f", **near),
         point_sequence=group.numbers("point_sequence", ("point",), kinds="iu", low=0, high=len(columns["label"])),
         point_frame=group.numbers("point_frame", ("point",), kinds="iu", low=0, high=MOST),
         iq_scale=group.numbers("iq_scale", each, kinds="f", low=0) if "iq" in group else None,
-    )  # fmt: skip
+    )

@@ -76,29 +76,33 @@ def write_rooms_card(folder: Path, rooms: Sequence[str], axes: Iterable[str]) ->
     """Writes the card of a complete data set of rooms, unless there is one. Raises InputError where it is damaged.
 
     Args:
-        folder: the data set.
-        rooms: names of the folders of its rooms.
-        axes: names of the arrays that lie in its root.
+        folder: The data set.
+        rooms: Names of the folders of its rooms.
+        axes: Names of the arrays that lie in its root.
     """
     if (folder / CARD_FILE).exists():
         return
     plan = read_plan(folder)
-    counts = [_shape(folder / room / "seed")[0] for room in rooms if (folder / room / "seed").is_dir()]
-    shown = next((room for room in rooms if (folder / room / "seed").is_dir()), rooms[0])
+    counts = {room: _shape(folder / room / "seed")[0] for room in rooms if (folder / room / "seed").is_dir()}
+    shown = next(iter(counts), rooms[0])
     facts = {
-        "radar": plan["radar"], "frames of each sequence": plan["num_frames"], "seed": plan["seed"],
-        "rooms": f"{len(rooms)}, of the kinds {', '.join(plan['kinds'])}", "board": plan.get("board", "ideal"),
+        "radar": plan["radar"],
+        "frames of each sequence": plan["num_frames"],
+        "seed": plan["seed"],
+        "rooms": f"{len(rooms)}, of the kinds {', '.join(plan['kinds'])}",
+        "board": plan.get("board", "ideal"),
         "splits": "train, validation (kinds of rooms), and what a test holds out: room, layout, person, activity",
         "plan": "`plan.json`; radar: `radar.json`; checksums: `SHA256SUMS`, checked by `mmweaver verify`",
-    }  # fmt: skip
-    text = _head(
-        "mit", "Simulated FMCW radar signals of people in furnished rooms", sum(counts), facts,
-        "Rooms, people and motions are drawn from the seed; the same command gives the same bits.",
-        command_of(plan, Path("OUT")).removesuffix(" --repair"),
-    )  # fmt: skip
-    rows = [*_arrays(folder, axes), *_arrays(folder, (shown,))]
-    where = f"A Zarr group for each room; shapes are those of `{shown}`."
-    create_once(folder / CARD_FILE, text + _table(rows, where) + USE.format(folder="OUT", more=""))
+    }
+    head = {
+        "licence": "mit",
+        "title": "Simulated FMCW radar signals of people in furnished rooms",
+        "count": sum(counts.values()),
+        "about": "Rooms, people and motions are drawn from the seed; the same command gives the same bits.",
+        "command": command_of(plan, Path("OUT")).removesuffix(" --repair"),
+    }
+    arrays = [*_arrays(folder, axes), *_arrays(folder, (shown,))]
+    _write(folder, head, facts, arrays, where=f"A Zarr group for each room; shapes are those of `{shown}`.")
 
 
 def write_set_card(folder: Path) -> None:
@@ -106,35 +110,42 @@ def write_set_card(folder: Path) -> None:
     if (folder / CARD_FILE).exists():
         return
     about = read_json(folder / SET_FILE)
-    options = about.get("options", {})
+    options, store = about.get("options", {}), folder / STORE
     facts = {
-        "radar": about["radar"]["name"], "labels": ", ".join(about["activities"]), "seed": options.get("seed", "-"),
-        "method": about.get("method", "-"), "board": options.get("board", "-"),
+        "radar": about["radar"]["name"],
+        "labels": ", ".join(about["activities"]),
+        "seed": options.get("seed", "-"),
+        "method": about.get("method", "-"),
+        "board": options.get("board", "-"),
         "splits": f"train, validation, test by {options.get('split_by', 'person')}; `split_...` has others",
         "settings": f"`{SET_FILE}`; leak report: `leaks.json`; checksums: `SHA256SUMS`, checked by `mmweaver verify`",
-    }  # fmt: skip
-    store = folder / STORE
-    text = _head(
-        "unknown", "Simulated FMCW radar signals of labelled activities", _shape(store / "label")[0], facts,
-        "Whoever made the set owns its rooms: choose a licence before it is published.",
-        made_by(about.get("command")),
-    )  # fmt: skip
-    rows = list(_arrays(store, sorted(entry.name for entry in store.iterdir() if entry.is_dir())))
+    }
+    head = {
+        "licence": "unknown",
+        "title": "Simulated FMCW radar signals of labelled activities",
+        "count": _shape(store / "label")[0],
+        "about": "Whoever made the set owns its rooms: choose a licence before it is published.",
+        "command": made_by(about.get("command")),
+    }
     more = "A set made from results may hold recorded ones. " if about.get("from_results") else ""
-    where = f"One Zarr group, `{STORE}`, which xarray opens."
-    create_once(folder / CARD_FILE, text + _table(rows, where) + USE.format(folder="OUT", more=more))
+    arrays = _arrays(store, sorted(entry.name for entry in store.iterdir() if entry.is_dir()))
+    _write(folder, head, facts, arrays, where=f"One Zarr group, `{STORE}`, which xarray opens.", more=more)
 
 
-def _head(licence: str, title: str, count: int, facts: dict[str, Any], about: str, command: str) -> str:
-    size = next((name for limit, name in SIZES if count < limit), LARGEST)
-    head = FRONT.format(
-        licence=licence, title=title, size=size, count=count, version=__version__, about=about, command=command
-    )
-    return head + "".join(f"| {name} | {_cell(value)} |\n" for name, value in facts.items())
-
-
-def _table(rows: Iterable[tuple[str, ...]], where: str) -> str:
-    return ARRAYS.format(where=where) + "".join(f"| {' | '.join(map(_cell, row))} |\n" for row in rows)
+def _write(
+    folder: Path,
+    head: dict[str, Any],
+    facts: dict[str, Any],
+    arrays: Iterable[tuple[str, ...]],
+    *,
+    where: str,
+    more: str = "",
+) -> None:
+    size = next((name for limit, name in SIZES if head["count"] < limit), LARGEST)
+    rows = [*(f"| {name} | {_cell(value)} |\n" for name, value in facts.items()), ARRAYS.format(where=where)]
+    rows += [f"| {' | '.join(map(_cell, row))} |\n" for row in arrays]
+    text = FRONT.format(size=size, version=__version__, **head) + "".join(rows) + USE.format(folder="OUT", more=more)
+    create_once(folder / CARD_FILE, text)
 
 
 def _cell(value: Any) -> str:
@@ -152,10 +163,12 @@ def _arrays(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, ...]]:
                 continue
             kind = about["data_type"]
             yield (
-                file.parent.relative_to(folder).as_posix(), ", ".join(about.get("dimension_names") or ()),
-                " x ".join(map(str, about["shape"])), kind if isinstance(kind, str) else json.dumps(kind),
+                file.parent.relative_to(folder).as_posix(),
+                ", ".join(about.get("dimension_names") or ()),
+                " x ".join(map(str, about["shape"])),
+                kind if isinstance(kind, str) else json.dumps(kind),
                 about.get("attributes", {}).get("units", ""),
-            )  # fmt: skip
+            )
 
 
 def _shape(array: Path) -> list[int]:

@@ -50,11 +50,12 @@ def estimate_cost(plan: DatasetPlan, config: RadarConfig, folder: Path) -> Datas
     each = GEOMETRY_BYTES * share if geometry_only else signal
     splits = Counter(sequence.split for room in rooms for sequence in room.sequences)
     return DatasetCost(
-        rooms=len(missing), sequences=count,
+        rooms=len(missing),
+        sequences=count,
         core_s=len(missing) * ROOM_S[geometry_only] + count * share * SEQUENCE_S[geometry_only],
         disk_bytes=len(missing) * ROOM_BYTES[geometry_only] + count * each,
         splits=dict(splits.most_common()),
-    )  # fmt: skip
+    )
 
 
 def check_for_space(cost: DatasetCost, folder: Path) -> None:

@@ -19,11 +19,19 @@ PLAN_VERSION = 3  # 2: signals of first order, one reflection coefficient a wall
 RADAR_FILE = "radar.json"  # the radar with its range window, in the root of a data set
 # The activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
-    "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
-                "someone walks away", "a person walks around"),
+    "walking": (
+        "a person walks towards the radar",
+        "a person walks to the left",
+        "a person walks to the right",
+        "someone walks away",
+        "a person walks around",
+    ),
     "jogging": ("a person jogs on the spot", "a person jogs"),
-    "waving": ("a person waves with the right hand", "a person waves with the left hand",
-               "someone waves with both hands"),
+    "waving": (
+        "a person waves with the right hand",
+        "a person waves with the left hand",
+        "someone waves with both hands",
+    ),
     "clapping": ("a person claps", "someone claps quickly"),
     "jumping jacks": ("a person does jumping jacks",),
     "left-hand raise": ("a person raises the left hand",),
@@ -33,7 +41,7 @@ ACTIVITIES: dict[str, tuple[str, ...]] = {
     "sitting down": ("a person sits down",),
     "squatting": ("a person squats", "someone squats"),
     "punching": ("a person punches", "a person punches quickly"),
-}  # fmt: skip
+}
 # Six people by height; the index also selects the body surface.
 PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
 SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
@@ -184,10 +192,15 @@ def command_of(plan: dict[str, Any], folder: Path) -> str:
     own = folder / RADAR_FILE
     radar = str(own) if own.is_file() else plan["radar"]
     words = [
-        "mmweaver dataset", shlex.quote(str(folder)), f"--rooms {shlex.quote(','.join(plan['kinds']))}",
-        f"--layouts {plan['num_layouts']}", f"--sequences {plan['sequences_a_room']}", f"--frames {plan['num_frames']}",
-        f"--radar {shlex.quote(radar)}", f"--seed {plan['seed']}",
-    ]  # fmt: skip
+        "mmweaver dataset",
+        shlex.quote(str(folder)),
+        f"--rooms {shlex.quote(','.join(plan['kinds']))}",
+        f"--layouts {plan['num_layouts']}",
+        f"--sequences {plan['sequences_a_room']}",
+        f"--frames {plan['num_frames']}",
+        f"--radar {shlex.quote(radar)}",
+        f"--seed {plan['seed']}",
+    ]
     board = [] if plan.get("geometry_only") else [f"--board {shlex.quote(str(plan.get('board', 'ideal')))}"]
     return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), *board, "--repair"])
 

@@ -172,11 +172,18 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
     for name, values in words.items():
         group.check_shape(name, (len(values),), one_each)
     return StoredRoom(
-        files=files, kind=group.attr("kind", str), layout=group.attr("layout", int),
-        lighting=group.attr("lighting", str), photo=stored_photo(group),
-        static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64), joints_m=joints_m,
+        files=files,
+        kind=group.attr("kind", str),
+        layout=group.attr("layout", int),
+        lighting=group.attr("lighting", str),
+        photo=stored_photo(group),
+        static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64),
+        joints_m=joints_m,
         joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
-        person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1), **words,
-        seed=group.numbers("seed", one_each, kinds="iu", low=0), config=config,
-        geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None, device=device,
-    )  # fmt: skip
+        person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1),
+        **words,
+        seed=group.numbers("seed", one_each, kinds="iu", low=0),
+        config=config,
+        geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None,
+        device=device,
+    )

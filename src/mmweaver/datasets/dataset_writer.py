@@ -25,7 +25,7 @@ from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tr
 from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.datasets.geometry_store import write_geometry
-from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
+from mmweaver.datasets.room_generation import GeneratedRoom
 from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_photo, put_texts, write_iq, zarr_module
 
 LARGEST_ROOT_FILE = 64 * MEGABYTE
@@ -76,9 +76,14 @@ def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
         put_array(root, name, getattr(grid, of_grid), (name,))
     put_array(root, "antenna_position_m", grid.antenna_position_m, ("antenna", "axis"))
     root.attrs.update(
-        {"made_by": "mmweaver dataset", "radar": parse_json(config.to_json(), "the radar"), "joints": list(JOINT_NAMES),
-         "wavelength_m": config.wavelength_m, "checksums": SUMS_FILE}
-    )  # fmt: skip
+        {
+            "made_by": "mmweaver dataset",
+            "radar": parse_json(config.to_json(), "the radar"),
+            "joints": list(JOINT_NAMES),
+            "wavelength_m": config.wavelength_m,
+            "checksums": SUMS_FILE,
+        }
+    )
     (stage / PLAN_FILE).write_text(plan.to_json(), encoding="utf-8")
     (stage / RADAR_FILE).write_text(config.to_json(), encoding="utf-8")
     write_sums(stage)
@@ -158,14 +163,11 @@ def write_room(folder: Path, generated: GeneratedRoom) -> None:
 
 def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
     sequences = generated.sequences
-    traced = tuple(s for s in sequences if isinstance(s, TracedSequence))
-    signals = [s.cube for s in sequences if isinstance(s, GeneratedSequence)]
-    if signals:
-        packed = [packed_iq(cube) for cube in signals]
+    if packed := [packed_iq(s.cube) for s in sequences if s.cube is not None]:
         write_iq(group, "float16", (len(packed), *packed[0][0].shape), (pairs for pairs, _ in packed))
         put_array(group, "iq_scale", np.array([scale for _, scale in packed]), ("sequence",))
     if generated.geometry is not None:
-        write_geometry(group, generated.geometry, traced)
+        write_geometry(group, generated.geometry, [s.trace for s in sequences if s.trace is not None])
     if sequences:
         pose = ("sequence", "frame_time", "joint", "axis")
         put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
@@ -186,11 +188,16 @@ def _put_clutter(group: Any, static: np.ndarray) -> None:
 def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
     spec, sequences = generated.spec, generated.sequences
     return {
-        "kind": spec.kind, "layout": spec.layout, "lighting": spec.lighting, "checksums": SUMS_FILE,
-        "activity": [s.spec.activity for s in sequences], "text": [s.spec.text for s in sequences],
-        "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
+        "kind": spec.kind,
+        "layout": spec.layout,
+        "lighting": spec.lighting,
+        "checksums": SUMS_FILE,
+        "activity": [s.spec.activity for s in sequences],
+        "text": [s.spec.text for s in sequences],
+        "split": [s.spec.split for s in sequences],
+        "index": [s.spec.index for s in sequences],
         "refused": [list(entry) for entry in generated.refused],
-    }  # fmt: skip
+    }
 
 
 METADATA = "zarr.json"

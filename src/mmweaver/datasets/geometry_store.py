@@ -9,6 +9,7 @@ No ray caster is needed to read it. Reference: docs/decisions/data-set-plan.md.
 """
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property, lru_cache
 from typing import Any
@@ -19,7 +20,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder
-from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
+from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
@@ -35,20 +36,24 @@ ROOMS = ("room", "photographed")
 FARTHEST_M = 1e4  # of joints and of what a room is made of; what is beyond is damage
 # Arrays of a prepared room (`room_arrays`): shape and kind of numbers.
 ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
-    "count": ((len(STATIC_KINDS),), "iu"), "place_m": (("path", 3), "f"), "amplitude": (("path", 2), "f"),
-    "mirrored_last_m": (("mirrored", 3), "f"), "mirrored_way_m": (("mirrored", "tx", "rx"), "f"),
-    "face": (("face", 4, 3), "f"), "face_half_m": (("face", 2), "f"),
-}  # fmt: skip
+    "count": ((len(STATIC_KINDS),), "iu"),
+    "place_m": (("path", 3), "f"),
+    "amplitude": (("path", 2), "f"),
+    "mirrored_last_m": (("mirrored", 3), "f"),
+    "mirrored_way_m": (("mirrored", "tx", "rx"), "f"),
+    "face": (("face", 4, 3), "f"),
+    "face_half_m": (("face", 2), "f"),
+}
 
 
-def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[TracedSequence, ...]) -> None:
-    """Puts all of it below a room's Zarr group."""
+def write_geometry(group: Any, geometry: RoomGeometry, traces: Sequence[tuple[np.ndarray, Visibility]]) -> None:
+    """Puts all of it below a room's Zarr group; `traces`: of each sequence, as `GeneratedSequence` has them."""
     below = group.create_group(GEOMETRY)
     below.attrs.update({"skin": skin_mark(), "propagation": asdict(geometry.room.propagation)})
-    if sequences:
+    if traces:
         axes = ("sequence", "frame", "node", "joint", "axis")
-        _put(below, "node_joints_m", np.stack([sequence.node_joints_m for sequence in sequences]), axes)
-        bits = np.stack([sequence.visibility.packed() for sequence in sequences])
+        _put(below, "node_joints_m", np.stack([joints_m for joints_m, _ in traces]), axes)
+        bits = np.stack([visibility.packed() for _, visibility in traces])
         _put(below, "visibility", bits, ("sequence", "frame", "byte"))
     for name in ROOMS:
         room = getattr(geometry, name)

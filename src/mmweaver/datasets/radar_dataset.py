@@ -91,24 +91,18 @@ class RadarDataset(Dataset[dict[str, Any]]):
         return self._cache[own]
 
     def _item(self, own: int) -> dict[str, Any]:
-        needs_cube = any(name in OF_CUBE for name in self.features)
-        cube = self.set.cube(own) if needs_cube else None
-        item: dict[str, torch.Tensor | int] = {}
+        data, item = self.set, dict[str, Any]()
+        cube = data.cube(own) if OF_CUBE.keys() & set(self.features) else None
         for name in self.features:
             if name == "label":
-                item[name] = int(self.set.columns["label"][own])
+                item[name] = int(data.columns["label"][own])
+                continue
+            if cube is not None and name in OF_CUBE:
+                values = OF_CUBE[name](cube)
             else:
-                values = self._feature(name, own, cube)
-                item[name] = torch.from_numpy(np.ascontiguousarray(values))
+                values = data.joints_m[own] if name == "pose" else frame_and_points(data.cloud(own))
+            item[name] = torch.from_numpy(np.ascontiguousarray(values))
         return item
-
-    def _feature(self, name: str, own: int, cube: RadarCube | None) -> np.ndarray:
-        if name == "pose":
-            return self.set.joints_m[own]
-        if name == "points":
-            return frame_and_points(self.set.cloud(own))
-        assert cube is not None
-        return OF_CUBE[name](cube)
 
 
 def frame_and_points(points: PointCloud) -> np.ndarray:

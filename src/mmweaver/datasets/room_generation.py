@@ -8,7 +8,7 @@ from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSpec
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.animation.resample import joints_and_velocities
@@ -27,23 +27,13 @@ RETRIES = 5  # attempts to place a motion in a room
 
 @dataclass(frozen=True, kw_only=True)
 class GeneratedSequence:
-    """A sequence: cube in sqrt(mW), joints at the middle of each radar frame."""
-
-    spec: SequenceSpec
-    cube: RadarCube
-    joints_m: np.ndarray  # (frame, 22, 3) float32
-    joint_velocity_mps: np.ndarray  # (frame, 22, 3) float32
-
-
-@dataclass(frozen=True, kw_only=True)
-class TracedSequence:
-    """A sequence without its signal: joints as in `GeneratedSequence`, and the visibility for `paths.resynthesis`."""
+    """A sequence: joints at the middle of each frame, and its signal or what `paths.resynthesis` makes it from."""
 
     spec: SequenceSpec
     joints_m: np.ndarray  # (frame, 22, 3) float32
     joint_velocity_mps: np.ndarray  # (frame, 22, 3) float32
-    node_joints_m: np.ndarray  # (frame, node, 22, 3) float32
-    visibility: Visibility
+    cube: RadarCube | None = None  # in sqrt(mW)
+    trace: tuple[np.ndarray, Visibility] | None = None  # joints at the clock's nodes (frame, node, 22, 3) float32
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,15 +54,20 @@ class GeneratedRoom:
     spec: RoomSpec
     photo: RgbdPhoto
     static: np.ndarray  # complex64 (range, antenna), static clutter at the peak of zero Doppler, sqrt(mW)
-    sequences: tuple[GeneratedSequence, ...] | tuple[TracedSequence, ...]
+    sequences: tuple[GeneratedSequence, ...]
     refused: tuple[tuple[int, str], ...]
     geometry: RoomGeometry | None = None
 
 
 def generate_room(
-    spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False, board: Board = IDEAL_BOARD,
+    spec: RoomSpec,
+    config: RadarConfig,
+    num_frames: int,
+    *,
+    geometry_only: bool = False,
+    board: Board = IDEAL_BOARD,
     propagation: Propagation = ALL_PATHS,
-) -> GeneratedRoom:  # fmt: skip
+) -> GeneratedRoom:
     """Generates a room and simulates all its sequences with one board; about 0.35 CPU-seconds per sequence.
 
     Signals have the paths that `propagation` says, by default all: second order and clutter, too. With `geometry_only`
@@ -81,21 +76,27 @@ def generate_room(
     room = make_room(spec.kind, spec.layout, spec.seed)
     true_scene = room.scene(spec.lighting)
     simulator = Simulator(
-        true_scene, config, board=board, micro_seed=seed_of_room(true_scene),
+        true_scene,
+        config,
+        board=board,
+        micro_seed=seed_of_room(true_scene),
         propagation=FIRST_ORDER if geometry_only else propagation,
-    )  # fmt: skip
+    )
     photo = room.photo(spec.lighting, noise=True)
-    one = trace_sequence if geometry_only else generate_sequence
     made, refused = [], []
     for sequence in spec.sequences:
         try:
-            made.append(one(sequence, true_scene, simulator, num_frames))
+            made.append(generate_sequence(sequence, true_scene, simulator, num_frames, geometry_only=geometry_only))
         except InputError as error:
             refused.append((sequence.index, str(error)))
     return GeneratedRoom(
-        spec=spec, photo=photo, static=_static_clutter(simulator), sequences=tuple(made), refused=tuple(refused),
+        spec=spec,
+        photo=photo,
+        static=_static_clutter(simulator),
+        sequences=tuple(made),
+        refused=tuple(refused),
         geometry=_geometry(simulator, photo) if geometry_only else None,
-    )  # fmt: skip
+    )
 
 
 def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
@@ -105,44 +106,41 @@ def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
     )
 
 
-def trace_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int) -> TracedSequence:
-    """Traces one sequence without its signal. Raises InputError where the motion does not fit the room."""
-    pose = pose_of(spec, scene, simulator.config, num_frames)
-    nodes_m, visibility = simulator.trace(pose, num_frames=num_frames, seed=spec.seed)
-    joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
-    return TracedSequence(
-        spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility
-    )
-
-
 def generate_sequence(
     spec: SequenceSpec,
     scene: Scene,
     simulator: Simulator,
     num_frames: int,
     *,
+    geometry_only: bool = False,
     subject: int | None = None,
     noise_seed: int | None = None,
 ) -> GeneratedSequence:
-    """Simulates one sequence; `subject` and `noise_seed` replace its body surface and noise (another realization).
+    """Simulates one sequence, or traces it without its signal.
 
-    Raises InputError where the motion does not fit the room.
+    Args:
+        spec: What is done by whom, and the seed.
+        scene: The true room.
+        simulator: Of the room and the radar.
+        num_frames: Frames of the radar.
+        geometry_only: Whether it is only traced.
+        subject: Replaces the body surface (another realization).
+        noise_seed: Replaces the seed of the noise.
+
+    Raises:
+        InputError: Where the motion does not fit the room.
     """
-    config = simulator.config
+    config, grid = simulator.config, CubeGrid.of(simulator.config, num_frames)
     pose = pose_of(spec, scene, config, num_frames)
+    joints_m, velocity_mps = joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
+    found = GeneratedSequence(spec=spec, joints_m=joints_m, joint_velocity_mps=velocity_mps)
+    if geometry_only:
+        return replace(found, trace=simulator.trace(pose, num_frames=num_frames, seed=spec.seed))
     if subject is not None:
         pose = replace(pose, subject=subject)
     seed = spec.seed if noise_seed is None else noise_seed
     parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed)]
-    grid = CubeGrid.of(config, num_frames)
-    cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
-    joints, velocity = _at_frames(pose, grid, config)
-    return GeneratedSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
-
-
-def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple[np.ndarray, np.ndarray]:
-    """Joints and their velocities at the middle of each frame, (frame, 22, 3)."""
-    return joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
+    return replace(found, cube=RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0))
 
 
 def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:
@@ -169,8 +167,6 @@ def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: i
 
 def _static_clutter(simulator: Simulator) -> np.ndarray:
     """Range spectrum (range, antenna) of the room's static paths, complex64, sqrt(mW)."""
-    from mmweaver.core.records import AdcCube
-
     config = simulator.config
     samples = np.repeat(simulator.room_adc[None, None], config.num_loops, axis=1).astype(np.complex64)
     cube = radar_cube(AdcCube(samples=samples, config=config, scale=1.0))

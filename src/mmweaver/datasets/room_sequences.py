@@ -42,20 +42,24 @@ class RoomSequences:
     def columns(self) -> dict[str, np.ndarray]:
         """Along the sequences: label, label_name, text, split, subject, height, room (a name) and seed."""
         rows = self._places
-        unknown = {room.activity[index] for room, index in rows} - set(self.label_names)
-        if unknown:
+
+        def column(name: str) -> np.ndarray:
+            return np.array([getattr(room, name)[index] for room, index in rows])
+
+        activity, person = column("activity"), column("person").astype(int)
+        if unknown := set(activity.tolist()) - set(self.label_names):
             raise InputError(
                 f"{self.folder} has activities that this version does not know: {', '.join(sorted(unknown))}"
             )
         return {
-            "label": np.array([self.label_names.index(room.activity[index]) for room, index in rows]),
-            "label_name": np.array([room.activity[index] for room, index in rows]),
-            "text": np.array([room.text[index] for room, index in rows]),
-            "split": np.array([room.split[index] for room, index in rows]),
-            "subject": np.array([int(room.person[index]) for room, index in rows]),
-            "height": np.array([PEOPLE_HEIGHT_M[int(room.person[index])] for room, index in rows]),
+            "label": np.array([self.label_names.index(name) for name in activity.tolist()]),
+            "label_name": activity,
+            "text": column("text"),
+            "split": column("split"),
+            "subject": person,
+            "height": np.array(PEOPLE_HEIGHT_M)[person],
             "room": np.array([f"{room.kind}_{room.layout}" for room, _ in rows]),
-            "seed": np.array([int(room.seed[index]) for room, index in rows]),
+            "seed": column("seed").astype(int),
         }
 
     @cached_property

@@ -37,7 +37,7 @@ from mmweaver.scene.photo.posed_photo import PosedPhoto
 
 GEOMETRY = "geometry"
 POWER_TOLERANCE_DB = 0.2  # processors differ by less than 0.01 dB, other people or weights by more than 1
-MOST_ROOMS = 8  # prepared at a time
+MAX_ROOMS = 8  # prepared at a time
 FARTHEST_M = 1000.0
 
 
@@ -119,9 +119,15 @@ class SignalsOnDemand:
         pose = self.motion(index, subject)
         board: dict[str, Any] = {} if self.board.is_ideal else {"board": self.board}
         cube = method(
-            scene, (pose,), self.config, num_frames=self.num_frames, seed=int(self._seed[index]), keep_adc=False,
-            stages=Stages(), **board,
-        ).cube  # fmt: skip
+            scene,
+            (pose,),
+            self.config,
+            num_frames=self.num_frames,
+            seed=int(self._seed[index]),
+            keep_adc=False,
+            stages=Stages(),
+            **board,
+        ).cube
         if abs(moving_power_db(cube) - self._power_db[index]) > POWER_TOLERANCE_DB:
             raise InputError(
                 f"{self.files.folder}: mmweaver {__version__} makes another signal of sequence {index} than"
@@ -135,16 +141,19 @@ class SignalsOnDemand:
         near = {"low": -FARTHEST_M, "high": FARTHEST_M}
         joints_m = stored_sequence(self.files, self._group, self.below, "motion_m", index, shape, **near)
         return PoseSequence(
-            time_s=self._time_s.astype(np.float64), joints_m=joints_m.astype(np.float64), subject=subject,
-            height_m=float(self._height_m[index]), girth=float(self._girth[index]),
-        )  # fmt: skip
+            time_s=self._time_s.astype(np.float64),
+            joints_m=joints_m.astype(np.float64),
+            subject=subject,
+            height_m=float(self._height_m[index]),
+            girth=float(self._girth[index]),
+        )
 
     def _prepared(self, room: int) -> tuple[Scene, Method]:
         """The room and a method of its own, which keeps what it prepared of it."""
         if room not in self._rooms:
             if self.method not in METHODS:
                 raise InputError(f"{self.files.folder} is of method {self.method!r}, which is not installed here")
-            while len(self._rooms) >= MOST_ROOMS:
+            while len(self._rooms) >= MAX_ROOMS:
                 self._rooms.popitem(last=False)
             self._rooms[room] = self._scene(room), METHODS[self.method]()
         self._rooms.move_to_end(room)

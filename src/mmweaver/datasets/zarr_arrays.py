@@ -13,9 +13,16 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder
 from mmweaver.scene.photo.camera_file import camera_numbers
 
 UNITS = {
-    "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joint_velocity_mps": "m/s", "range": "m",
-    "radial_velocity": "m/s", "frame_time": "s", "empty_iq": "sqrt(mW)", "heading": "rad", "height": "m",
-}  # fmt: skip
+    "iq": "1 (times iq_scale: sqrt(mW))",
+    "iq_scale": "sqrt(mW)",
+    "joint_velocity_mps": "m/s",
+    "range": "m",
+    "radial_velocity": "m/s",
+    "frame_time": "s",
+    "empty_iq": "sqrt(mW)",
+    "heading": "rad",
+    "height": "m",
+}
 IQ_DIMENSIONS = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
 SHARD_BYTES = 32 << 20  # of signals in one file, if a sequence is not larger: 500 sequences are some 30 files
 
@@ -30,9 +37,7 @@ def zarr_module() -> Any:
     return zarr
 
 
-def put_array(
-    group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None
-) -> None:  # fmt: skip
+def put_array(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None) -> None:
     """Writes one array as one chunk.
 
     `packing`: the codec of its bytes (default Zstandard). Chunks of nothing but zeros are written too, so that a file
@@ -42,10 +47,15 @@ def put_array(
 
     values = np.ascontiguousarray(values)
     array = group.create_array(
-        name, shape=values.shape, dtype=values.dtype, dimension_names=dimensions, overwrite=True,
-        compressors=[packing or ZstdCodec(), Crc32cCodec()], config={"write_empty_chunks": True},
+        name,
+        shape=values.shape,
+        dtype=values.dtype,
+        dimension_names=dimensions,
+        overwrite=True,
+        compressors=[packing or ZstdCodec(), Crc32cCodec()],
+        config={"write_empty_chunks": True},
         chunks=values.shape if values.size else (1,) * values.ndim,
-    )  # fmt: skip
+    )
     array[...] = values
     _put_unit(array, name)
 
@@ -57,9 +67,15 @@ def _put_unit(array: Any, name: str) -> None:
 
 
 def put_sequences(
-    group: Any, name: str, kind: str, shape: tuple[int, ...], dimensions: tuple[str, ...],
-    sequences: Iterable[np.ndarray], *, packing: Sequence[Any] = (),
-) -> None:  # fmt: skip
+    group: Any,
+    name: str,
+    kind: str,
+    shape: tuple[int, ...],
+    dimensions: tuple[str, ...],
+    sequences: Iterable[np.ndarray],
+    *,
+    packing: Sequence[Any] = (),
+) -> None:
     """Writes an array of `shape` (sequence, ...) and number type `kind`, one sequence after another.
 
     A sequence is a chunk, packed by the codecs `packing`; chunks are in shards of at most SHARD_BYTES.
@@ -69,9 +85,16 @@ def put_sequences(
     bytes_each = int(np.prod(shape[1:])) * np.dtype(kind).itemsize
     in_shard = min(max(1, SHARD_BYTES // bytes_each), shape[0])
     array = group.create_array(
-        name, shape=shape, chunks=(1, *shape[1:]), shards=(in_shard, *shape[1:]), dtype=kind, overwrite=True,
-        dimension_names=dimensions, compressors=[*packing, Crc32cCodec()], config={"write_empty_chunks": True},
-    )  # fmt: skip
+        name,
+        shape=shape,
+        chunks=(1, *shape[1:]),
+        shards=(in_shard, *shape[1:]),
+        dtype=kind,
+        overwrite=True,
+        dimension_names=dimensions,
+        compressors=[*packing, Crc32cCodec()],
+        config={"write_empty_chunks": True},
+    )
     _put_unit(array, name)
     kept: list[np.ndarray] = []
     for number, values in enumerate(sequences, start=1):
@@ -143,7 +166,11 @@ def stored_photo(group: ZarrFolder) -> RgbdPhoto:
     height, width = depth_m.shape
     numbers = camera_numbers(group.attr("camera", dict), group.path)
     camera = CameraIntrinsics(
-        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
-        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
-    )  # fmt: skip
+        fx=numbers["fx"],
+        fy=numbers["fy"],
+        cx=numbers["cx"],
+        cy=numbers["cy"],
+        width=round(numbers.get("width", width)),
+        height=round(numbers.get("height", height)),
+    )
     return RgbdPhoto(rgb=rgb, depth_m=depth_m.astype(np.float64), intrinsics=camera, classes=classes)

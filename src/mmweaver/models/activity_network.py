@@ -21,9 +21,19 @@ from mmweaver.models.log_maps import NUM_ANGLE_MAPS, LogMaps
 from mmweaver.models.weights import load_into, read_card
 
 ACTIVITY_NAMES = (
-    "walking", "jogging", "waving", "clapping", "jumping jacks", "left-hand raise", "right-hand raise", "jumping",
-    "drinking seated", "sitting down", "squatting", "punching",
-)  # fmt: skip
+    "walking",
+    "jogging",
+    "waving",
+    "clapping",
+    "jumping jacks",
+    "left-hand raise",
+    "right-hand raise",
+    "jumping",
+    "drinking seated",
+    "sitting down",
+    "squatting",
+    "punching",
+)
 WIDTHS = (16, 32, 64)
 FRAME_WIDTH = 128
 DROPPED = 0.4
@@ -83,9 +93,13 @@ class TimeHead(nn.Module):
         super().__init__()
         self.first = nn.Linear(features, FRAME_WIDTH)
         self.over_time = nn.Sequential(
-            nn.SiLU(), nn.Dropout(DROPPED), nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=1), nn.SiLU(),
-            nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=2, dilation=2), nn.SiLU(),
-        )  # fmt: skip
+            nn.SiLU(),
+            nn.Dropout(DROPPED),
+            nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=1),
+            nn.SiLU(),
+            nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=2, dilation=2),
+            nn.SiLU(),
+        )
         self.last = nn.Sequential(nn.Dropout(DROPPED), nn.Linear(2 * FRAME_WIDTH, num_labels))
 
     def forward(self, frames: Tensor) -> Tensor:

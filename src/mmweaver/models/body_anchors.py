@@ -12,19 +12,29 @@ from torch import Tensor
 from mmweaver.core.skeleton import NUM_JOINTS, PARENTS, joint
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import pixel_coordinates
-from mmweaver.models.precision import in_full_precision
+from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 from mmweaver.paths.image_method import mirrored
 
 # from joint, to joint, how far along (above 1: past the second)
 _MIDDLE = (
-    ("hip", "knee", 0.35), ("hip", "knee", 0.7), ("knee", "ankle", 0.35), ("knee", "ankle", 0.7),
-    ("shoulder", "elbow", 0.5), ("elbow", "wrist", 0.5), ("elbow", "wrist", 1.4), ("ankle", "foot", 1.2),
-)  # fmt: skip
+    ("hip", "knee", 0.35),
+    ("hip", "knee", 0.7),
+    ("knee", "ankle", 0.35),
+    ("knee", "ankle", 0.7),
+    ("shoulder", "elbow", 0.5),
+    ("elbow", "wrist", 0.5),
+    ("elbow", "wrist", 1.4),
+    ("ankle", "foot", 1.2),
+)
 _TORSO = (
-    ("neck", "head", 2.0), ("pelvis", "spine2", 0.5), ("left_hip", "spine3", 0.5), ("right_hip", "spine3", 0.5),
-    ("left_shoulder", "spine2", 0.5), ("right_shoulder", "spine2", 0.5),
-)  # fmt: skip
+    ("neck", "head", 2.0),
+    ("pelvis", "spine2", 0.5),
+    ("left_hip", "spine3", 0.5),
+    ("right_hip", "spine3", 0.5),
+    ("left_shoulder", "spine2", 0.5),
+    ("right_shoulder", "spine2", 0.5),
+)
 ANCHORS: tuple[tuple[int, int, float], ...] = (
     *((index, index, 0.0) for index in range(NUM_JOINTS)),
     *((joint(f"{side}_{a}"), joint(f"{side}_{b}"), part) for a, b, part in _MIDDLE for side in ("left", "right")),
@@ -58,7 +68,7 @@ def anchor_places(joints: Tensor) -> Tensor:
     return joints[..., first, :] * (1 - share) + joints[..., second, :] * share
 
 
-@in_full_precision
+@full_precision
 def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
     place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
@@ -74,20 +84,32 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> 
     unit = bone / length[..., None]
     features = torch.stack(
         [
-            *(place / 3).unbind(-1), distance / 3, 1 / distance, radial / 2, speed.norm(dim=-1) / 2,
-            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side,
+            *(place / 3).unbind(-1),
+            distance / 3,
+            1 / distance,
+            radial / 2,
+            speed.norm(dim=-1) / 2,
+            *unit.unbind(-1),
+            (unit * towards).sum(-1).abs(),
+            side,
             *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
-            place[..., 2] - floor[:, None, None], *clear.unbind(-1), in_view, _depth_behind(distance, towards),
+            place[..., 2] - floor[:, None, None],
+            *clear.unbind(-1),
+            in_view,
+            _depth_behind(distance, towards),
         ],
         dim=-1,
-    )  # fmt: skip
+    )
     return Anchors(
-        range_m=distance, velocity_mps=radial, direction=-towards[..., [0, 2]], features=features,
+        range_m=distance,
+        velocity_mps=radial,
+        direction=-towards[..., [0, 2]],
+        features=features,
         share=torch.ones_like(distance),
-    )  # fmt: skip
+    )
 
 
-@in_full_precision
+@full_precision
 def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Echoes over one face of the room: (room, frame, ghost)."""
     place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)
@@ -116,11 +138,19 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) ->
     left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_REFLECTORS, None], cos)
     material = room.plane_features[:, None, :NUM_REFLECTORS, None, :5].expand(*cos.shape, 5)
     features = torch.stack(
-        [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
-         own_height.expand_as(far) / 2, torch.log10(left + 1e-4) / 2,
-         *to_image.unbind(-1)[::2]],
+        [
+            near.expand_as(far) / 3,
+            far / 3,
+            radial / 2,
+            cos,
+            *torch.tanh(3 * margin).unbind(-1),
+            height / 2,
+            own_height.expand_as(far) / 2,
+            torch.log10(left + 1e-4) / 2,
+            *to_image.unbind(-1)[::2],
+        ],
         dim=-1,
-    )  # fmt: skip
+    )
     return Anchors(
         range_m=((near + far) / 2).flatten(-2),
         velocity_mps=radial.flatten(-2),

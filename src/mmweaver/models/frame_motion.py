@@ -43,9 +43,14 @@ class FrameMotion:
         time_s = frames[:, None] * config.frame_period_s + middle_s
         joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
         return cls(
-            joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s),
-            num_before=before, height_m=pose.height_m, girth=pose.girth,
-        )  # fmt: skip
+            joints_m=joints_m,
+            velocity_mps=velocity_mps,
+            subject=pose.subject,
+            num_segments=len(middle_s),
+            num_before=before,
+            height_m=pose.height_m,
+            girth=pose.girth,
+        )
 
     def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
         """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
@@ -64,7 +69,7 @@ class FrameMotion:
         middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
         return torch.from_numpy(middle_m[self.num_before :]).float()
 
-    def at_nodes(self, clock: FrameClock) -> np.ndarray:
+    def node_joints_m(self, clock: FrameClock) -> np.ndarray:
         """Joints of the frames whose signal is wanted at the clock's nodes, (frame, node, 22, 3)."""
         joints_m, velocity_mps = (part[self.num_before :].double().numpy() for part in self.segments(clock))
         late_s = np.stack([segment.node_s for segment in clock.segments])[..., None, None]

@@ -31,10 +31,10 @@ def find_weights(source: str | Path, *, revision: str | None = None) -> Path:
         return path
     if not HUB_NAME.fullmatch(str(source)) or path.suffix == ".safetensors":
         raise InputError(f"{source} does not exist; give a .safetensors file that mmweaver train wrote, or its folder")
-    return _of_hub(str(source), revision)
+    return _download(str(source), revision)
 
 
-def _of_hub(name: str, revision: str | None) -> Path:
+def _download(name: str, revision: str | None) -> Path:
     need("weaver", f"{name} is no file here; a name on the Hub", "huggingface_hub")
     from huggingface_hub import hf_hub_download
 
@@ -49,9 +49,13 @@ def _of_hub(name: str, revision: str | None) -> Path:
 
 
 def push_to_hub(
-    source: str | Path, repo_id: str, *, card: str | Path | None = None, private: bool = False,
+    source: str | Path,
+    repo_id: str,
+    *,
+    card: str | Path | None = None,
+    private: bool = False,
     revision: str | None = None,
-) -> str:  # fmt: skip
+) -> str:
     """Uploads weights with their model card, and nothing else, to a model repository, which is made if it is not there.
 
     Who uploads is who logged in with `hf auth login`, or the owner of the token in HF_TOKEN.

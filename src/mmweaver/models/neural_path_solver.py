@@ -50,7 +50,7 @@ class LearnedRoom:
 
     The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `room` is a
     scene, or one made ready for this radar with its antennas where the board has them. `background`: a recording of the
-    room by this radar with nobody there, from which static clutter is then taken. Raises InputError for one of another
+    empty room by this radar, from which static clutter is then taken. Raises InputError for one of another
     radar.
     """
 
@@ -116,7 +116,7 @@ class LearnedRoom:
 
     def _paths(self, motions: Sequence[FrameMotion], first_frame: int = 0) -> ScenePaths:
         if not motions:
-            raise ValueError("without people the number of frames is not known; see `_paths_of_nobody`")
+            raise ValueError("without people the number of frames is not known; see `_empty_room_paths`")
         moving = [
             self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions
         ]
@@ -128,13 +128,13 @@ class LearnedRoom:
         hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
         return ScenePaths(static=self.static, moving=Paths.cat(moving, 1), occluded=hidden)
 
-    def _paths_of_nobody(self, num_frames: int) -> ScenePaths:
+    def _empty_room_paths(self, num_frames: int) -> ScenePaths:
         rows = num_frames * len(self.renderer.clock.segments)
         hidden = torch.zeros(num_frames, len(self.static), dtype=torch.uint8)
         return ScenePaths(static=self.static, moving=Paths.padded([Paths.none()] * rows), occluded=hidden)
 
     def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
-        """One person's paths (frame * segment, path), less those that others occlude."""
+        """One person's paths (frame * segment, path), without those that others occlude."""
         clock = self.renderer.clock
         joints, velocity = motion.segments(clock)
         count = joints.shape[1]
@@ -161,12 +161,12 @@ class LearnedRoom:
         count = joints_m.shape[1]
         sight = aspect(joints_m.flatten(0, 1)).unflatten(0, (-1, count))
         if count == 1:
-            return self._from_reference(sample_moving(echoes[:, 0], sight[:, 0], self.config, subject))
+            return self._retimed(sample_moving(echoes[:, 0], sight[:, 0], self.config, subject))
         middle_s = torch.from_numpy(self.renderer.clock.middle_s)
         return sample_moving_segments(echoes, sight, middle_s, self.config, subject)
 
     def _shown(self, echoes: MeanEchoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
-        """1 where nobody else stands before an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
+        """1 where no other person occludes an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
 
         A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
         """
@@ -181,7 +181,7 @@ class LearnedRoom:
         reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
         return torch.cat([place_of(echoes).float()[:, :NUM_ANCHORS], reflected_m], dim=1)
 
-    def _from_reference(self, paths: Paths) -> Paths:
+    def _retimed(self, paths: Paths) -> Paths:
         """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""
         clock = self.renderer.clock
         middle_loop = doppler_window_middle(self.config.num_loops)
@@ -214,7 +214,7 @@ class LearnedRoom:
         for where there are no motions, and decides nothing else.
         """
         with torch.inference_mode(), one_thread():
-            paths = self._paths(motions, first_frame) if motions else self._paths_of_nobody(num_frames or 1)
+            paths = self._paths(motions, first_frame) if motions else self._empty_room_paths(num_frames or 1)
             grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
             frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
             if self.board is not None:
@@ -280,7 +280,7 @@ class LearnedRoom:
     def _sample_noise(self, cells: np.ndarray, first: int, seed: int) -> np.ndarray:
         """Noise (frame, loop, tx, rx, sample) whose cube is `cells` (frame, range, doppler, antenna).
 
-        White noise, less what the cube's cells hold of it, plus the samples of least energy that give those cells.
+        White noise minus its part in the cube's cells, plus the samples of least energy that give those cells.
         """
         config = self.config
         shape = (len(cells), config.num_loops, config.num_slots, config.num_rx, config.num_samples, 2)

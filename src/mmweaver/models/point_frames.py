@@ -7,12 +7,12 @@ from jaxtyping import Bool, Float
 
 from mmweaver.core.records import PointCloud
 
-MOST_POINTS = 40  # a frame; of more, the strongest are kept
+MAX_POINTS = 40  # per frame; the strongest are kept
 COLUMNS = 5  # x right, y ahead, z up in metres, radial velocity in m/s, strength over the recording's median in dB
 REACH_M = 1.2  # of a body about the middle of its points; what is farther off is the room
-LEAST_MOVING = 5  # points, for the middle of those that move to stand for the person
+MIN_MOVING = 5  # points, for the middle of those that move to stand for the person
 MOVING_MPS = 0.05
-USUAL_PLACE_M = (0.0, 2.0, 0.0)  # of a person in a window without points
+DEFAULT_PLACE_M = (0.0, 2.0, 0.0)  # of a person in a window without points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,10 +34,10 @@ def point_frames(cloud: PointCloud, num_frames: int) -> PointFrames:
     order = np.lexsort((-strength_db, cloud.frame))
     frame = cloud.frame[order]
     place = np.arange(len(frame)) - np.searchsorted(frame, frame)
-    kept = (place < MOST_POINTS) & (frame >= 0) & (frame < num_frames)
+    kept = (place < MAX_POINTS) & (frame >= 0) & (frame < num_frames)
     rows = (cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, strength_db)
-    values = np.zeros((num_frames, MOST_POINTS, COLUMNS), np.float32)
-    is_there = np.zeros((num_frames, MOST_POINTS), bool)
+    values = np.zeros((num_frames, MAX_POINTS, COLUMNS), np.float32)
+    is_there = np.zeros((num_frames, MAX_POINTS), bool)
     values[frame[kept], place[kept]] = np.stack(rows, axis=1)[order][kept]
     is_there[frame[kept], place[kept]] = True
     return PointFrames(values=values, is_there=is_there)
@@ -59,9 +59,9 @@ def middle_m(frames: PointFrames) -> Float[np.ndarray, "3"]:
     """Where the person of a window is: the median of its points, of those that move if there are a few."""
     points = frames.values[frames.is_there]
     moving = points[np.abs(points[:, 3]) > MOVING_MPS]
-    chosen = moving if len(moving) >= LEAST_MOVING else points
+    chosen = moving if len(moving) >= MIN_MOVING else points
     if not len(chosen):
-        return np.array(USUAL_PLACE_M, np.float32)
+        return np.array(DEFAULT_PLACE_M, np.float32)
     return np.median(chosen[:, :3], axis=0).astype(np.float32)
 
 

@@ -14,7 +14,7 @@ from torch import Tensor
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def in_full_precision(function: Function) -> Function:
+def full_precision(function: Function) -> Function:
     """The function with mixed precision turned off, and what comes to it in bf16 made float32."""
 
     @wraps(function)

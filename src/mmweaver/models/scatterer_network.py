@@ -5,8 +5,8 @@
     joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
                                                                 (anchored to the body and its images)
 
-The network says how strong each echo is on average and where it lies; phases are sampled when a signal is made, for
-nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
+The network predicts the mean strength and the position of each echo; phases are unpredictable and are sampled when a
+signal is made. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
 Reference: paper, section "Generalization via Hypernetworks".
 """
 
@@ -30,7 +30,7 @@ from mmweaver.models.body_anchors import (
 from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_CHANNELS, Z_ENV
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
-from mmweaver.models.precision import in_full_precision
+from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
 from mmweaver.paths.mean_scatterers import MeanEchoes
 
@@ -147,7 +147,7 @@ class WeaverNetwork(ScattererNetwork):
         return _static(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
 
 
-@in_full_precision
+@full_precision
 def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
     camera = (point_m - view.camera_m[:, None]) @ view.camera_from_radar.transpose(-1, -2)

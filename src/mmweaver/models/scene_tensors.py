@@ -68,7 +68,7 @@ class SceneTensors(TensorRecord):
             camera_m=_tensor(scene.radar_pose.seen(np.zeros(3))),
             camera=_tensor(np.array([camera.fx, camera.fy, camera.cx, camera.cy])),
             **_planes(scene, room),
-        )  # fmt: skip
+        )
 
 
 def _nearest(wanted: int, given: int) -> np.ndarray:
@@ -106,10 +106,15 @@ def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
     kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
     features = np.column_stack(
         [
-            distance / 4, place / 4, (place[:, 2] - scene.floor_z_m) / 2, towards[:, 0], towards[:, 2],
-            np.log10(np.maximum(cross_section, 1e-12)) / 4, *(kind == index for index in range(len(room.counts))),
+            distance / 4,
+            place / 4,
+            (place[:, 2] - scene.floor_z_m) / 2,
+            towards[:, 0],
+            towards[:, 2],
+            np.log10(np.maximum(cross_section, 1e-12)) / 4,
+            *(kind == index for index in range(len(room.counts))),
         ]
-    )  # fmt: skip
+    )
     count = len(order)
     return {
         "point_m": _tensor(_padded(place, count)),
@@ -152,8 +157,9 @@ def _plane_features(plane: Plane) -> np.ndarray:
     distance = float(plane.normal @ -plane.centre_m)
     foot = -distance * plane.normal - plane.centre_m
     inside = [
-        plane.half_size_m[0] - abs(float(foot @ plane.axis_u)), plane.half_size_m[1] - abs(float(foot @ plane.axis_v)),
-    ]  # fmt: skip
+        plane.half_size_m[0] - abs(float(foot @ plane.axis_u)),
+        plane.half_size_m[1] - abs(float(foot @ plane.axis_v)),
+    ]
     kind = [float(plane.kind == name) for name in PLANE_KINDS]
     return np.array([*kind, distance / 4, *plane.normal, *np.tanh(inside), *(np.array(plane.half_size_m) / 3)])
 

@@ -52,8 +52,10 @@ def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: boo
         for name, tensor in network.state_dict().items()
     }
     header = {
-        "format": FORMAT, "format_version": str(FORMAT_VERSION), "card": json.dumps(asdict(card)),
-    }  # fmt: skip
+        "format": FORMAT,
+        "format_version": str(FORMAT_VERSION),
+        "card": json.dumps(asdict(card)),
+    }
     write_tensors(file, tensors, header)
 
 

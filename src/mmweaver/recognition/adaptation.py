@@ -84,9 +84,12 @@ def labelled_alone(made: TrainingWindows, features: Features, labels: Labels) ->
 
 # unlabelled recordings ----------------------------------------------------------------------------------------------
 def self_trained(
-    made: TrainingWindows, features: Features, trees: TreeEnsemble, options: TrainingOptions,
+    made: TrainingWindows,
+    features: Features,
+    trees: TreeEnsemble,
+    options: TrainingOptions,
     follows: Bool[np.ndarray, " window"] | None = None,
-) -> tuple[TreeEnsemble, dict[str, Any]]:  # fmt: skip
+) -> tuple[TreeEnsemble, dict[str, Any]]:
     """The trees to use, and what was done: the same trees where the guard refuses.
 
     Confident labels of unlabelled windows (window, feature) join the generated ones. `follows`, as `following` gives
@@ -95,7 +98,7 @@ def self_trained(
     """
     votes, share = trees.probabilities(features), CONFIDENT_SHARE
     if follows is not None:
-        votes, share = with_neighbours(votes, follows), WITH_NEIGHBOURS
+        votes, share = smoothed_votes(votes, follows), WITH_NEIGHBOURS
     guess, classes = votes.argmax(axis=1), votes.shape[1]
     kept = np.zeros(len(guess), bool)
     for label in range(classes):
@@ -104,7 +107,7 @@ def self_trained(
     note: dict[str, Any] = {"windows": int(kept.sum()), "used": False}
     if np.bincount(guess[kept], minlength=classes).min() < MIN_SHARE * kept.sum() / classes:
         return trees, note | {"why": "a label is hardly ever given to the unlabelled windows"}
-    again = made.with_recorded(features[kept], guess[kept], REAL_WEIGHT).trees(options)
+    again = made.joined(features[kept], guess[kept], REAL_WEIGHT).trees(options)
     new = again.probabilities(features).argmax(axis=1)
     changed = float((new != guess).mean())
     note["labels_changed"] = round(changed, 4)
@@ -123,7 +126,7 @@ def following(windows: Sequence[PointRecording]) -> Bool[np.ndarray, " window"]:
     return found
 
 
-def with_neighbours(votes: Votes, follows: Bool[np.ndarray, " window"]) -> Votes:
+def smoothed_votes(votes: Votes, follows: Bool[np.ndarray, " window"]) -> Votes:
     """The mean vote of each window, the one before it and the one after it, where they follow each other."""
     total, count = votes.copy(), np.ones(len(votes))
     after = np.flatnonzero(follows)

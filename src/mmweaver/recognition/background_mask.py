@@ -6,14 +6,14 @@ recordings moves there as well; so a place counts only where people walk elsewhe
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Int
 from scipy.ndimage import find_objects, label
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recordings import PointRecording, is_moving
+from mmweaver.recognition.point_recordings import PointRecording, index_runs, is_moving
 from mmweaver.recognition.quantisation import Quantisation, group_neighbours
 
 CELL_M = 0.25
@@ -32,11 +32,11 @@ NO_CELLS: Cells = np.zeros((0, 2), int)
 def background_cells(empty_place: Sequence[PointRecording]) -> Cells:
     """Cells in which and next to which something moves in recordings of the empty place."""
     found = [_moving_cells(one, max(MIN_FRAMES, MIN_SHARE * one.num_frames)) for one in empty_place]
-    return _with_neighbours(np.concatenate([NO_CELLS, *found]))
+    return _dilated(np.concatenate([NO_CELLS, *found]))
 
 
 def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantisation | None = None) -> Cells:
-    """Cells, and those around, in which something moves that is certainly nobody; none if unsure.
+    """Cells, and those around, with persistent motion that is certainly not the subject; none if unsure.
 
     Args:
         recordings: Ten or more, in some of which somebody walks; labels are not used.
@@ -52,13 +52,13 @@ def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantis
     found = [_moving_cells(one, max(IN_FRAMES * one.num_frames, 1.0)) for one in recordings]
     cells, count = np.unique(np.concatenate(found), axis=0, return_counts=True)
     cells = cells[count >= NEARLY_ALL * len(recordings)]
-    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: nobody walks
+    goes_on = np.array([_goes_on(recording, cells) for recording in recordings])  # nan: no walker
     walks = np.isfinite(goes_on).sum(axis=0)
     often = (np.nan_to_num(goes_on) >= GOES_ON).sum(axis=0) >= MOSTLY * np.maximum(walks, 1)
-    return _with_neighbours(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
+    return _dilated(cells[(walks >= max(WALKERS, WALKING_SHARE * len(recordings))) & often])
 
 
-def without_motion_in(window: PointRecording, cells: Cells) -> PointRecording:
+def remove_motion(window: PointRecording, cells: Cells) -> PointRecording:
     """The window without the moving points in these cells."""
     hidden = is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
     return replace(window, cloud=window.cloud.select(~hidden)) if hidden.any() else window
@@ -86,7 +86,7 @@ def _cells_of(cloud: PointCloud) -> Int[np.ndarray, "point 2"]:
     return np.floor(np.stack([cloud.x_m, cloud.y_m], axis=1) / CELL_M).astype(int)
 
 
-def _with_neighbours(cells: Cells) -> Cells:
+def _dilated(cells: Cells) -> Cells:
     return np.unique((cells[:, None] + AROUND).reshape(-1, 2), axis=0)
 
 
@@ -103,11 +103,11 @@ def _moving_cells(recording: PointRecording, min_frames: float) -> Cells:
 
 
 def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
-    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: nobody."""
+    """For each cell the share of the stretches with somebody who walks elsewhere in which it moves; nan: no walker."""
     cloud = recording.cloud.select(is_moving(recording.cloud))
     stretch, cell = cloud.frame // max(round(STRETCH_S * recording.frame_rate_hz), 1), _cells_of(cloud)
     point_m = np.stack([cloud.x_m, cloud.y_m], axis=1)
-    persistent = _inside(cell, _with_neighbours(candidates))
+    persistent = _inside(cell, _dilated(candidates))
     shares = np.full(len(candidates), np.nan)
     for number, candidate in enumerate(candidates):
         walker = (np.hypot(*(point_m - (candidate + 0.5) * CELL_M).T) > APART_M) & ~persistent
@@ -115,3 +115,49 @@ def _goes_on(recording: PointRecording, candidates: Cells) -> np.ndarray:
             around = np.abs(cell - candidate).max(axis=1) <= 1
             shares[number] = np.isin(np.unique(stretch[walker]), stretch[around]).mean()
     return shares
+
+
+AT_ONCE_S = 0.15
+MULTIPATH_GROUP_M = 0.8  # from a point, within which others are of the same group
+MULTIPATH_APART_M, MULTIPATH_BEHIND_M = 1.0, 0.6  # least distance and difference in range between a person and an echo
+MIN_NEARER, NEARER_SHARE = 2, 0.5  # of points of the nearer group, in all and relative to those of the farther
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WindowFilter:
+    """What is left out of all windows, generated and recorded, before anything is measured of them."""
+
+    busy: Cells = field(default_factory=NO_CELLS.copy)  # moving points in these cells are left out
+    radar: Quantisation | None = None  # of the task; None: a model of before 0.3, which saw neighbours and echoes
+
+    def masking(self, cells: Cells) -> "WindowFilter":
+        """Moving points in these cells do not count either."""
+        return replace(self, busy=np.unique(np.concatenate([self.busy, cells]), axis=0)) if len(cells) else self
+
+    def __call__(self, window: PointRecording) -> PointRecording:
+        """The window without what does not count."""
+        window = remove_motion(window, self.busy)
+        return window if self.radar is None else remove_multipath(group_neighbours(window, self.radar))
+
+
+def remove_multipath(window: PointRecording) -> PointRecording:
+    """The window without moving points behind a nearer group that moves at the same time.
+
+    Multipath of a person over a wall or another body is always longer than the direct path, so of two groups that move
+    at once the nearer is the person.
+    """
+    cloud = window.cloud
+    moving = np.flatnonzero(is_moving(cloud))
+    frame, range_m = cloud.frame[moving], cloud.range_m[moving]
+    place_m = np.stack([cloud.x_m, cloud.y_m], axis=1)[moving]
+    lag = max(int(AT_ONCE_S * window.frame_rate_hz), 1)
+    one, other = index_runs(np.searchsorted(frame, frame - lag), np.searchsorted(frame, frame + lag, side="right"))
+    apart_m = np.hypot(*(place_m[one] - place_m[other]).T)
+    group = np.bincount(one, apart_m < MULTIPATH_GROUP_M, minlength=len(frame))
+    nearer = np.bincount(
+        one, (apart_m > MULTIPATH_APART_M) & (range_m[other] < range_m[one] - MULTIPATH_BEHIND_M), minlength=len(frame)
+    )
+    hidden = moving[(nearer >= MIN_NEARER) & (nearer >= NEARER_SHARE * group)]
+    kept = np.ones(len(cloud.frame), bool)
+    kept[hidden] = False
+    return replace(window, cloud=cloud.select(kept)) if len(hidden) else window

@@ -1,4 +1,4 @@
-"""Recordings of a task that nobody made: people of a population perform its sentences in front of its radar.
+"""Generated recordings of a task: people of a population perform its sentences in front of its radar.
 
 Sequences are kept in a folder as they are made, so an interrupted run resumes with the same bits.
 """
@@ -70,11 +70,18 @@ class SequenceRecipe:
         """All that decides the bits of a sequence; equal recipes give equal text."""
         task = self.task
         values: dict[str, Any] = {
-            "version": VERSION, "seed": self.seed, "skin_points": SKIN_POINTS, "prior": asdict(self.prior),
-            "variation": asdict(self.variation), "activities": task.activities, "window_s": task.recordings.window_s,
-            "frame_rate_hz": task.recordings.frame_rate_hz, "once": task.recordings.has_single_performances,
-            "radar": parse_json(task.radar.to_json(), "the radar"), "firmware": asdict(task.firmware),
-        }  # fmt: skip
+            "version": VERSION,
+            "seed": self.seed,
+            "skin_points": SKIN_POINTS,
+            "prior": asdict(self.prior),
+            "variation": asdict(self.variation),
+            "activities": task.activities,
+            "window_s": task.recordings.window_s,
+            "frame_rate_hz": task.recordings.frame_rate_hz,
+            "once": task.recordings.has_single_performances,
+            "radar": parse_json(task.radar.to_json(), "the radar"),
+            "firmware": asdict(task.firmware),
+        }
         return json.dumps(values, sort_keys=True) + "\n"
 
 
@@ -119,13 +126,21 @@ def _sequence(
 
 
 def _recording(
-    settings: RecordingSettings, label: str, index: int, cloud: PointCloud, frames: int,
+    settings: RecordingSettings,
+    label: str,
+    index: int,
+    cloud: PointCloud,
+    frames: int,
     joints_m: np.ndarray | None = None,
-) -> PointRecording:  # fmt: skip
+) -> PointRecording:
     return PointRecording(
-        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label,
+        name=f"{label}_{index}",
+        cloud=cloud,
+        num_frames=frames,
+        frame_rate_hz=settings.frame_rate_hz,
+        label=label,
         joints_m=joints_m,
-    )  # fmt: skip
+    )
 
 
 def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:

@@ -86,9 +86,12 @@ class LiveRecogniser:
         frame, x, y, z, velocity, snr_db = np.concatenate(rows).T
         cloud = PointCloud(frame=frame.astype(int), x_m=x, y_m=y, z_m=z, radial_velocity_mps=velocity, snr_db=snr_db)
         window = PointRecording(
-            name="live", cloud=cloud, num_frames=settings.window_frames, frame_rate_hz=settings.frame_rate_hz,
+            name="live",
+            cloud=cloud,
+            num_frames=settings.window_frames,
+            frame_rate_hz=settings.frame_rate_hz,
             first_frame=first,
-        )  # fmt: skip
+        )
         return self.model.recognise_windows([window])[0]
 
 

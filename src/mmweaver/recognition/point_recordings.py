@@ -54,10 +54,12 @@ class PointRecording:
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
         return replace(
-            self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames,
+            self,
+            cloud=replace(cloud, frame=cloud.frame - first),
+            num_frames=num_frames,
             first_frame=self.first_frame + first,
             joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
-        )  # fmt: skip
+        )
 
 
 # reading ------------------------------------------------------------------------------------------------------------
@@ -99,7 +101,7 @@ def read_task_recording(file: Path, settings: RecordingSettings, label: str = ""
         file = file / POINTS_FILE
     cloud, frames = _read_cloud(file, settings)
     name = file.parent.name if file.name == POINTS_FILE else file.stem
-    frames = frames or settings.window_frames  # without any frame it lasts a window, for all that is known
+    frames = frames or settings.window_frames  # without any frame it counts as one window
     return PointRecording(name=name, cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label)
 
 

@@ -106,10 +106,10 @@ def sample_variation(variation: Variation, rng: np.random.Generator) -> Variatio
     """Samples the conditions of one recording."""
 
     def uniform(*names: str) -> dict[str, float]:
-        return {name: float(rng.uniform(*getattr(variation, name))) for name in names}
+        return {name: rng.uniform(*getattr(variation, name)) for name in names}
 
     found: dict[str, Any] = {"tempo": float(np.exp(rng.uniform(*np.log(variation.tempo))))}
-    found |= uniform("vigour") | {"turn_deg": float(rng.normal(0, variation.turn_deg))}
+    found |= uniform("vigour") | {"turn_deg": rng.normal(0, variation.turn_deg)}
     found |= uniform("roam_mps", "distance_m", "azimuth_deg", "height_m", "radar_height_m", "tilt_deg")
     found |= uniform("elevation_beamwidth_deg", "noise_db", "clutter_db", "threshold_db", "gain_db", "albedo_db")
     found |= {"skin_exponent": float(rng.choice(variation.skin_exponents))} | uniform("arms_db", "legs_db")
@@ -133,9 +133,9 @@ def _panel(rng: np.random.Generator) -> Panel:
     """A flat object to the side of the person, or behind."""
     aside = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.9, 2.5))
     return Panel(
-        centre_m=(aside, float(rng.uniform(0.5, 5.0)), float(rng.uniform(-0.8, 0.5))),
-        half_size_m=(float(rng.uniform(0.05, 0.5)), float(rng.uniform(0.05, 0.6))),
-        turn_rad=float(rng.normal(np.arctan2(-aside, 3.0), 0.4)),
+        centre_m=(aside, rng.uniform(0.5, 5.0), rng.uniform(-0.8, 0.5)),
+        half_size_m=(rng.uniform(0.05, 0.5), rng.uniform(0.05, 0.6)),
+        turn_rad=rng.normal(np.arctan2(-aside, 3.0), 0.4),
         material=str(rng.choice(["metal", "wood", "chipboard", "plasterboard"])),
     )
 
@@ -154,10 +154,11 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
         cos, sin = np.cos(panel.turn_rad), np.sin(panel.turn_rad)
         flat.append(_plane("panel", panel.centre_m, (sin, -cos, 0), (cos, sin, 0), panel.material, panel.half_size_m))
     vertices_m = [
-        plane.centre_m + CORNERS[:, 0] * plane.half_size_m[0] * plane.axis_u
+        plane.centre_m
+        + CORNERS[:, 0] * plane.half_size_m[0] * plane.axis_u
         + CORNERS[:, 1] * plane.half_size_m[1] * plane.axis_v
         for plane in flat
-    ]  # fmt: skip
+    ]
     faces = 4 * np.arange(len(flat))[:, None, None] + np.array([(0, 1, 2), (0, 2, 3)])
     x_m, y_m = np.arange(-HALF_M, HALF_M, CELL_M), np.arange(0.0, 2 * HALF_M, CELL_M)
     free = np.ones((len(y_m), len(x_m)), bool)
@@ -185,6 +186,11 @@ def random_scene(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Pane
 def _plane(kind: str, centre: tuple, normal: tuple, u: tuple, material: str, half: tuple[float, float]) -> Plane:
     n, axis = np.asarray(normal, float), np.asarray(u, float)
     return Plane(
-        kind=kind, centre_m=np.asarray(centre, float), normal=n, axis_u=axis, axis_v=np.cross(n, axis),
-        half_size_m=half, material=material,
-    )  # fmt: skip
+        kind=kind,
+        centre_m=np.asarray(centre, float),
+        normal=n,
+        axis_u=axis,
+        axis_v=np.cross(n, axis),
+        half_size_m=half,
+        material=material,
+    )

@@ -19,7 +19,7 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.recognition.background_mask import NO_CELLS
+from mmweaver.recognition.background_mask import NO_CELLS, WindowFilter
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.recording_checks import contradictions
@@ -27,7 +27,6 @@ from mmweaver.recognition.spatiotemporal_features import spatiotemporal_features
 from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, read_trees, write_trees
 from mmweaver.recognition.window_features import UNPREDICTABLE, Row, body_features, window_features
-from mmweaver.recognition.window_filter import WindowFilter
 
 META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
 MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
@@ -99,12 +98,14 @@ class Recogniser:
         votes, outside = self.votes(features), self.is_outside(features)
         return [
             Recognition(
-                first_frame=window.first_frame, num_frames=window.num_frames,
+                first_frame=window.first_frame,
+                num_frames=window.num_frames,
                 label=self.labels[int(np.argmax(vote))],
-                votes=dict(zip(self.labels, map(float, vote), strict=True)), is_outside=bool(out),
+                votes=dict(zip(self.labels, map(float, vote), strict=True)),
+                is_outside=bool(out),
             )
             for window, vote, out in zip(windows, votes, outside, strict=True)
-        ]  # fmt: skip
+        ]
 
     def recognise_cloud(self, cloud: PointCloud, num_frames: int) -> list[Recognition]:
         """The label of each window of a point cloud (a generated one, say) of so many frames."""
@@ -157,8 +158,12 @@ def save_recogniser(folder: Path, model: Recogniser) -> None:
         "columns": None if model.settings.columns is None else list(model.settings.columns.names)
     }
     values = {
-        "kind": KIND, "version": VERSION, "recordings": settings, "outside_above": model.outside_above, **model.meta
-    }  # fmt: skip
+        "kind": KIND,
+        "version": VERSION,
+        "recordings": settings,
+        "outside_above": model.outside_above,
+        **model.meta,
+    }
     with atomic_file(folder / META_FILE) as temporary:
         temporary.write_text(json.dumps(values, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
@@ -184,11 +189,14 @@ def load_recogniser(folder: Path | str) -> Recogniser:
         raise InputError(f"{folder / META_FILE} lacks outside_above; train the recogniser again")
     known = {"kind", "version", "recordings", "outside_above"}
     return Recogniser(
-        settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
-        generated=generated, outside_above=outside_above,
+        settings=settings,
+        names=names,
+        trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
+        generated=generated,
+        outside_above=outside_above,
         points=WindowFilter(busy=busy, radar=Quantisation.read(meta.get("radar_facts"))),
         meta={name: value for name, value in meta.items() if name not in known},
-    )  # fmt: skip
+    )
 
 
 def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
@@ -196,10 +204,12 @@ def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
         found = meta["recordings"]
         columns, gap = found["columns"], found["gap_frames"]
         settings = RecordingSettings(
-            labels=tuple(found["labels"]), window_s=float(found["window_s"]),
-            frame_rate_hz=float(found["frame_rate_hz"]), gap_frames=None if gap is None else int(gap),
+            labels=tuple(found["labels"]),
+            window_s=float(found["window_s"]),
+            frame_rate_hz=float(found["frame_rate_hz"]),
+            gap_frames=None if gap is None else int(gap),
             empty_label=found.get("empty_label"),  # models of before 0.3 do not have it
-        )  # fmt: skip
+        )
         labels = settings.labels
         if not labels or not all(isinstance(one, str) for one in labels) or settings.empty_label not in (None, *labels):
             raise TypeError

@@ -1,7 +1,7 @@
-"""Do recordings fit what a task says of radar and columns? Their points alone are asked, no labels.
+"""Do recordings agree with the radar and the columns of a task? Their points alone decide, no labels.
 
-Whoever moves is later where the velocities say; nobody stands behind the radar; velocities are multiples of the radar's
-step. Where recordings contradict the task, a recogniser has learned from another board than the one that is before it.
+Displacement follows from velocity; no point lies behind the radar; velocities are multiples of the radar's step. Where
+recordings contradict the task, the recogniser was trained for another board than the one that recorded.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from mmweaver.recognition.quantisation import Quantisation
 from mmweaver.recognition.spatiotemporal_features import near_median
 
 LAG_S = 0.5  # over which ways are compared with velocities
-MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which nobody goes anywhere; beyond, it is another echo
+MIN_WAY_M, FARTHEST_M = 0.1, 1.5  # in that time: rms, below which there is no displacement; beyond, it is another echo
 FEWEST = 200  # points, and a tenth as many ways
 RELATED, OPPOSED = 0.6, -0.4  # correlations
 SLOWEST, FASTEST = 0.6, 1.6  # ways relative to what velocities say
@@ -41,13 +41,16 @@ def contradictions(recordings: Sequence[PointRecording], radar: Quantisation) ->
     if len(x) < FEWEST:
         return []
     found = [
-        *_of_places(x, y), *_of_velocities(np.abs(velocity), radar), *_of_ways(recordings, radar),
-        *_of_neighbours(recordings, radar), *_of_others(recordings, radar),
-    ]  # fmt: skip
+        *_check_places(x, y),
+        *_check_velocities(np.abs(velocity), radar),
+        *_check_ways(recordings, radar),
+        *_check_neighbours(recordings, radar),
+        *_check_others(recordings, radar),
+    ]
     return [f"{line}; {WHAT_TO_DO.get(todo, todo)}" for line, todo in found]
 
 
-def _of_places(x_m: np.ndarray, y_m: np.ndarray) -> Lines:
+def _check_places(x_m: np.ndarray, y_m: np.ndarray) -> Lines:
     behind, aside = float((y_m < 0).mean()), float(np.median(np.abs(np.arctan2(x_m, y_m))))
     if behind > BEHIND:
         yield f"{behind:.0%} of the points lie behind the radar", "columns"
@@ -55,7 +58,7 @@ def _of_places(x_m: np.ndarray, y_m: np.ndarray) -> Lines:
         yield f"half of the points lie {np.degrees(aside):.0f} degrees or more aside", "columns"
 
 
-def _of_velocities(speed_mps: np.ndarray, radar: Quantisation) -> Lines:
+def _check_velocities(speed_mps: np.ndarray, radar: Quantisation) -> Lines:
     moving = speed_mps[speed_mps > STILL_MPS]
     still = 1 - len(moving) / len(speed_mps)
     if not radar.removes_static and still < HARDLY:
@@ -73,7 +76,7 @@ def _of_velocities(speed_mps: np.ndarray, radar: Quantisation) -> Lines:
         yield f"{share:.0%} of the velocities are no multiples of {step:.3g} m/s, the step of `radar`", "cfg"
 
 
-def _of_ways(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
+def _check_ways(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
     went_m, expected_m = _ways(recordings, radar.max_velocity_mps / 2)
     if len(went_m) < FEWEST / 10 or np.sqrt(np.mean(went_m**2)) < MIN_WAY_M or not expected_m.any():
         return
@@ -110,7 +113,7 @@ def _ways(recordings: Sequence[PointRecording], fastest_mps: float) -> tuple[np.
     return went_m, expected_m
 
 
-def _of_neighbours(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
+def _check_neighbours(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
     shares = neighbour_shares(recordings, radar)
     for share, grouped, word in zip(
         shares, (radar.groups_range, radar.groups_velocity), ("range", "velocity"), strict=True
@@ -138,7 +141,7 @@ def neighbour_shares(recordings: Sequence[PointRecording], radar: Quantisation) 
     return in_range, in_velocity
 
 
-def _of_others(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
+def _check_others(recordings: Sequence[PointRecording], radar: Quantisation) -> Lines:
     """Whoever moves cannot be in two places."""
     apart = moving = 0
     for recording in recordings:

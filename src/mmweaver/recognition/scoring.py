@@ -115,7 +115,7 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
     windows = [window for own in cut for window in own]
     if not windows:
         raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
-    model, left_out = without_persistent_motion(model, recordings)
+    model, left_out = mask_persistent_motion(model, recordings)
     features = model.features(windows)
     evaluation = Evaluation(
         classes=model.labels,
@@ -143,10 +143,10 @@ def score_recordings(model: Recogniser, recordings: Sequence[PointRecording]) ->
     }
 
 
-def without_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
+def mask_persistent_motion(model: Recogniser, recordings: Sequence[PointRecording]) -> tuple[Recogniser, list[str]]:
     """The recogniser without what moves all the time in one place of these recordings, and what to say of it."""
     cells = persistent_motion_cells(recordings, model.points.radar)
-    points = model.points.without(cells)
+    points = model.points.masking(cells)
     if len(points.busy) == len(model.points.busy):
         return model, []
     return replace(model, points=points), left_out_lines(cells)

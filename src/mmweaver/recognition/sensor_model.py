@@ -36,12 +36,12 @@ class PointRadar:
 def observed_cloud(
     board: PointRadar, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
 ) -> PointCloud:
-    """Points of one person, or of nobody, under the sampled conditions.
+    """Points of one person, or of an empty room, under the sampled conditions.
 
     Args:
         board: Radar and firmware.
         now: Room, mount, noise and skin.
-        pose: Motion in the radar's level axes; an empty tuple is nobody.
+        pose: Motion in the radar's level axes; an empty tuple: an empty room.
         frames: Number of frames, from time 0.
         seed: Of noise, speckle and clutter.
 

@@ -114,20 +114,18 @@ def _timeline(window: PointRecording, body: PointCloud) -> Row:
 
     curves = {"share": count / len(part), "velocity": mean(velocity), "speed": mean(np.abs(velocity))}
     curves |= {name: mean(values - np.median(values)) for name, values in places.items()}
-    row: Row = {"order_lasts": float(end_s - begin_s), **_by_segment("order", curves)}
+    row: Row = {"order_lasts": end_s - begin_s, **_segment_row("order", curves)}
     speed = np.abs(velocity)
     fast = speed >= np.quantile(speed, 0.8)
     for name, values in places.items():
         low, middle, high = np.quantile(values, [0.1, 0.5, 0.9])
-        row[f"reach_{name}_above"], row[f"reach_{name}_below"] = float(high - middle), float(middle - low)
-        row[f"fast_{name}"] = float(values[fast].mean() - middle)
+        row[f"reach_{name}_above"], row[f"reach_{name}_below"] = high - middle, middle - low
+        row[f"fast_{name}"] = values[fast].mean() - middle
     return row | _turns(time_s, velocity, begin_s, end_s)
 
 
-def _by_segment(word: str, curves: Mapping[str, np.ndarray]) -> Row:
-    return {
-        f"{word}_{name}_{index}": float(value) for name, curve in curves.items() for index, value in enumerate(curve)
-    }
+def _segment_row(word: str, curves: Mapping[str, np.ndarray]) -> Row:
+    return {f"{word}_{name}_{index}": value for name, curve in curves.items() for index, value in enumerate(curve)}
 
 
 def _turns(time_s: np.ndarray, velocity: np.ndarray, begin_s: float, end_s: float) -> Row:
@@ -143,9 +141,13 @@ def _turns(time_s: np.ndarray, velocity: np.ndarray, begin_s: float, end_s: floa
     momentum = np.histogram(time_s, edges, weights=velocity)[0] if len(edges) > 1 else np.zeros(1)
     changes = int((np.diff(np.sign(momentum[momentum != 0])) != 0).sum())
     return {
-        "order_away": away, "order_near": near, "order_away_less_near": away - near,
-        "turns": float(changes), "turns_hz": changes / max(lasts_s, 0.2), "order_tilt": float(velocity.mean()),
-    }  # fmt: skip
+        "order_away": away,
+        "order_near": near,
+        "order_away_less_near": away - near,
+        "turns": changes,
+        "turns_hz": changes / max(lasts_s, 0.2),
+        "order_tilt": velocity.mean(),
+    }
 
 
 # sides and heights --------------------------------------------------------------------------------------------------
@@ -154,42 +156,42 @@ def _sides(window: PointRecording, body: PointCloud) -> Row:
     aside, up = body.x_m - np.median(body.x_m), body.z_m - np.median(body.z_m)
     velocity, speed = body.radial_velocity_mps, np.abs(body.radial_velocity_mps)
     row = {
-        "side_energy_aside": float(np.average(aside, weights=velocity**2)),
-        "side_energy_up": float(np.average(up, weights=velocity**2)),
-        "side_skew_aside": float(np.mean(aside**3) / max(np.mean(aside**2) ** 1.5, 1e-9)),
-        "side_skew_up": float(np.mean(up**3) / max(np.mean(up**2) ** 1.5, 1e-9)),
-        "side_slant": float(np.mean(aside * up) / max(aside.std() * up.std(), 1e-9)),
+        "side_energy_aside": np.average(aside, weights=velocity**2),
+        "side_energy_up": np.average(up, weights=velocity**2),
+        "side_skew_aside": np.mean(aside**3) / max(np.mean(aside**2) ** 1.5, 1e-9),
+        "side_skew_up": np.mean(up**3) / max(np.mean(up**2) ** 1.5, 1e-9),
+        "side_slant": np.mean(aside * up) / max(aside.std() * up.std(), 1e-9),
     }
     for word, which in (("away", velocity > 0), ("near", velocity < 0)):
         row |= {f"side_{word}_aside": mean_of(aside[which]), f"side_{word}_up": mean_of(up[which])}
     low, high = np.quantile(up, [0.25, 0.75])
     for word, which in (("highest", up >= high), ("lowest", up <= low)):
-        row[f"side_{word}_aside"], row[f"side_{word}_spread"] = mean_of(aside[which]), float(aside[which].std())
+        row[f"side_{word}_aside"], row[f"side_{word}_spread"] = mean_of(aside[which]), aside[which].std()
         row[f"side_{word}_speed"] = mean_of(speed[which])
     left, right = np.quantile(aside, [0.1, 0.9])
     row["side_leftmost_up"], row["side_rightmost_up"] = mean_of(up[aside <= left]), mean_of(up[aside >= right])
-    row["side_reach"] = float(right + left)  # positive: the right side reaches farther
+    row["side_reach"] = right + left  # positive: the right side reaches farther
     quarter, curves = 2 * (up < 0).astype(int) + (aside >= 0).astype(int), []
     for number, word in enumerate(QUARTERS):
         own = quarter == number
-        row[f"side_{word}_share"] = float(own.mean())
+        row[f"side_{word}_share"] = own.mean()
         row[f"side_{word}_speed"], row[f"side_{word}_velocity"] = mean_of(speed[own]), mean_of(velocity[own])
         curve = np.bincount(body.frame[own], speed[own], minlength=window.num_frames)
         curves.append(np.convolve(curve, np.ones(3) / 3, mode="same"))
     row["side_left_with_right"] = correlation(curves[0] + curves[2], curves[1] + curves[3])
     row["side_high_with_low"] = correlation(curves[0] + curves[1], curves[2] + curves[3])
-    return row | _from_rest(window.cloud, body)
+    return row | _rest_offsets(window.cloud, body)
 
 
-def _from_rest(cloud: PointCloud, body: PointCloud) -> Row:
+def _rest_offsets(cloud: PointCloud, body: PointCloud) -> Row:
     """Where motion is relative to the points at rest near it."""
     near = np.hypot(cloud.x_m - np.median(body.x_m), cloud.y_m - np.median(body.y_m)) < NEAR_M
     rest = cloud.select(near & (np.abs(cloud.radial_velocity_mps) < 0.1))
     if len(rest.frame) < FEWEST:
         return {"side_of_rest_aside": np.nan, "side_of_rest_up": np.nan}
     return {
-        "side_of_rest_aside": float(np.median(body.x_m) - np.median(rest.x_m)),
-        "side_of_rest_up": float(np.median(body.z_m) - np.median(rest.z_m)),
+        "side_of_rest_aside": np.median(body.x_m) - np.median(rest.x_m),
+        "side_of_rest_up": np.median(body.z_m) - np.median(rest.z_m),
     }
 
 
@@ -215,18 +217,21 @@ def _course(window: PointRecording, body: PointCloud) -> Row:
 
     aside, range_m = body.x_m - np.median(body.x_m), body.range_m
     curves = {
-        "share": total / max(float(total.sum()), 1e-12), "velocity": mean(velocity),
-        "up": mean(body.z_m - np.median(body.z_m)), "out": mean(range_m - np.median(range_m)), "aside": mean(aside),
+        "share": total / max(float(total.sum()), 1e-12),
+        "velocity": mean(velocity),
+        "up": mean(body.z_m - np.median(body.z_m)),
+        "out": mean(range_m - np.median(range_m)),
+        "aside": mean(aside),
         "spread": np.sqrt(np.maximum(mean(aside**2) - mean(aside) ** 2, 0)),
-    }  # fmt: skip
+    }
     frames = np.bincount(body.frame, energy)
     return {
-        **_by_segment("course", curves),
-        "course_lasts": float(end_s - begin_s),
+        **_segment_row("course", curves),
+        "course_lasts": end_s - begin_s,
         "course_fastest_away": max(float(np.quantile(velocity, 0.98)), 0.0),
         "course_fastest_near": max(float(-np.quantile(velocity, 0.02)), 0.0),
-        "course_peak_share": float(frames.max() / frames.sum()),
-        "course_away_share": float(energy[velocity > 0].sum() / energy.sum()),
+        "course_peak_share": frames.max() / frames.sum(),
+        "course_away_share": energy[velocity > 0].sum() / energy.sum(),
     }
 
 

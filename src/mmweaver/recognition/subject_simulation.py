@@ -97,10 +97,14 @@ def task_variation(mount: Mount) -> Variation:
     """The ranges of places, rooms and radars: wide, but for what is known of the mount."""
     near, far = mount.distance_m or (1.0, 3.2)
     known = Variation(
-        distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
-        far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
-        noise_db=NOISE_DB, arms_db=ARMS_DB,
-    )  # fmt: skip
+        distance_m=(near, far),
+        near_m=(max(near - 0.4, 0.5), near + 0.3),
+        far_m=(max(far - 0.5, near + 0.6), far + 0.8),
+        radar_height_m=(0.7, 1.6),
+        wall_m=(far + 0.6, far + 3.0),
+        noise_db=NOISE_DB,
+        arms_db=ARMS_DB,
+    )
     if mount.height_m is not None:
         known = replace(known, radar_height_m=(mount.height_m - HEIGHT_SPREAD_M, mount.height_m + HEIGHT_SPREAD_M))
     if mount.height_m is None and mount.tilt_deg is None:
@@ -121,10 +125,10 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         tempo=float(np.exp(prior.tempo_of_person * tempo)),
         amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),
-        wider_m=float(rng.uniform(*prior.wider_m)),
-        linger=float(rng.uniform(*prior.linger)),
+        wider_m=rng.uniform(*prior.wider_m),
+        linger=rng.uniform(*prior.linger),
         on_way=float(np.exp(rng.uniform(*np.log(prior.on_way)))),
-        at_turns=float(rng.uniform(*prior.at_turns)),
+        at_turns=rng.uniform(*prior.at_turns),
     )
 
 
@@ -165,7 +169,7 @@ def perform(
     tempo = float(who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own))
     usual = prior.single_amplitude if once else prior.usual_amplitude
     amplitude = float(usual * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own))
-    late_s = 0.0 if once else float(rng.uniform(0.0, LATEST_S))
+    late_s = 0.0 if once else rng.uniform(0.0, LATEST_S)
     lead_s = 0.0 if once or is_event else LEAD_S + late_s
     needed_s = natural_s(plan) if once or is_event else lead_s + (seconds + 0.3) * tempo * 1.1
     scheduled = schedule(plan if once or is_event else repeated(plan, needed_s), needed_s)
@@ -175,10 +179,15 @@ def perform(
     turned_rad = np.radians(prior.heading_of_performance_deg)
     window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
     pose = compose(
-        scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
-        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person, may_touch=False,
+        scheduled,
+        scene,
+        seed=int(rng.integers(2**31)),
+        range_window_m=window,
+        start_m=None if moves and rng.random() < 0.5 else now.start_m,
+        person=person,
+        may_touch=False,
         heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + turned_rad * rng.normal()),
-    ).pose  # fmt: skip
+    ).pose
     if is_event:
         spare_s = max(seconds * tempo - needed_s, 0.0)
         before_s = max(late_s / LATEST_S * LATEST_EVENT * spare_s, REST_S[0])
@@ -187,7 +196,7 @@ def perform(
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, amplitude)
     if not moves and who.wider_m:
-        joints_m = with_feet_apart(joints_m, who.wider_m)
+        joints_m = spread_feet(joints_m, who.wider_m)
     is_held = all(step.lower in HELD and not step.upper for step in plan.steps)
     usual_sway = prior.calm_sway_mps if once or is_event else prior.held_sway_mps if is_held else prior.sway_mps
     sway = float(np.exp(rng.uniform(*np.log(usual_sway))))
@@ -205,8 +214,9 @@ def perform(
     before_s, after_s = rng.uniform(*REST_S, size=2)
     return Performance(
         pose=_rested(pose, float(before_s), float(after_s)),
-        lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
-    )  # fmt: skip
+        lasts_s=float(before_s + time_s[-1] + after_s),
+        surroundings=now,
+    )
 
 
 def lasting(plan: MotionPlan) -> MotionPlan:
@@ -256,7 +266,7 @@ def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np
     return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
 
 
-def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
+def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
     """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
 
     Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.

@@ -2,8 +2,8 @@
 
 radar = "profile.cfg"
 window_s = 2.0
-background = "empty_place.dat"     # optional: a recording of the place with nobody in it
-unlabelled = "some_recordings/"    # optional: recordings whose activities nobody has written down
+background = "empty_place.dat"     # optional: a recording of the empty place
+unlabelled = "some_recordings/"    # optional: recordings without labels
 
 [activities]
 walking = ["a person walks", "a person walks slowly"]
@@ -38,12 +38,13 @@ from mmweaver.motion.worded_activities import NOBODY, activities_of
 
 # Known names of each table, with the limits of those that are numbers.
 TABLES: dict[str, dict[str, tuple[float, float] | None]] = {
-    "": dict.fromkeys(("radar", "background", "unlabelled", "activities", "mount", "recordings")) | {
+    "": dict.fromkeys(("radar", "background", "unlabelled", "activities", "mount", "recordings"))
+    | {
         "window_s": (0.2, 60.0),
     },
     "mount": {"height_m": (0.0, 5.0), "tilt_deg": (-90.0, 90.0), "distance_m": (0.2, 20.0)},
     "recordings": {"columns": None, "frame_rate_hz": (0.5, 200.0), "gap_frames": (0.0, 1e6)},
-}  # fmt: skip
+}
 # Words in names of columns: our axis (right, ahead, up) and sign.
 DIRECTIONS = {"right": (0, 1), "left": (0, -1), "ahead": (1, 1), "up": (2, 1), "down": (2, -1)}
 VELOCITIES = {"velocity": 1, "velocity_away": 1, "velocity_towards": -1}

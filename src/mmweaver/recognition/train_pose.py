@@ -64,9 +64,12 @@ def _recipe(task: RecognitionTask, seed: int) -> SequenceRecipe:
 
 
 def generated_frames(
-    task: RecognitionTask, sequences: int, seed: int, folder: Path | None,
+    task: RecognitionTask,
+    sequences: int,
+    seed: int,
+    folder: Path | None,
     listener: Callable[[int, int], object] | None = None,
-) -> list[PointRecording]:  # fmt: skip
+) -> list[PointRecording]:
     """Sequences of a task with joints; one after the other, all activities of a person in turn."""
     everything = generate_sequences(_recipe(task, seed), sequences, folder, listener)
     posed = [one for one in everything if one.joints_m is not None]
@@ -92,9 +95,14 @@ def split_people(recordings: Sequence[PointRecording], window_frames: int) -> tu
 
 
 def train_pose_of_task(
-    task_file: Path | str, out: Path | str, training: PoseTraining | None = None, *,
-    tell: Callable[[int, int], object] | None = None, listener: Listener | None = None, **options: Any,
-) -> tuple[list[Path], list[Trainer[PoseLearner]]]:  # fmt: skip
+    task_file: Path | str,
+    out: Path | str,
+    training: PoseTraining | None = None,
+    *,
+    tell: Callable[[int, int], object] | None = None,
+    listener: Listener | None = None,
+    **options: Any,
+) -> tuple[list[Path], list[Trainer[PoseLearner]]]:
     """Trains pose networks on people who carry out the sentences of a task; writes `out`/weights.safetensors, weights_2
     and so on.
 
@@ -121,10 +129,11 @@ def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer[PoseL
     """Writes the best network with what one must know to apply it."""
     columns = task.recordings.columns
     settings = {
-        "window_s": float(task.recordings.window_s), "frame_rate_hz": float(task.recordings.frame_rate_hz),
+        "window_s": float(task.recordings.window_s),
+        "frame_rate_hz": float(task.recordings.frame_rate_hz),
         "columns": None if columns is None else list(columns.names),
         "activities": {label: list(sentences) for label, sentences in task.activities.items()},
-    }  # fmt: skip
+    }
     people = hashlib.sha256(_recipe(task, people_seed).as_json().encode()).hexdigest()
     card = weights_card(trainer, dataset_sha256=people, radar=task.radar.name, settings=settings)
     save_weights(file, trainer.learner.network, card)

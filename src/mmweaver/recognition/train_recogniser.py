@@ -47,9 +47,12 @@ Listener = Callable[[str, int, int], object]
 
 
 def train_recogniser(
-    task_file: Path | str, out: Path | str, options: TrainingOptions | None = None, listener: Listener | None = None,
+    task_file: Path | str,
+    out: Path | str,
+    options: TrainingOptions | None = None,
+    listener: Listener | None = None,
     labelled: Path | str | None = None,
-) -> Recogniser:  # fmt: skip
+) -> Recogniser:
     """Trains a recogniser of a task and writes its folder; sequences stay in OUT/sequences, so it may be interrupted.
 
     Args:
@@ -88,8 +91,10 @@ def train_recogniser(
         "task_file": Path(task_file).name,
         "options": asdict(options),
         "task": {
-            "radar": task.radar.name, "activities": {label: list(lines) for label, lines in task.activities.items()},
-            "mount": asdict(task.mount), "background": task.background and task.background.name,
+            "radar": task.radar.name,
+            "activities": {label: list(lines) for label, lines in task.activities.items()},
+            "mount": asdict(task.mount),
+            "background": task.background and task.background.name,
             "unlabelled": task.unlabelled and task.unlabelled.name,
         },
         "radar_facts": asdict(radar),
@@ -100,7 +105,7 @@ def train_recogniser(
         "contradictions": contradictions([*unlabelled, *taught, *background], radar),
         "left_out": left_out_lines(persistent),
         "cpu_seconds": round(time.process_time() - began_s, 1),
-    }  # fmt: skip
+    }
     model = replace(model, meta={**note, **model.meta})
     save_recogniser(out, model)
     tell("trees", 1, 1)
@@ -113,9 +118,12 @@ def usual_sequences(task: RecognitionTask) -> int:
 
 
 def fitted(
-    made: TrainingWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
+    made: TrainingWindows,
+    unlabelled: Sequence[PointRecording],
+    task: RecognitionTask,
+    options: TrainingOptions,
     labelled: Sequence[PointRecording] = (),
-) -> Recogniser:  # fmt: skip
+) -> Recogniser:
     """Trees on all generated windows and the labelled ones, adapted to unlabelled ones.
 
     Args:
@@ -131,15 +139,16 @@ def fitted(
     generated = quantiles_of(made.features)
     outside_above = float(np.quantile(outside_share(made.features, generated), INSIDE_SHARE))
     meta: dict[str, Any] = {
-        "generated_windows": int((~made.is_copy).sum()), "with_disturbed_copies": len(made.label),
+        "generated_windows": int((~made.is_copy).sum()),
+        "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
-    }  # fmt: skip
+    }
     own = None
     if labelled:
         known = recognition_features([made.points(window) for window in labelled], made.names)
         labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
         own, options = own_trees(made, known, labels, fewest_recordings(labelled, task.recordings.labels), options)
-        made = made.with_recorded(known, labels, options.labelled_weight)
+        made = made.joined(known, labels, options.labelled_weight)
         meta |= {"labelled_windows": len(labelled), "trees_of_labelled_alone": 0 if own is None else len(own.root)}
     trees = made.trees(options)
     if unlabelled:
@@ -148,9 +157,14 @@ def fitted(
         trees, note = self_trained(made, features, trees, options, follows)
         meta |= {"unlabelled_windows": len(unlabelled), "self_training": note}
     return Recogniser(
-        settings=task.recordings, names=made.names, trees=joined_trees(trees, own), generated=generated,
-        outside_above=outside_above, points=made.points, meta=meta,
-    )  # fmt: skip
+        settings=task.recordings,
+        names=made.names,
+        trees=joined_trees(trees, own),
+        generated=generated,
+        outside_above=outside_above,
+        points=made.points,
+        meta=meta,
+    )
 
 
 def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[str, Any]:
@@ -164,6 +178,8 @@ def generated_accuracy(made: TrainingWindows, options: TrainingOptions) -> dict[
     votes = made.trees(replace(options, trees=HELD_OUT_TREES), ~held).probabilities(made.features[held])
     truth, guess, classes = made.label[held], votes.argmax(axis=1), votes.shape[1]
     return {
-        "balanced_accuracy": round(balanced_accuracy(truth, guess), 4), "windows": len(truth),
-        "chance": round(1 / classes, 4), "confusion": confusion(truth, guess, classes).tolist(),
-    }  # fmt: skip
+        "balanced_accuracy": round(balanced_accuracy(truth, guess), 4),
+        "windows": len(truth),
+        "chance": round(1 / classes, 4),
+        "confusion": confusion(truth, guess, classes).tolist(),
+    }

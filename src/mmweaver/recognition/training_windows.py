@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.background_mask import NO_CELLS, Cells, background_cells
+from mmweaver.recognition.background_mask import NO_CELLS, Cells, WindowFilter, background_cells
 from mmweaver.recognition.generated_sequences import COLUMNS
 from mmweaver.recognition.point_recordings import PointRecording, windows_of
 from mmweaver.recognition.quantisation import Quantisation
@@ -18,7 +18,6 @@ from mmweaver.recognition.subject_simulation import PerformancePrior
 from mmweaver.recognition.task_file import RecognitionTask
 from mmweaver.recognition.tree_ensemble import Features, TreeEnsemble, grow_trees
 from mmweaver.recognition.window_augmentation import PerformanceVariation, WindowAugmentation, augmented, varied
-from mmweaver.recognition.window_filter import WindowFilter
 
 SEQUENCES = 40  # people per activity
 SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
@@ -69,7 +68,7 @@ class TrainingWindows:
         own = self.own_weights
         return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
-    def with_recorded(
+    def joined(
         self, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"], weight: float
     ) -> "TrainingWindows":
         """These windows and recorded ones, which weigh `weight` times as much in each label."""
@@ -97,15 +96,24 @@ class TrainingWindows:
         """Trees, and the importance of each feature to them."""
         which = np.ones(len(self.label), bool) if which is None else which
         return grow_trees(
-            self.features[which], self.label[which], self.weights[which], int(self.label.max()) + 1,
-            trees=options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share, seed=options.seed,
-        )  # fmt: skip
+            self.features[which],
+            self.label[which],
+            self.weights[which],
+            int(self.label.max()) + 1,
+            trees=options.trees,
+            leaf_size=options.leaf_size,
+            feature_share=options.feature_share,
+            seed=options.seed,
+        )
 
 
 def generated_windows(
-    sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
-    background: Sequence[PointRecording] = (), persistent: Cells = NO_CELLS,
-) -> TrainingWindows:  # fmt: skip
+    sequences: Sequence[PointRecording],
+    task: RecognitionTask,
+    options: TrainingOptions,
+    background: Sequence[PointRecording] = (),
+    persistent: Cells = NO_CELLS,
+) -> TrainingWindows:
     """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
 
     Args:
@@ -123,11 +131,14 @@ def generated_windows(
     """
     shows_room, once = not (task.firmware.static_removal or background), task.recordings.has_single_performances
     how = WindowAugmentation(
-        cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
+        cell_m=task.radar.range_resolution_m,
+        velocity_step_mps=task.radar.velocity_resolution_mps,
         most_objects=WindowAugmentation().most_objects if shows_room else 0,
         crowded_share=CROWDED_SHARE if shows_room else 0.0,
-        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
-    )  # fmt: skip
+        reversed_share=0.0,
+        reflected_share=0.0,
+        snr_cut_db=SNR_CUT_DB,
+    )
     step_s, radar = task.recordings.window_s / OVERLAP, Quantisation.of(task)
     pairs = [(one, window) for one in sequences for window in windows_of(one, task.recordings, step_s)]
     found = {window.label for _, window in pairs}
@@ -136,7 +147,7 @@ def generated_windows(
             f"the radar sees nothing of {missing[0]!r}: no window of it was generated; check radar, mount and sentences"
         )
     windows = [
-        _in_front_of(background, window, stream(options.seed, "behind", number))
+        _add_background(background, window, stream(options.seed, "behind", number))
         for number, (_, window) in enumerate(pairs)
     ]
     for copy in range(options.copies):
@@ -144,8 +155,8 @@ def generated_windows(
             rng = stream(options.seed, "disturbed", window.name, number, copy)
             first, frames = window.first_frame, window.num_frames
             another = varied(sequence, first, frames, rng, radar, options.variation, once=once)
-            windows.append(_in_front_of(background, augmented(another, rng, how), rng))
-    points = WindowFilter(busy=background_cells(background), radar=radar).without(persistent)
+            windows.append(_add_background(background, augmented(another, rng, how), rng))
+    points = WindowFilter(busy=background_cells(background), radar=radar).masking(persistent)
     windows = [points(window) for window in windows]
     names = tuple(window_row(windows[0]))
     return TrainingWindows(
@@ -158,7 +169,7 @@ def generated_windows(
     )
 
 
-def _in_front_of(
+def _add_background(
     background: Sequence[PointRecording], window: PointRecording, rng: np.random.Generator
 ) -> PointRecording:
     """The window with the points of a stretch of the recorded empty place."""

@@ -46,9 +46,16 @@ class TreeEnsemble:
 
 
 def grow_trees(
-    features: Features, labels: Int[np.ndarray, " window"], weights: Float[np.ndarray, " window"], classes: int, *,
-    trees: int, leaf_size: int, feature_share: float, seed: int,
-) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:  # fmt: skip
+    features: Features,
+    labels: Int[np.ndarray, " window"],
+    weights: Float[np.ndarray, " window"],
+    classes: int,
+    *,
+    trees: int,
+    leaf_size: int,
+    feature_share: float,
+    seed: int,
+) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
     """Trains on features (window, feature), nan = unknown; with the importance of each: impurity its splits take away.
 
     Raises InputError where scikit-learn is missing.
@@ -113,10 +120,13 @@ def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
 
     found = TreeEnsemble(
         root=held.numbers("root", ("tree",), kinds="iu", low=0, high=nodes - 1),
-        left=numbers("left", nodes - 1), right=numbers("right", nodes - 1), feature=numbers("feature", features - 1),
-        threshold=held.numbers("threshold", ("node",)), unknown_left=numbers("unknown_left", 1),
+        left=numbers("left", nodes - 1),
+        right=numbers("right", nodes - 1),
+        feature=numbers("feature", features - 1),
+        threshold=held.numbers("threshold", ("node",)),
+        unknown_left=numbers("unknown_left", 1),
         votes=held.numbers("votes", ("node", classes), low=0, high=1),
-    )  # fmt: skip
+    )
     # children stand behind their parents, so that every way down ends
     here = np.arange(nodes)
     if (found.left < here).any() or (found.right < here).any():

@@ -76,9 +76,15 @@ class WindowAugmentation:
 
 # other performances -------------------------------------------------------------------------------------------------
 def varied(
-    source: PointRecording, first: int, num_frames: int, rng: np.random.Generator, radar: Quantisation,
-    how: PerformanceVariation, *, once: bool,
-) -> PointRecording:  # fmt: skip
+    source: PointRecording,
+    first: int,
+    num_frames: int,
+    rng: np.random.Generator,
+    radar: Quantisation,
+    how: PerformanceVariation,
+    *,
+    once: bool,
+) -> PointRecording:
     """`num_frames` frames of `source`, beginning about frame `first`, of another performance of the same motion.
 
     Frames beyond the end of `source` are empty. Velocities stay multiples of the radar's step, below its largest.

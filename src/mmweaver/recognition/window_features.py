@@ -5,6 +5,7 @@ They are invariant to the placement of room and radar and to left-right reflecti
 
 import itertools
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -22,16 +23,20 @@ FIXED, SELDOM = 0.9, 0.03  # shares of frames: from which a cell counts as the r
 REACH_M = 0.7  # extent of a body about its centre
 BODY_SEGMENTS = 8
 
-Row = dict[str, float]
+Row = dict[str, Any]  # numbers by name
 
 
 def window_features(window: PointRecording) -> Row:
     """Named features of the moving points of one window."""
     points = replace(window, cloud=window.cloud.select(is_moving(window.cloud)))
     return {
-        **_speeds(points), **_duty(points), **_places(points), **_travel(points), **_couplings(points.cloud),
+        **_speeds(points),
+        **_duty(points),
+        **_places(points),
+        **_travel(points),
+        **_couplings(points.cloud),
         **_rhythm(points),
-    }  # fmt: skip
+    }
 
 
 def moving_points(window: PointRecording) -> float:
@@ -66,13 +71,13 @@ def _speeds(points: PointRecording) -> Row:
         inside = (speed >= low) & (speed < high)
         for sign, word in ((1, "away"), (-1, "near")):
             count = float((inside & (np.sign(velocity) == sign)).sum())
-            row[f"rate_{word}_{index}"] = float(np.log1p(10 * count / points.num_frames))
+            row[f"rate_{word}_{index}"] = np.log1p(10 * count / points.num_frames)
             row[f"share_{word}_{index}"] = count / total
-    row["rate"] = float(np.log1p(10 * len(velocity) / points.num_frames))
+    row["rate"] = np.log1p(10 * len(velocity) / points.num_frames)
     row["speed_mean"] = mean_of(speed)
-    row["speed_90"] = float(np.quantile(speed, 0.9)) if len(speed) else np.nan
+    row["speed_90"] = np.quantile(speed, 0.9) if len(speed) else np.nan
     row["velocity_mean"] = mean_of(velocity)
-    row["balance"] = float(abs(np.sign(velocity).sum()) / total)
+    row["balance"] = abs(np.sign(velocity).sum()) / total
     return row
 
 
@@ -85,19 +90,19 @@ def _duty(points: PointRecording) -> Row:
     count = away + near
     both, moving = (away > 0) & (near > 0), max((count > 0).sum(), 1)
     row = {
-        "frames_moving": float((count > 0).mean()),
-        "frames_both": float(both.mean()),
-        "frames_fast": float((fast > 0).mean()),
-        "both_of_moving": float(both.sum() / moving),
-        "fast_of_moving": float((fast > 0).sum() / moving),
-        "count_90": float(np.quantile(count, 0.9)),
-        "count_uneven": float(count.std() / max(count.mean(), 1e-9)) if len(velocity) else np.nan,
+        "frames_moving": (count > 0).mean(),
+        "frames_both": both.mean(),
+        "frames_fast": (fast > 0).mean(),
+        "both_of_moving": both.sum() / moving,
+        "fast_of_moving": (fast > 0).sum() / moving,
+        "count_90": np.quantile(count, 0.9),
+        "count_uneven": count.std() / max(count.mean(), 1e-9) if len(velocity) else np.nan,
     }
     for word, signal in (("moving", count), ("away", away), ("near", near), ("fast", fast)):
         closed = signal > 0
         closed[1:-1] |= closed[:-2] & closed[2:]  # gaps of one frame
         bursts = int(closed[0]) + int((~closed[:-1] & closed[1:]).sum())
-        row[f"bursts_{word}"] = float(bursts)
+        row[f"bursts_{word}"] = bursts
         row[f"burst_length_{word}"] = float(closed.sum() / bursts) / points.frame_rate_hz if bursts else 0.0
     return row
 
@@ -118,15 +123,15 @@ def _places(points: PointRecording) -> Row:
         for axis, value in axes.items():
             there = value[which]
             low, high = np.quantile(there, [0.1, 0.9]) if len(there) >= FEWEST else (np.nan, np.nan)
-            row[f"{axis}_std_{word}"] = float(there.std()) if len(there) >= FEWEST else np.nan
-            row[f"{axis}_span_{word}"] = float(high - low)
+            row[f"{axis}_std_{word}"] = there.std() if len(there) >= FEWEST else np.nan
+            row[f"{axis}_span_{word}"] = high - low
     for axis, value in axes.items():  # position of fast points relative to slow ones
         gap_m = _difference(value[groups["quick"]], value[groups["slow"]])
         row[f"{axis}_quick_less_slow"] = abs(gap_m) if axis == "across" else gap_m
         row[f"{axis}_within_frame"] = _within_frame(points, value)
     row["up_mean"] = mean_of(cloud.z_m)
     fast_m = cloud.z_m[groups["fast"]]
-    row["up_median_fast"] = float(np.median(fast_m)) if len(fast_m) >= FEWEST else np.nan
+    row["up_median_fast"] = np.median(fast_m) if len(fast_m) >= FEWEST else np.nan
     return row
 
 
@@ -152,9 +157,9 @@ def _travel(points: PointRecording) -> Row:
     time_s = cloud.frame / points.frame_rate_hz
     if len(time_s) >= 2 * FEWEST and np.ptp(time_s) > 0:
         slope, start = np.polyfit(time_s, range_m, 1)
-        row["drift_mps"] = float(abs(slope))
-        row["drift_left_m"] = float((range_m - start - slope * time_s).std())
-        row["drift_less_velocity"] = float(abs(cloud.radial_velocity_mps.mean() - slope))
+        row["drift_mps"] = abs(slope)
+        row["drift_left_m"] = (range_m - start - slope * time_s).std()
+        row["drift_less_velocity"] = abs(cloud.radial_velocity_mps.mean() - slope)
     segment = np.minimum(cloud.frame * SEGMENTS // points.num_frames, SEGMENTS - 1)
     inside = [segment == one for one in range(SEGMENTS) if (segment == one).sum() >= 2]
     middles = [float(np.median(range_m[one])) for one in inside]
@@ -170,9 +175,12 @@ def _couplings(cloud: PointCloud) -> Row:
     speed = np.abs(velocity)
     aside_m = np.abs(cloud.x_m - np.median(cloud.x_m)) if len(speed) else cloud.x_m
     pairs = {
-        "velocity_up": (velocity, up_m), "velocity_range": (velocity, range_m), "speed_up": (speed, up_m),
-        "speed_range": (speed, range_m), "speed_aside": (speed, aside_m),
-    }  # fmt: skip
+        "velocity_up": (velocity, up_m),
+        "velocity_range": (velocity, range_m),
+        "speed_up": (speed, up_m),
+        "speed_range": (speed, range_m),
+        "speed_aside": (speed, aside_m),
+    }
     row = {name: correlation(*pair) if len(speed) >= 2 * FEWEST else np.nan for name, pair in pairs.items()}
     for axis, value in {"range": range_m, "up": up_m}.items():
         row[f"{axis}_away_less_near"] = _difference(value[velocity > 0], value[velocity < 0])
@@ -191,7 +199,7 @@ def _rhythm(points: PointRecording) -> Row:
         row |= _band_shares(power, frequency, word)
         inside = (frequency >= BANDS_HZ[0][0]) & (frequency < BANDS_HZ[-1][1])
         known = power[inside].sum() > 0
-        row[f"{word}_top_hz"] = float(frequency[inside][np.argmax(power[inside])]) if known else np.nan
+        row[f"{word}_top_hz"] = frequency[inside][np.argmax(power[inside])] if known else np.nan
         row[f"{word}_regular"] = _regularity(centred, points.frame_rate_hz)
     return row
 
@@ -211,7 +219,7 @@ def _band_shares(power: np.ndarray, frequency_hz: np.ndarray, word: str) -> Row:
     row: Row = {}
     for low, high in BANDS_HZ:
         band = (frequency_hz >= low) & (frequency_hz < high)
-        row[f"{word}_{low:g}_hz"] = float(power[band].sum() / total) if total > 0 else np.nan
+        row[f"{word}_{low:g}_hz"] = power[band].sum() / total if total > 0 else np.nan
     return row
 
 
@@ -241,7 +249,7 @@ def body_features(window: PointRecording) -> Row:
         **_flicker(full[:, own & (share > SELDOM)].astype(float), float(static.sum()), window.frame_rate_hz),
         **_whereabouts(window, moving | static, "body"),
         **_whereabouts(window, static, "rest"),
-        "moving_share": float(moving.sum() / max((moving | static).sum(), 1)),
+        "moving_share": moving.sum() / max((moving | static).sum(), 1),
     }
 
 
@@ -257,9 +265,9 @@ def _flicker(cells: Float[np.ndarray, "frame cell"], static: float, rate_hz: flo
 
     variance = float(centred.var(axis=0).sum()) if cells.size else 0.0
     return {
-        "rest_cells": float(cells.shape[1]),
-        "rest_rate": float(np.log1p(static / frames)),
-        "rest_together": float(together.var() / variance) if variance > 0 else np.nan,
+        "rest_cells": cells.shape[1],
+        "rest_rate": np.log1p(static / frames),
+        "rest_together": together.var() / variance if variance > 0 else np.nan,
         **_band_shares(power(centred).sum(axis=1), frequency_hz, "flicker"),
         **_band_shares(power(together[:, None])[:, 0], frequency_hz, "flicker_together"),
     }
@@ -277,13 +285,13 @@ def _whereabouts(window: PointRecording, which: Bool[np.ndarray, " point"], word
         known = np.column_stack([known, (middle, low, high, np.median(cloud.z_m[own]))])
     several, width = known.shape[1] > 1, known[2] - known[1]
     row: Row = {
-        f"{word}_segments": float(known.shape[1]),
-        f"{word}_uneven": float(count.std() / max(count.mean(), 1e-9)),
-        f"{word}_width": float(np.median(width)) if known.size else np.nan,
-        f"{word}_width_std": float(width.std()) if several else np.nan,
-        f"{word}_way": float(abs(known[0, -1] - known[0, 0])) if several else np.nan,
+        f"{word}_segments": known.shape[1],
+        f"{word}_uneven": count.std() / max(count.mean(), 1e-9),
+        f"{word}_width": np.median(width) if known.size else np.nan,
+        f"{word}_width_std": width.std() if several else np.nan,
+        f"{word}_way": abs(known[0, -1] - known[0, 0]) if several else np.nan,
     }
     for name, value in zip(("middle", "near", "far", "up"), known, strict=True):
-        row[f"{word}_{name}_span"] = float(np.ptp(value)) if several else np.nan
-        row[f"{word}_{name}_std"] = float(value.std()) if several else np.nan
+        row[f"{word}_{name}_span"] = np.ptp(value) if several else np.nan
+        row[f"{word}_{name}_std"] = value.std() if several else np.nan
     return row

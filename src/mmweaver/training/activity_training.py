@@ -18,7 +18,7 @@ from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.datasets.activity_store import SPLITS, ActivitySet, is_activity_set
 from mmweaver.datasets.room_sequences import LabelledData, labels_of, plan_of, read_labelled
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.models.log_maps import LogMaps
+from mmweaver.models.log_maps import SPREAD_DB, LogMaps
 from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.model_card import ACTIVITY, OWN, Figures
 from mmweaver.training.trained_weights import write_recipe_weights
@@ -76,12 +76,12 @@ def activity_examples(
         raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; {_more(data)}")
     if pick is not None:
         chosen = chosen[pick(columns["label"][chosen])]
-    mark = _mark(folder, chosen)
-    maps = None if cache is None else _read(cache, mark)
+    mark = hashlib.sha256("\n".join([plan_of(folder), *map(str, chosen)]).encode()).hexdigest()
+    maps = _stored_maps(cache, mark)
     if maps is None:
         maps = compute_log_maps((data.cube(int(index)) for index in chosen), config)
         if cache is not None and keep:
-            _write(cache, maps, mark)
+            write_tensors(cache, {"doppler": maps[0], "angle": maps[1]}, {"mark": mark})
     doppler, angle = maps
     return ActivityExamples(
         doppler=doppler,
@@ -101,29 +101,17 @@ def _more(data: LabelledData) -> str:
     return "make more with: mmweaver dataset"
 
 
-def _mark(folder: Path, chosen: np.ndarray) -> str:
-    """Hash of a data set's plan and the chosen sequences."""
-    words = [plan_of(folder), *map(str, chosen)]
-    return hashlib.sha256("\n".join(words).encode()).hexdigest()
-
-
-def _read(file: Path, mark: str) -> tuple[Tensor, Tensor] | None:
-    """The maps of a file, None where they are of other sequences or damaged."""
+def _stored_maps(file: Path | None, mark: str) -> tuple[Tensor, Tensor] | None:
+    """The maps of a file, None where they are of other sequences, damaged or not there."""
     try:
-        tensors, header = read_tensors(file)
+        tensors, header = read_tensors(file) if file is not None else ({}, {})
     except InputError:
         return None
     return (tensors["doppler"], tensors["angle"]) if header.get("mark") == mark else None
 
 
-def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
-    write_tensors(file, {"doppler": maps[0], "angle": maps[1]}, {"mark": mark})
-
-
 def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
     """Augments maps (sequence, frame, channel, range, other) by random gain and cyclic shifts in time and range."""
-    from mmweaver.models.log_maps import SPREAD_DB
-
     gain = torch.from_numpy(rng.normal(0, GAIN_SPREAD_DB / SPREAD_DB, (len(doppler), 1, 1, 1, 1)).astype(np.float32))
     doppler, angle = doppler.float() + gain, angle.float() + gain
     for one, other in zip(doppler, angle, strict=True):

@@ -38,6 +38,7 @@ from mmweaver.training.trained_weights import weights_card, write_trained
 from mmweaver.training.trainer import BatchSampler, Listener, Trainer
 
 STATIC_HEADS = ("point", "face")
+STATIC_LEARNING_RATE = 5e-3  # of these two small heads, where no capture has joints
 PLACEHOLDER_M = (0.0, 2.5, -0.5)  # placeholder joints of unknown people, whose echoes are multiplied by zero
 
 
@@ -56,16 +57,11 @@ class CaptureRecipe(TrainingRecipe):
     corrects_surfaces: bool = True
 
 
-@dataclass(frozen=True, kw_only=True)
-class StaticClutterRecipe(CaptureRecipe):
-    """As CaptureRecipe, with a larger rate for the two small heads of static surfaces."""
-
-    learning_rate: float = 5e-3
-
-
 def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
     """The recipe for captures with or without joints; `given` overrides its values."""
-    return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else StaticClutterRecipe(**given)
+    if all(one.pose is None for one in captures):
+        given = {"learning_rate": STATIC_LEARNING_RATE} | given
+    return CaptureRecipe(**given)
 
 
 @dataclass(frozen=True, kw_only=True)

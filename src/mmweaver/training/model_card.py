@@ -78,23 +78,38 @@ def model_card(
     `page.unit`, one of them of OWN."""
     lines = [
         FRONT.format(
-            licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about,
+            licence=card.licence.lower(),
+            title=f"mmweaver {card.recipe}",
+            about=page.about,
             index=_index(card, figures),
         ),
-        "## Data", "", data, "", "## Scores", "", evaluated_on, "",
-        *_table(figures, page.unit), "",
-        f"The loss there is {card.validation_loss:.3f}, the least of the run.", "", "## Facts", "",
-        "| | |", "| --- | --- |",
+        "## Data",
+        "",
+        data,
+        "",
+        "## Scores",
+        "",
+        evaluated_on,
+        "",
+        *_table(figures, page.unit),
+        "",
+        f"The loss there is {card.validation_loss:.3f}, the least of the run.",
+        "",
+        "## Facts",
+        "",
+        "| | |",
+        "| --- | --- |",
         f"| file | `{file.name}`, {file.stat().st_size:,} bytes, sha256 `{sha256_of_file(file)}` |",
         f"| licence | {card.licence} |",
-        f"| data | sha256 of its plan `{card.dataset_sha256}` |" if not card.tuned_from else
-        f"| data | sha256 of the captures `{card.dataset_sha256}` |",
+        f"| data | sha256 of its plan `{card.dataset_sha256}` |"
+        if not card.tuned_from
+        else f"| data | sha256 of the captures `{card.dataset_sha256}` |",
         f"| radar | {card.radar} |",
         f"| steps | {card.steps:,}, seed {card.seed} |",
         f"| made by | mmweaver {card.mmweaver_version} |",
         *([f"| fine-tuned from | tensors of sha256 `{card.tuned_from}` |"] if card.tuned_from else []),
         *(f"| {name} | {value} |" for name, value in card.settings.items() if name not in ("name", "steps", "seed")),
-    ]  # fmt: skip
+    ]
     captures = " and the captures it was tuned on" if card.tuned_from else ""
     limits = page.limits.format(radar=card.radar)
     return "\n".join(lines) + "\n" + LIMITS.format(and_captures=captures, limits=limits)

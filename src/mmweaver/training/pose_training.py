@@ -170,9 +170,15 @@ def mean_pose_m(windows: PoseWindows) -> np.ndarray:
 
 
 def train_pose(
-    windows: PoseWindows, unseen: PoseWindows, out: Path, recipe: PoseRecipe, *,
-    start: dict[str, Tensor] | None = None, listener: Listener | None = None, **options: Any,
-) -> Trainer[PoseLearner]:  # fmt: skip
+    windows: PoseWindows,
+    unseen: PoseWindows,
+    out: Path,
+    recipe: PoseRecipe,
+    *,
+    start: dict[str, Tensor] | None = None,
+    listener: Listener | None = None,
+    **options: Any,
+) -> Trainer[PoseLearner]:
     """Trains on windows, or resumes from `out`/checkpoint.pt. The returned Trainer holds the network that is best on
     the recordings of `unseen`. `start`: weights to fine-tune. `options` go to `Trainer`.
 
@@ -188,9 +194,14 @@ def train_pose(
     else:
         network.load_state_dict(start)
     trainer = Trainer(
-        PoseLearner(network), recipe, out, is_tuning=start is not None, train=_sampler(windows, recipe, "pose batch"),
-        validation=_sampler(unseen, recipe, "pose validation"), **options,
-    )  # fmt: skip
+        PoseLearner(network),
+        recipe,
+        out,
+        is_tuning=start is not None,
+        train=_sampler(windows, recipe, "pose batch"),
+        validation=_sampler(unseen, recipe, "pose validation"),
+        **options,
+    )
     trainer.run(listener)
     return trainer
 
@@ -201,9 +212,6 @@ def _sampler(windows: PoseWindows, recipe: PoseRecipe, purpose: str) -> BatchSam
     def draw(step: int, share: Share) -> PoseBatch:
         batch = windows.batch(recipe.batch_size, stream(recipe.seed, purpose, step))
         own = slice(share[0], None, share[1])
-        return PoseBatch(
-            values=batch.values[own], is_there=batch.is_there[own], middle_m=batch.middle_m[own],
-            joints_m=batch.joints_m[own],
-        )  # fmt: skip
+        return PoseBatch(**{name: values[own] for name, values in vars(batch).items()})
 
     return draw

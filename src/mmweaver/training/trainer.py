@@ -155,9 +155,16 @@ class Trainer(Generic[LearnerT]):
             is_due = (step + 1) % recipe.validate_every == 0 or step + 1 == recipe.steps
             validation, figures = self._validate(step + 1) if is_due else (None, {})
             progress = Progress(
-                step=step + 1, steps=recipe.steps, loss=loss, terms=terms, validation=validation, figures=figures,
-                seconds=time.monotonic() - began, learning_rate=rate, gradient_norm=norm,
-            )  # fmt: skip
+                step=step + 1,
+                steps=recipe.steps,
+                loss=loss,
+                terms=terms,
+                validation=validation,
+                figures=figures,
+                seconds=time.monotonic() - began,
+                learning_rate=rate,
+                gradient_norm=norm,
+            )
             if self.log is not None:
                 self.log.row(asdict(progress))
             if self.best.since >= recipe.patience:

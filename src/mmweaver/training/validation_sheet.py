@@ -11,7 +11,7 @@ from mmweaver.metrics.map_scores import log_map_difference_db
 from mmweaver.paths.mean_power import PowerMaps
 
 SPAN_DB = 50.0
-MOST_ROWS = 3
+MAX_ROWS = 3
 MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # alternately ground truth and network
 
 
@@ -20,7 +20,7 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    count = min(len(truth.range_doppler), MOST_ROWS)
+    count = min(len(truth.range_doppler), MAX_ROWS)
     figure = Figure(figsize=(10.0, 0.5 + 2.4 * count), layout="constrained")
     canvas = FigureCanvasAgg(figure)
     grid = figure.subplots(count, len(MAPS), squeeze=False, sharey=True)
@@ -33,9 +33,15 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
             axes, own = grid[row][column], _middle(getattr(truth, name)[row])
             title, shown = ("ground truth", own) if column % 2 == 0 else (made, _middle(getattr(network, name)[row]))
             image = axes.imshow(
-                10 * np.log10(np.maximum(shown / own.max(), 1e-12)), origin="lower", aspect="auto", cmap="inferno",
-                vmin=-SPAN_DB, vmax=0, extent=(*extents[name], near, far), interpolation="nearest",
-            )  # fmt: skip
+                10 * np.log10(np.maximum(shown / own.max(), 1e-12)),
+                origin="lower",
+                aspect="auto",
+                cmap="inferno",
+                vmin=-SPAN_DB,
+                vmax=0,
+                extent=(*extents[name], near, far),
+                interpolation="nearest",
+            )
             if row == 0:
                 axes.set_title(f"{title}: {name.replace('_', '-')}", fontsize=9)
             if row == count - 1:
