@@ -21,7 +21,7 @@ from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.dsp.windows import doppler_window, doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import MIXED_POWER, cell_noise, num_sampled_bins, range_bins
-from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
+from mmweaver.fields.scatterers.fit_window import FitWindow, long_window, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
 from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values
@@ -184,7 +184,8 @@ class ScattererField(SignalField):
         """Noise power per cell of the native grid, in units of peak squared."""
         if not self.fit_window.hop:
             return self.layers.noise_power
-        window, long = doppler_window(self.config.num_loops), self.fit_window.long_window
+        window = doppler_window(self.config.num_loops)
+        long = long_window(self.config.num_loops, self.fit_window.num_frames, self.fit_window.hop)
         return self.layers.noise_power * float(
             np.sum(window**2) / window.sum() ** 2 / (np.sum(long**2) / long.sum() ** 2)
         )

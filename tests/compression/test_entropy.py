@@ -43,9 +43,12 @@ def test_integers_of_any_size():
     context = np.array([0, 1, 0, 1, 0, 1, 0, 1, 0, 1])
     writer = Encoder()
     NumberModel(2, 4).code(writer, context, numbers)
-    data = writer.to_bytes()
-    again = NumberModel(2, 4).code(Decoder(data), context, np.zeros_like(numbers))
+    huge, values = np.array([2**23 + 1, 2**26, 2**30]), np.array([2**22 + 9, 2**26 - 1, 2**29 + 0xFFFE])
+    writer.uniform(huge, values)
+    reader = Decoder(writer.to_bytes())
+    again = NumberModel(2, 4).code(reader, context, np.zeros_like(numbers))
     assert np.array_equal(again, numbers)
+    assert np.array_equal(reader.uniform(huge, np.zeros_like(huge)), values)
 
 
 def test_a_damaged_stream_terminates():

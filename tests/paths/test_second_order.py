@@ -16,7 +16,7 @@ from mmweaver.paths.paths import Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from mmweaver.paths.room_patches import roulette
-from mmweaver.paths.second_order import BOARD_AREA_M2, BOARD_REFLECTIVITY
+from mmweaver.paths.second_order import BOARD_AREA_M2, BOARD_REFLECTIVITY, radial_motion
 from mmweaver.paths.skin_scattering import LAMBERT
 from mmweaver.paths.static_paths import Propagation
 from tests.rooms import back_wall, floor, plane, scene_of, standing_person
@@ -197,3 +197,17 @@ def test_room_room_paths_come_in_both_orders():
     departures = {tuple(row) for row in np.round(paths.departure_vertex_m.numpy(), 5)}
     assert departures == {tuple(row) for row in np.round(paths.arrival_vertex_m.numpy(), 5)}
     assert (paths.length_m > 0).all()
+
+
+def test_radial_motion_is_that_of_a_length():
+    """Against differences of the length of a vector that moves quadratically in time."""
+    rng = np.random.default_rng(0)
+    motion = rng.normal(size=(5, 3, 3)) + np.array([[0.0, 2.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    step_s = 1e-3
+
+    def length_m(time_s: float) -> np.ndarray:
+        return np.linalg.norm(motion[:, 0] + motion[:, 1] * time_s + motion[:, 2] * time_s**2 / 2, axis=1)
+
+    before, now, after = (length_m(step * step_s) for step in (-1, 0, 1))
+    expected = [now, (after - before) / (2 * step_s), (before + after - 2 * now) / step_s**2]
+    np.testing.assert_allclose(radial_motion(motion), np.stack(expected, axis=1), rtol=1e-4, atol=1e-4)

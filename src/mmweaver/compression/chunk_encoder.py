@@ -60,7 +60,7 @@ from mmweaver.fields.scatterers.refinement import Damping, refined
 
 MIN_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_BELOW, REFINED_STEPS, SAME_COUNT = 0.85, 3, 0.15  # see `_kept_points`
-SAME_NOISE = 0.3  # difference of log(step) up to which the noise beside scatterers is taken for the same
+SAME_NOISE = 0.3  # difference of log(step) up to which the noise layer of a chunk with scatterers is reused
 MIN_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
 BYTES_PER_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_PER_FRAME, POINTS_OF_FEW_FRAMES = 35, (50, 250)  # of few frames: as many each, as many in all

@@ -66,7 +66,8 @@ class BitStream(ABC):
 
     def _small(self, sizes: Integers, values: Integers) -> Integers:
         wide, out = sizes > 1, np.zeros(len(sizes), np.int64)
-        out[wide] = self._code(values[wide], self._uniform, sizes[wide].astype(np.int32))
+        if wide.any():
+            out[wide] = self._code(values[wide], self._uniform, sizes[wide].astype(np.int32))
         return out
 
 

@@ -94,7 +94,7 @@ def encoded(
 
     Args:
         cube: what is stored.
-        framing: bytes of a file besides its chunks, of the frames of each.
+        framing: bytes of a file in addition to its chunks, of the frames of each.
         num_bytes: of the file at most.
         quality_db: signal-to-error ratio in active cells; either this or `num_bytes`.
         keep_noise: the same error in all cells.

@@ -32,7 +32,7 @@ class Estimate:
 
 @dataclass(frozen=True, kw_only=True)
 class CellSample:
-    """Coefficients of some cells, and the bytes of what is coded besides cells.
+    """Coefficients of some cells, and the bytes of all else that is coded.
 
     `front_bytes` hold at `front_step`; `front_values` of the numbers in them cost a bit more where the step is halved.
     """

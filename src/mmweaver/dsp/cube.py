@@ -129,7 +129,7 @@ def remove_static_adc(adc: AdcCube) -> AdcCube:
 
 def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
     """Static clutter removal on a cube: "mean_chirp" takes each frame's mean over its loops away, "mean_frame" the mean
-    over all frames, "none" gives the cube back; "auto" is mean_frame for radars of fewer than four loops a frame.
+    over all frames, "none" gives the cube back; "auto" is mean_frame for radars of fewer than four loops per frame.
 
     The mean over loops is that of the samples before the Doppler window, found from the Doppler spectrum, so it equals
     `remove_static_adc` before `radar_cube`, but for the first loop, to which a Hann window is blind: with it left

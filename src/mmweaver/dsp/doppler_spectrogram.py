@@ -20,7 +20,7 @@ from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import MIN_HANN_LOOPS, doppler_window, hann
 
 MAX_WINDOW = 64  # loops
-OVERLAP = 4  # windows a window length
+OVERLAP = 4  # windows per window length
 MIN_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
 SIGNAL_DB = 15.0  # range bins this far below the strongest still count
 FRAMES_A_BLOCK = 20
@@ -55,7 +55,7 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
     width = min(window_loops or min(config.num_loops, MAX_WINDOW), longest)
     if width < MIN_HANN_LOOPS:
         raise InputError(
-            f"radar {config.name!r} has {config.num_loops} loops a frame, too few for a micro-Doppler spectrum"
+            f"radar {config.name!r} has {config.num_loops} loops per frame, too few for a micro-Doppler spectrum"
         )
     still = adc.samples.mean(axis=(0, 1), dtype=np.complex128).astype(np.complex64) if runs_on else None
     chirps, first_bin = _moving_chirps(adc, still)  # (frame, loop, antenna, range)

@@ -4,7 +4,7 @@ In a cube whose phase is counted from the middle of the chirp and of the frame (
 point of amplitude a at range bin b and Doppler bin f gives
 
     K_r(r - b) K_d(d - f) a S[antenna]                      (the point itself)
-    - j M/(2 pi) m K_r'(r - b) K_d'(d - f) a S[antenna]     (its migration through range bins, m bins a loop)
+    - j M/(2 pi) m K_r'(r - b) K_d'(d - f) a S[antenna]     (its migration through range bins, m bins per loop)
     + q[antenna] K_r'(r - b) K_d(d - f) a S[antenna]        (an antenna off the middle is q bins nearer to it)
 
 with S = exp(-j 2 pi u.p / wavelength + j 2 pi f s + near field), s the delay of the antenna's transmitter over the
@@ -66,7 +66,7 @@ class PointResponse:
         length_s = self.num_loops * config.loop_period_s
         self.velocity_a_bin_mps = config.wavelength_m / (2 * length_s)
         self.range_a_bin_m = config.range_resolution_m
-        # migration through range bins, in bins a loop for each Doppler bin
+        # migration through range bins, in bins per loop for each Doppler bin
         self.migration = self.velocity_a_bin_mps * config.loop_period_s / self.range_a_bin_m
         self.delay = config.antenna_delay_s / length_s
         # a Doppler shift moves the beat frequency too

@@ -1,7 +1,7 @@
 """Slow time over frames: Doppler, phase and displacement where a frame has too few loops, or where motion is slow.
 
-Each frame gives one complex value a range bin and antenna, its zero-Doppler value. A movement by less than a range bin
-turns the phase of its cell by 4 pi / wavelength a metre; displacement is positive = moving away.
+Each frame gives one complex value per range bin and antenna, its zero-Doppler value. A movement by less than a range
+bin turns the phase of its cell by 4 pi / wavelength per metre; displacement is positive = moving away.
 Reference: docs/radar_primer.md, equation 7; Taubin, "Estimation of planar curves...", IEEE PAMI 13, 1991 (circle fit).
 """
 
@@ -26,7 +26,7 @@ class SlowTimeCell:
     """A range bin over the frames of a recording, its antennas combined for the strongest movement in it."""
 
     range_m: float
-    moving_power: float  # mean over the frames, less the mean value, in units of the cube squared
+    moving_power: float  # mean over the frames, minus the mean value, in units of the cube squared
     signal: Complex[np.ndarray, " frame"]
     phase_rad: Float[np.ndarray, " frame"]  # unwrapped, about the centre of its circle
     displacement_m: Float[np.ndarray, " frame"]  # relative to its mean, positive = away
@@ -34,7 +34,7 @@ class SlowTimeCell:
 
 
 def zero_doppler(cube: RadarCube) -> Complex[np.ndarray, "frame range antenna"]:
-    """One value a frame: that of zero Doppler, the windowed mean of its loops."""
+    """One value per frame: that of zero Doppler, the windowed mean of its loops."""
     return cube.values[:, :, cube.config.num_loops // 2]
 
 

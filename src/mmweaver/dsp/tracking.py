@@ -2,7 +2,7 @@
 
 The state is place and velocity on the floor plane; a cluster is its points' median place and radial velocity. Clusters
 and tracks are matched by least total distance (Hungarian method) within a gate. A track counts once it was seen in
-several frames, and ends where it has not been seen for a while: somebody who stops is lost.
+several frames, and ends where it has not been seen for a while: a person who stops is lost.
 Reference: Blackman and Popoli, "Design and Analysis of Modern Tracking Systems", 1999, ch. 3 and 6.
 """
 

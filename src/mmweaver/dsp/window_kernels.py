@@ -6,7 +6,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 STEPS_A_BIN = 32
-PHASES = 16  # pieces a bin of the table for bins one apart, accurate to 3e-6
+PHASES = 16  # pieces per bin of the table for bins one apart, accurate to 3e-6
 
 
 class WindowKernel:
@@ -35,7 +35,7 @@ class WindowKernel:
         self._pieces = torch.from_numpy(_cubics(value, slope / STEPS_A_BIN).T.copy()).to(torch.float32)
 
     def __call__(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Value and slope (a bin) at any x; differentiable."""
+        """Value and slope (per bin) at any x; differentiable."""
         periods = torch.round(x / self.num)
         folded = x - periods * self.num
         even = 1 - 2 * (periods % 2) if self._changes_sign else 1.0
@@ -50,7 +50,7 @@ class WindowKernel:
         return value * even, slope * sign
 
     def bin_values(self, first: float, num: int, place: Float[np.ndarray, "*tone"]) -> Float[np.ndarray, "2 *tone bin"]:
-        """Values and slopes (a bin) at the bins first, first + 1, ... of tones at `place` in bins, float32.
+        """Values and slopes (per bin) at the bins first, first + 1, ... of tones at `place` in bins, float32.
 
         All bins of a tone have the same place within their pieces, and these follow each other in the table.
         """

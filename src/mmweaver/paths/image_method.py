@@ -79,7 +79,7 @@ class SpecularReflector:
         return np.clip(weight, 0.0, 1.0)
 
     def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
-        """Specular reflection coefficient: the slab's, less what roughness scatters."""
+        """Specular reflection coefficient: the slab's minus what roughness scatters."""
         smooth = self._smooth(cos_incidence, frequency_hz)
         return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation)
 

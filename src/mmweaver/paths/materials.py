@@ -1,4 +1,4 @@
-"""What walls and furniture are made of, and how much of a wave they throw back.
+"""Materials of walls and furniture, and how much of a wave they reflect and transmit.
 
 Reference: ITU-R P.2040-3, table 3 (permittivity, equation 28) and equations 31, 37 (half space and slab).
 """
@@ -104,7 +104,7 @@ def transmission(material: Material, cos_incidence: Values, frequency_hz: float,
     """
     face, through, root = _slab(material, cos_incidence, frequency_hz, polarisation)
     cos_i = np.clip(np.asarray(cos_incidence, float), 0.0, 1.0)
-    # through = exp(-2jq): the slab's own phase, less that of as much air
+    # through = exp(-2jq): the slab's own phase minus that of as much air
     air = np.exp(2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * cos_i)
     once = np.exp(-2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * root)
     return (1 - face**2) * once * air / (1 - face**2 * through)

@@ -58,7 +58,7 @@ class PeoplePaths:
         return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
 
     def occluded(self, frame: int) -> np.ndarray:
-        """Which static paths somebody occludes in one frame, bool (path,)."""
+        """Which static paths a person occludes in one frame, bool (path,)."""
         found = np.zeros(len(self.room.paths), bool)
         if self.each:
             near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))

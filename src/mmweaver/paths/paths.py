@@ -211,4 +211,4 @@ class ScenePaths:
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)
-    occluded: Tensor  # (frame, static path) uint8: 1 where somebody occludes the path
+    occluded: Tensor  # (frame, static path) uint8: 1 where a person occludes the path

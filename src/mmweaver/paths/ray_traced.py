@@ -32,7 +32,7 @@ from mmweaver.paths.skin_scattering import SkinEcho
 from mmweaver.paths.static_paths import Propagation, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 
-CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
+CHUNK_FRAMES = 20  # frames of samples that exist at once, which bounds memory
 
 _SENTENCES = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
@@ -239,7 +239,7 @@ class Simulator:
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """(frame, node, 22, 3): slow time is interpolated, never held.
 
-        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        A frame that begins with the last pose continues at its velocity: held, it would be a person who freezes.
         """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
@@ -281,7 +281,7 @@ def add_micro_motion(
 
 
 def leakage_path(config: RadarConfig, impairments: Impairments) -> StaticPaths:
-    """The transmitters' direct path into the receivers, (1,); nobody can stand before it."""
+    """The transmitters' direct path into the receivers, (1,), which no one can occlude."""
     length_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
     amplitude, nowhere = np.array([leakage(config, impairments)]), np.zeros((1, 3))
     return StaticPaths.of(amplitude, length_m, nowhere, nowhere, Interaction.SPECULAR)

@@ -57,7 +57,7 @@ class RoomPatches:
         return RoomPatches(**{name: getattr(self, name)[index] for name in FIELDS})
 
     def merged(self, rng: np.random.Generator) -> "RoomPatches":
-        """One patch a voxel, with the cross section of all in it, at a place sampled among them by cross section."""
+        """One patch per voxel, with the cross section of all in it, at a place sampled among them by cross section."""
         if not len(self):
             return self
         _, voxel = np.unique(np.floor(self.place_m / VOXEL_M).astype(np.int64), axis=0, return_inverse=True)

@@ -158,7 +158,7 @@ class BodyRoomPaths:
         return (self._one_hot[:, shown] * area_m2) @ each
 
     def _radar_echoes(self, frame: int, direct_power: float) -> np.ndarray:
-        """Amplitudes (part,) of echoes that the radar's own board throws back to the body; 0 where too faint."""
+        """Amplitudes (part,) of echoes that the radar's own board returns to the body; 0 where too faint."""
         seen, body = self.seen, self.seen.body
         # skin as near as it is: within arm's reach the parts' middles would be half as strong
         sigma = body.echo.monostatic(seen.cos[frame]) * body.area_m2 * body.brightness * seen.visible[frame]

@@ -165,10 +165,10 @@ class RayTracedRoom(PreparedRoom):
 
     @cached_property
     def patches_all_round(self) -> RoomPatches:
-        """`patches`, and those beside, above, below and behind the radar, where no ray of the static paths goes.
+        """`patches`, and those left, right, above, below and behind the radar, outside the rays of the static paths.
 
-        What is there hardly returns itself, over two antenna patterns. It returns a body's wave over one, at the
-        body's own velocity, and is near.
+        Their own echoes are suppressed by two antenna patterns; a body's wave over them is by one only, appears at the
+        body's own velocity, and they are near.
         """
         rng = stream(self.micro_seed, "room", "patches all round")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)

@@ -18,7 +18,7 @@ class Visibility:
         return Visibility(skin=self.skin[chosen], over_faces=self.over_faces[chosen], occluded=self.occluded[chosen])
 
     def packed(self) -> np.ndarray:
-        """Eight bits a byte, uint8 (frame, byte)."""
+        """Eight bits per byte, uint8 (frame, byte)."""
         frames = len(self.skin)
         return np.packbits(np.concatenate([self.skin, self.over_faces.reshape(frames, -1), self.occluded], 1), axis=1)
 

@@ -20,7 +20,7 @@ class BodyAtFrames:
     motion: np.ndarray  # (frame, segment, point, 3, 3) position, velocity, acceleration of the skin; m, m/s, m/s2
     place_m: np.ndarray  # (frame, point, 3)
     normal: np.ndarray  # (frame, point, 3)
-    hulls: list[RayCaster]  # one a frame, of everybody who may occlude
+    hulls: list[RayCaster]  # one per frame, of all people who may occlude
 
     @classmethod
     def of(
@@ -73,7 +73,7 @@ def motion_through(nodes_m: np.ndarray, clock: FrameClock) -> np.ndarray:
 
 
 def hulls_of(bodies: list[ScatteringBody], joints_m: list[np.ndarray]) -> list[RayCaster]:
-    """One mesh a frame of all bodies together, posed at the frame's middle; joints (frame, node, 22, 3) of each."""
+    """One mesh per frame of all bodies together, posed at the frame's middle; joints (frame, node, 22, 3) of each."""
     posed = [body.hull(own[:, own.shape[1] // 2]) for body, own in zip(bodies, joints_m, strict=True)]
     first = np.cumsum([0, *(vertices.shape[1] for vertices, _ in posed)])
     faces = np.concatenate([faces + at for (_, faces), at in zip(posed, first, strict=False)])

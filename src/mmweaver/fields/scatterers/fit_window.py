@@ -42,7 +42,7 @@ class FitWindow:
             num_frames: of the cube.
             hop: loops from one frame to the next; 0 for separate frames.
         """
-        window = _long_window(config.num_loops, num_frames, hop) if hop else None
+        window = long_window(config.num_loops, num_frames, hop) if hop else None
         response = PointResponse(config, window)
         axes = response.axes()
         return cls(
@@ -52,15 +52,6 @@ class FitWindow:
     @property
     def num_working_frames(self) -> int:
         return 1 if self.hop else self.num_frames
-
-    @property
-    def long_window(self) -> np.ndarray:
-        """Window over the loops of a working frame (loop,)."""
-        return (
-            _long_window(self.config.num_loops, self.num_frames, self.hop)
-            if self.hop
-            else doppler_window(self.config.num_loops)
-        )
 
     def working(self, values: CubeValues) -> Tensor:
         """Values of a cube -> working frames (frame, range, doppler, antenna) in centred phase."""
@@ -87,7 +78,8 @@ def overlap_hop(cube: RadarCube) -> int:
     return hop if error <= CONSISTENT * signal else 0
 
 
-def _long_window(num_loops: int, num_frames: int, hop: int) -> np.ndarray:
+def long_window(num_loops: int, num_frames: int, hop: int) -> np.ndarray:
+    """Window over the loops of a working frame of overlapping frames (loop,)."""
     square = np.zeros(num_loops + hop * (num_frames - 1))
     for frame in range(num_frames):
         square[frame * hop :][:num_loops] += doppler_window(num_loops) ** 2
@@ -100,7 +92,7 @@ def _joined(values: np.ndarray, config: RadarConfig, hop: int) -> np.ndarray:
     window = doppler_window(num_loops)
     uncompensated = values.astype(np.complex128) * tdm_compensation(config).conj()
     windowed = np.fft.ifft(uncompensated, axis=2) * window.sum() * _doppler_phasor(num_loops).conj()[:, None]
-    long = _long_window(num_loops, num_frames, hop)
+    long = long_window(num_loops, num_frames, hop)
     total = np.zeros((values.shape[1], len(long), values.shape[3]), complex)
     for frame in range(num_frames):
         total[:, frame * hop :][:, :num_loops] += window[:, None] * windowed[frame]
@@ -111,7 +103,7 @@ def _joined(values: np.ndarray, config: RadarConfig, hop: int) -> np.ndarray:
 def _cut(frame: np.ndarray, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
     """One long frame (range, doppler, antenna) -> overlapping frames, complex64."""
     num_loops = config.num_loops
-    window, long = doppler_window(num_loops), _long_window(num_loops, num_frames, hop)
+    window, long = doppler_window(num_loops), long_window(num_loops, num_frames, hop)
     uncompensated = frame * _compensation(config, len(long)).conj()
     weighted = np.fft.ifft(uncompensated, axis=1) * long.sum() * _doppler_phasor(len(long)).conj()[:, None]
     chirps = weighted * _reciprocal(long)[:, None]
