@@ -98,7 +98,7 @@ def _piece_under(boxes: Boxes, seat_m: np.ndarray | None) -> np.ndarray | None:
     """Which boxes belong to the piece nearest to a seat; None where there is none within 0.4 m."""
     if seat_m is None:
         return None
-    distance = boxes.distance_m(np.asarray(seat_m, float)[None])[0]
+    distance = signed_distance_m(boxes, np.asarray(seat_m, float)[None])[0]
     near = int(np.argmin(distance))
     return np.array(boxes.piece) == boxes.piece[near] if distance[near] < 0.4 else None
 
