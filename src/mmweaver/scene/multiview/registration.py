@@ -12,6 +12,7 @@ from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
 from mmweaver.core.shapes import Array, Points, Rotation, Vec3
 from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.layout.gravity import Gravity
+from mmweaver.scene.layout.height_map import nearest_squares
 from mmweaver.scene.layout.room_layout import room_azimuth_rad
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.single_view import SingleView
@@ -75,11 +76,8 @@ class LevelPose:
         """Values (y, x) of this camera's map of the floor at squares of the first camera's; False outside the map."""
         x, y = np.meshgrid(x_m, y_m)
         own = self.inverse.points(np.stack([x, y, np.zeros_like(x)], axis=-1))
-        cell_m = of.x_m[1] - of.x_m[0]
-        column = np.rint((own[..., 0] - of.x_m[0]) / cell_m).astype(int)
-        row = np.rint((own[..., 1] - of.y_m[0]) / cell_m).astype(int)
-        inside = (column >= 0) & (column < len(of.x_m)) & (row >= 0) & (row < len(of.y_m))
-        return inside & values[np.where(inside, row, 0), np.where(inside, column, 0)]
+        row, column, inside = nearest_squares(own[..., 0], own[..., 1], of.x_m, of.y_m)
+        return inside & values[row, column]
 
 
 AT_FIRST, ALONE = (LevelPose(turn=np.eye(3), position_m=np.zeros(3)) for _ in range(2))  # ALONE leaves bits as they are
