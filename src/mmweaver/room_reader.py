@@ -132,7 +132,7 @@ class RoomReader:
         if is_bag(place) or is_capture or scan_kind(place) is not None:
             return self.read_capture(place)
         refuse_unread(place)
-        files = RoomFiles.in_folder(place)
+        files = RoomFiles.find(place)
         return self.read_room(files.rgb, files.depth, files.camera)
 
     def sample_room(self) -> Room:

@@ -73,7 +73,7 @@ def test_a_modelled_room_that_stands_on_a_slab_has_the_floor_that_people_stand_o
     scene.add_geometry([slab, podium])
     scene.export(str(tmp_path / "room.ply"))
     found = upright(tmp_path / "room.ply", read_mesh(tmp_path / "room.ply"))
-    assert found.of_file(np.zeros(3))[2] == pytest.approx(0, abs=0.02)
+    assert found.converted(np.zeros(3))[2] == pytest.approx(0, abs=0.02)
 
 
 def test_the_room_is_the_one_that_was_modelled(tmp_path: Path):

@@ -46,7 +46,7 @@ def joined_planes(planes: Sequence[Plane], is_whole: bool) -> Sequence[Plane]:
         if at is None:
             joined.append(plane)
         else:
-            joined[at] = _around(joined[at], plane)
+            joined[at] = _joined(joined[at], plane)
     return joined
 
 
@@ -68,7 +68,7 @@ def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
     return local.min(axis=0), local.max(axis=0)
 
 
-def _around(large: Plane, small: Plane) -> Plane:
+def _joined(large: Plane, small: Plane) -> Plane:
     low, high = _extent(large, small)
     half = np.array(large.half_size_m)
     return large.spanned(np.minimum(low, -half), np.maximum(high, half))

@@ -51,7 +51,7 @@ def read_mesh_photo(
     found = upright(path, read_mesh(path), unit=unit, up=up)
     mesh = found.mesh
     caster = RayCaster(mesh.vertices, mesh.faces)
-    view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.of_file(np.asarray(eye, float)))
+    view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.converted(np.asarray(eye, float)))
     if look_deg is not None:
         view = Viewpoint(eye_m=view.eye_m, azimuth_rad=float(np.deg2rad(look_deg)))
     classes = _classes(mesh, given)
