@@ -17,7 +17,7 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_preview
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
-from mmweaver.scene.affordances.landmarks import with_given_landmarks
+from mmweaver.scene.affordances.landmarks import add_landmarks
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Room(ShownByFacts):
         They replace the detected ones of the same kind. Raises InputError for a kind that no sentence can go to.
         """
         inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in given]}
-        return replace(self, scene=with_given_landmarks(self.scene, given), inputs=inputs)
+        return replace(self, scene=add_landmarks(self.scene, given), inputs=inputs)
 
     def with_background(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
         """The room with a background recording by your radar, nobody present: its static clutter is used as it is.

@@ -10,7 +10,6 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
 from mmweaver.generation import Room
 from mmweaver.result_folder import file_digest
-from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
@@ -18,6 +17,7 @@ from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.photo_files import RoomFiles
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
+from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
@@ -132,7 +132,7 @@ class RoomReader:
         if is_bag(place) or is_capture or scan_kind(place) is not None:
             return self.read_capture(place)
         refuse_unread(place)
-        files = RoomFiles.in_folder(place)
+        files = RoomFiles.find(place)
         return self.read_room(files.rgb, files.depth, files.camera)
 
     def sample_room(self) -> Room:
@@ -148,5 +148,5 @@ class RoomReader:
         others: Sequence[PosedPhoto] = (),
     ) -> Room:  # fmt: skip
         with stages("reconstruct the room"):
-            scene = reconstruct_together(photo, others, assumptions=assumptions)
+            scene = reconstruct(photo, others, assumptions=assumptions)
         return Room(scene=scene, inputs=inputs, seconds=stages.seconds, views=tuple(others))

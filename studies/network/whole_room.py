@@ -28,7 +28,6 @@ from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -119,7 +118,7 @@ def scanned(room: ProceduralRoom) -> Scene:
         whole.export(str(path))
         look_deg = 90.0 + float(np.degrees(room.shell.radar_yaw_rad))
         found = read_mesh_photo(path, eye=(x, z, -y), look_deg=look_deg)
-    return reconstruct_together(found.photo, found.others, assumptions=found.assumptions)
+    return reconstruct(found.photo, found.others, assumptions=found.assumptions)
 
 
 def _room_of(case: Case) -> ProceduralRoom:
@@ -128,7 +127,7 @@ def _room_of(case: Case) -> ProceduralRoom:
 
 def four_photos(case: Case, *, is_rough: bool = False) -> Scene:
     """The room of the case's photo and three further ones."""
-    return reconstruct_together(case.room.photo, further_photos(_room_of(case), case.lighting, is_rough=is_rough))
+    return reconstruct(case.room.photo, further_photos(_room_of(case), case.lighting, is_rough=is_rough))
 
 
 def scan(case: Case) -> Scene:

@@ -25,7 +25,7 @@ def sample(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_picture_is_that_of_the_bundled_room(sample: Path):
-    files = RoomFiles.in_folder(sample)
+    files = RoomFiles.find(sample)
     assert files.camera is not None
     with Image.open(files.rgb) as picture:
         np.testing.assert_array_equal(np.asarray(picture), sample_photo()[0].rgb)

@@ -1,4 +1,4 @@
-"""The page exists, has its size, and shows something in every panel."""
+"""The page exists, has its size, shows something in every panel, and no label lies over another."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,13 +14,13 @@ from mmweaver.figures.preview import draw_preview
 from tests.figures.views import breathing_view, noise_view
 
 
-def pixels(path: Path) -> np.ndarray:
+def drawn(view: FigureData, path: Path) -> np.ndarray:
+    draw_preview(view, path)
     return np.asarray(Image.open(path).convert("RGB")).astype(int)
 
 
 def test_the_page_with_photo(view: FigureData, tmp_path: Path):
-    draw_preview(view, tmp_path / "a.png")
-    page = pixels(tmp_path / "a.png")
+    page = drawn(view, tmp_path / "a.png")
     assert page.shape == (900, 1600, 3)
     colourful = np.ptp(page, axis=2) > 40
     for rows, columns in ((slice(0, 650), slice(0, 800)), (slice(0, 360), slice(800, 1200)),
@@ -29,107 +29,85 @@ def test_the_page_with_photo(view: FigureData, tmp_path: Path):
                           (slice(640, 900), slice(400, 800)), (slice(640, 900), slice(800, 1200)),
                           (slice(640, 900), slice(1200, 1600))):  # fmt: skip
         assert colourful[rows, columns].mean() > 0.001, (rows, columns)
-
-
-def test_the_photo_is_in_the_page(view: FigureData, tmp_path: Path):
-    draw_preview(view, tmp_path / "a.png")
-    grey = (pixels(tmp_path / "a.png")[:, :800] == 120).all(axis=2)
-    assert grey.sum() > 100_000
-
-
-def test_the_page_of_a_recording_has_no_photo(view: FigureData, tmp_path: Path):
-    draw_preview(replace(view, aligned=None, poses=(), motions=()), tmp_path / "a.png")
-    page = pixels(tmp_path / "a.png")
-    assert page.shape == (700, 1600, 3)
-    assert not (page == 120).all(axis=2).sum() > 1000
-
-
-@pytest.mark.parametrize("frames", [1, 2])
-def test_a_zero_cube_of_another_radar_is_drawn(frames: int, tmp_path: Path):
-    grid = CubeGrid.of(BGT60, frames)
-    cube = RadarCube(values=np.zeros(grid.shape, np.complex64), grid=grid, config=BGT60, scale=float("nan"))
-    none = np.zeros(0)
-    points = PointCloud(frame=np.zeros(0, int), x_m=none, y_m=none, z_m=none, radial_velocity_mps=none, snr_db=none)
-    draw_preview(FigureData(title="silence", cube=cube, points=points), tmp_path / "a.png")
-    assert pixels(tmp_path / "a.png").std() > 5
-
-
-def test_the_same_view_gives_the_same_bytes(view: FigureData, tmp_path: Path):
-    draw_preview(view, tmp_path / "a.png")
+    assert (page[:, :800] == 120).all(axis=2).sum() > 100_000, "the grey photo is in it"
     draw_preview(view, tmp_path / "b.png")
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
-def titles(view: FigureData) -> list[str]:
-    return [axes.get_title(loc="left") for axes in draw_preview(view, None).axes]
+def test_the_page_of_a_recording_has_no_photo_and_noise_looks_empty(view: FigureData, tmp_path: Path):
+    walk = drawn(replace(view, aligned=None, poses=(), motions=()), tmp_path / "walk.png")
+    assert walk.shape == (700, 1600, 3)
+    assert not (walk == 120).all(axis=2).sum() > 1000
+    panels = slice(90, 650), slice(60, 1080)
+    pages = [one[panels] for one in (drawn(noise_view(), tmp_path / "noise.png"), walk)]
+    yellow = [((one[..., 0] > 200) & (one[..., 2] < 120)).sum() for one in pages]
+    assert yellow[0] == 0
+    assert yellow[1] > 500
 
 
-def test_power_has_one_scale_and_a_row_one_colour_bar(view: FigureData):
-    figure = draw_preview(view, None)
+def test_a_zero_cube_of_another_radar_is_drawn(tmp_path: Path):
+    grid = CubeGrid.of(BGT60, 1)
+    cube = RadarCube(values=np.zeros(grid.shape, np.complex64), grid=grid, config=BGT60, scale=float("nan"))
+    none = np.zeros(0)
+    points = PointCloud(frame=np.zeros(0, int), x_m=none, y_m=none, z_m=none, radial_velocity_mps=none, snr_db=none)
+    assert drawn(FigureData(title="silence", cube=cube, points=points), tmp_path / "a.png").std() > 5
+
+
+FAR = replace(AWR1843, first_range_bin=0, num_range_bins=256, num_loops=8)
+SMALL = {name: replace(PRESETS[name], num_loops=8, num_range_bins=16) for name in ("iwr6843aop", "xwr1642boost")}
+WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "Points from the side")
+
+
+@pytest.mark.parametrize(
+    ("kind", "panels"),
+    [
+        ("walk", WALK),
+        ("breathing", ("Range over time, change over frames", "Displacement", "Doppler over all frames")),
+        ("one frame", ("Range profile", "Doppler profile", "Azimuth profile")),
+        ("narrow in elevation", ("Range-elevation",)),
+        ("a row of antennas", ("Points over time (no elevation)",)),
+        ("no row", ("Range over time",)),
+    ],
+)
+def test_a_page_has_its_panels_and_no_label_is_cut_off_or_over_another(
+    kind: str, panels: tuple[str, ...], view: FigureData
+):
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.text import Text
+
+    views = {
+        "walk": lambda: view, "breathing": lambda: breathing_view(view), "one frame": lambda: noise_view(FAR, 1),
+        "narrow in elevation": lambda: noise_view(SMALL["iwr6843aop"], 3),
+        "a row of antennas": lambda: noise_view(SMALL["xwr1642boost"], 2), "no row": lambda: noise_view(BGT60, 3),
+    }  # fmt: skip
+    shown = views[kind]()
+    figure = draw_preview(shown, None)
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    for panel in panels:
+        assert any(title.startswith(panel) for title in titles), panel
+    assert any(title.startswith("Range-elevation") for title in titles) == ("Range-elevation" in panels)
+    assert any("over time" in title for title in titles) == (kind != "one frame")
     limits = {
         image.get_clim()
         for axes in figure.axes for image in axes.images
         if image.get_array().ndim == 2 and axes.get_title(loc="left")
     }  # fmt: skip
-    assert limits == {(view.scale.low_db, view.scale.high_db)}
+    assert limits == {(shown.scale.low_db, shown.scale.high_db)}, "power has one scale"
     bars = [child.get_ylabel() for axes in figure.axes for child in axes.child_axes if child.get_ylabel()]
-    assert bars == ["dBm", "dBm", "radial velocity (m/s), away +"]
+    assert bars == [shown.scale.unit] * (len(bars) - 1) + ["radial velocity (m/s), away +"], "one bar per row"
 
-
-def test_noise_looks_empty(view: FigureData, tmp_path: Path):
-    draw_preview(noise_view(), tmp_path / "noise.png")
-    draw_preview(replace(view, aligned=None, poses=(), motions=()), tmp_path / "walk.png")
-    panels = slice(90, 650), slice(60, 1080)
-    page = [pixels(tmp_path / name)[panels] for name in ("noise.png", "walk.png")]
-    yellow = [((one[..., 0] > 200) & (one[..., 2] < 120)).sum() for one in page]
-    assert yellow[0] == 0
-    assert yellow[1] > 500
-
-
-def test_a_single_frame_has_profiles(view: FigureData):
-    grid = replace(view.cube.grid, frame_time_s=view.cube.grid.frame_time_s[:1])
-    cube = replace(view.cube, values=view.cube.values[:1], grid=grid)
-    shown = titles(replace(view, cube=cube, points=view.points.select(view.points.frame == 0), aligned=None, poses=()))
-    assert shown[0].startswith("Range profile")
-    assert shown[1].startswith("Doppler profile")
-    assert not any("over time" in title for title in shown)
-
-
-def test_breathing_shows_its_displacement(view: FigureData):
-    shown = titles(breathing_view(view))
-    assert "change over frames" in shown[0]
-    assert shown[1].startswith("Displacement")
-
-
-@pytest.mark.parametrize(("radar", "has_map"), [("awr1843", False), ("iwr6843aop", True), ("xwr1642boost", False)])
-def test_only_arrays_that_resolve_elevation_have_a_map_of_it(radar: str, has_map: bool):
-    config = replace(PRESETS[radar], num_loops=8, num_range_bins=16)
-    shown = titles(noise_view(config, 2))
-    assert any(title.startswith("Range-elevation") for title in shown) == has_map
-    assert ("Points over time (no elevation)" in shown) == (radar == "xwr1642boost")
-
-
-def test_no_label_is_cut_off_or_over_another(view: FigureData):
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.text import Text
-
-    far = replace(AWR1843, first_range_bin=0, num_range_bins=256, num_loops=8)
-    aop = replace(PRESETS["iwr6843aop"], num_loops=8)
-    for shown in (view, breathing_view(view), noise_view(BGT60, 3), noise_view(far, 1), noise_view(aop, 3)):
-        figure = draw_preview(shown, None)
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        boxes = []
-        for axes in (one for whole in figure.axes for one in (whole, *whole.child_axes)):
-            titled = [text for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
-            for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *titled):
-                if text.get_text():
-                    boxes.append((text.get_text(), text.get_window_extent(canvas.get_renderer())))
-        for name, box in boxes:
-            inside = box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.width and box.y1 <= figure.bbox.height
-            assert inside, (shown.title, name, box)
-        for at, (name, box) in enumerate(boxes):
-            for other, place in boxes[at + 1 :]:
-                across = min(box.x1, place.x1) - max(box.x0, place.x0)
-                up = min(box.y1, place.y1) - max(box.y0, place.y0)
-                assert min(across, up) < 2, (shown.title, name, other)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    boxes = []
+    for axes in (one for whole in figure.axes for one in (whole, *whole.child_axes)):
+        titled = [text for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
+        for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *titled):
+            if text.get_text():
+                boxes.append((text.get_text(), text.get_window_extent(canvas.get_renderer())))
+    for at, (name, box) in enumerate(boxes):
+        inside = box.x0 >= 0 and box.y0 >= 0 and box.x1 <= figure.bbox.width and box.y1 <= figure.bbox.height
+        assert inside, (name, box)
+        for other, place in boxes[at + 1 :]:
+            across = min(box.x1, place.x1) - max(box.x0, place.x0)
+            up = min(box.y1, place.y1) - max(box.y0, place.y0)
+            assert min(across, up) < 2, (name, other)

@@ -117,13 +117,13 @@ def test_depth_that_lies_as_the_colours_did_is_turned_with_them(files: Files, or
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (np.zeros((72, 96), np.uint16), "every depth value is zero"),
+        (np.zeros((72, 96), np.uint16), "every depth value"),
         (np.full((72, 96), 25000, np.uint16), "set depth_unit_m to 0.0001"),
         (np.full((72, 96), 120, np.uint8), "8 bits"),
         (np.where(np.arange(96) < 5, DEPTH, 0).astype(np.uint16), "5.2 %"),
         (np.full((70, 96), 2500, np.uint16), "aligned"),
-        (np.full((72, 96), np.nan), "is nan"),
-        (np.full((72, 96), -2.0), "is negative"),
+        (np.full((72, 96), np.nan), "every depth value"),
+        (np.full((72, 96), -2.0), "every depth value"),
         (np.full((72, 96), 2500.0), "multiply it by 0.001"),
         (np.full((72, 96, 1), 2.0), "shape"),
         (np.full((72, 96), 2 + 0j), "complex128"),

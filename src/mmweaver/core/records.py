@@ -4,7 +4,7 @@ Frame of reference for every position: the radar's. x right, y away from the rad
 origin at the radar. Radial velocity positive = moving away.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -223,7 +223,7 @@ class Plane:
         u, v = self.half_size_m[0] * self.axis_u, self.half_size_m[1] * self.axis_v
         return np.stack([self.centre_m - u - v, self.centre_m + u - v, self.centre_m + u + v, self.centre_m - u + v])
 
-    def spanned(self, low_m: Sequence[float], high_m: Sequence[float]) -> "Plane":
+    def spanned(self, low_m: np.ndarray | tuple[float, float], high_m: np.ndarray | tuple[float, float]) -> "Plane":
         """The rectangle from `low_m` to `high_m`, (2,) along axis_u and axis_v, from this one's centre."""
         (left, below), (right, above) = low_m, high_m
         centre_m = self.centre_m + (left + right) / 2 * self.axis_u + (below + above) / 2 * self.axis_v

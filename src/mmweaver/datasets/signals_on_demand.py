@@ -32,8 +32,8 @@ from mmweaver.core.version import __version__
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_sequence
 from mmweaver.datasets.zarr_arrays import put_array, put_photo, put_sequences, stored_photo
 from mmweaver.methods import METHODS, Method
-from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.reconstruction import reconstruct
 
 GEOMETRY = "geometry"
 POWER_TOLERANCE_DB = 0.2  # processors differ by less than 0.01 dB, other people or weights by more than 1
@@ -163,7 +163,7 @@ class SignalsOnDemand:
         with self.files.reading():
             group = self._group.group(f"room_{room}")
             others = [_view(group.group(f"view_{number + 1}")) for number in range(group.attr("views", int))]
-            return reconstruct_together(stored_photo(group), others)
+            return reconstruct(stored_photo(group), others)
 
 
 def _view(group: ZarrFolder) -> PosedPhoto:

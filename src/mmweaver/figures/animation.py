@@ -116,12 +116,12 @@ def _range_azimuth(axes: "Axes", view: FigureData) -> Update:
         for index in range(len(people))
     ]
 
-    def with_dots(index: int) -> list[Any]:
+    def update_all(index: int) -> list[Any]:
         for dot, person in zip(dots, people, strict=True):
             dot.set_data(person.joints_m[index, :, 0], person.joints_m[index, :, 1])
         return [*update(index), *dots]
 
-    return with_dots
+    return update_all
 
 
 def _map(axes: "Axes", view: FigureData, power_db: np.ndarray, extent: Extent, words: tuple[str, str, str]) -> Update:

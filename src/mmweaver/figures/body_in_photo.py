@@ -74,14 +74,14 @@ class BodyPainter:
         surface_m = self._surface_m.reshape(-1, 3)
         light = np.ones(len(surface_m), np.float32)
         for body in bodies:
-            near = np.flatnonzero(_within(surface_m, body.ends_m, SHADOW_REACH_M))
+            near = np.flatnonzero(_is_near(surface_m, body.ends_m, SHADOW_REACH_M))
             light[near] = np.minimum(light[near], _unblocked(surface_m[near], body))
         coarse = Image.fromarray(np.rint(255 * light).astype(np.uint8).reshape(self._surface_m.shape[:2]))
         fine = np.asarray(coarse.resize(self._size[::-1], Image.Resampling.BILINEAR), np.uint16)
         picture[:] = picture * fine[:, :, None] // 255
 
 
-def _within(points_m: Points, ends_m: Float[Array, "capsule 2 3"], reach_m: float) -> Bool[Array, " point"]:
+def _is_near(points_m: Points, ends_m: Float[Array, "capsule 2 3"], reach_m: float) -> Bool[Array, " point"]:
     """Which points lie within a distance of the box about the capsules."""
     low, high = ends_m.min(axis=(0, 1)) - reach_m, ends_m.max(axis=(0, 1)) + reach_m
     return np.all((points_m > low) & (points_m < high), axis=1)

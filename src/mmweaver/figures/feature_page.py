@@ -44,10 +44,10 @@ def features_of(cube: RadarCube, names: Sequence[str] | None) -> list[str]:
     return list(names)
 
 
-def frames_of(cube: RadarCube, frames: Sequence[int] | None, count: int = 4) -> list[int]:
-    """The frames that are drawn; by default evenly spaced ones. Raises InputError for frames that there are not."""
+def frames_of(cube: RadarCube, frames: Sequence[int] | None) -> list[int]:
+    """The frames that are drawn; by default four, evenly spaced. Raises InputError for frames that there are not."""
     if frames is None:
-        return evenly_spaced(len(cube.values), count).tolist()
+        return evenly_spaced(len(cube.values), 4).tolist()
     if not 1 <= len(frames) <= MAX_FRAMES:
         raise InputError(f"give 1 to {MAX_FRAMES} frames, not {len(frames)}")
     for frame in frames:

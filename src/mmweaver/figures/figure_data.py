@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.shapes import Array, PerFrame
-from mmweaver.core.virtual_array import has_elevation, resolves_elevation
+from mmweaver.core.virtual_array import has_elevation
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.doppler_spectrogram import MicroDoppler, micro_doppler_of_cube
 from mmweaver.dsp.slow_time import MIN_FRAMES, SlowTimeCell, moving_cells, slow_time_doppler, zero_doppler
@@ -120,16 +120,6 @@ class FigureData:
         """The decibels of every picture of this cube."""
         return PowerScale.of(float(self.range_doppler.max(initial=0.0)), self._noise, self.cube.scale)
 
-    @property
-    def has_elevation(self) -> bool:
-        """Whether the points have a height."""
-        return has_elevation(self.cube.config)
-
-    @property
-    def resolves_elevation(self) -> bool:
-        """Whether the array's beam is narrow enough for a map over elevation."""
-        return resolves_elevation(self.cube.config)
-
     @cached_property
     def micro_doppler(self) -> MicroDoppler:
         """Spectrogram over the chirps of each frame, clutter removed, of the strongest range bin at each time."""
@@ -148,7 +138,7 @@ class FigureData:
     @property
     def is_below_floor(self) -> Bool[Array, " point"]:
         """Of the shown points: multipath over the floor, or noise, of a radar whose floor is known."""
-        if self.aligned is None or not self.has_elevation:
+        if self.aligned is None or not has_elevation(self.cube.config):
             return np.zeros(len(self.shown_points.frame), bool)
         return self.shown_points.z_m < self.aligned.floor_z_m - BELOW_FLOOR_M
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
+from mmweaver.core.virtual_array import has_elevation
 from mmweaver.dsp.doppler_spectrogram import MicroDoppler
 from mmweaver.dsp.slow_time import SlowTimeCell
 from mmweaver.figures.body_in_photo import BodyPainter
@@ -254,7 +255,7 @@ def draw_points_top(axes: "Axes", view: FigureData) -> None:
 def draw_points_side(axes: "Axes", view: FigureData) -> None:
     """All detections from the side; over time or velocity, where the array has no elevation."""
     points, reach_m = view.shown_points, view.range_edges_m[1]
-    if not view.has_elevation:
+    if not has_elevation(view.cube.config):
         if view.is_single:
             across, limits, words = points.radial_velocity_mps, view.velocity_edges_mps, ("by velocity", VELOCITY)
         else:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmweaver.core.virtual_array import resolves_elevation
 from mmweaver.figures import panels
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.theme import page
@@ -63,7 +64,7 @@ def _power_rows(view: FigureData) -> "list[list[Panel]]":
         if view.is_slow:
             rows = [[panels.draw_range_time, _draw_displacement], [_draw_slow_doppler]]
         other = panels.draw_range_profile
-    rows[1].append(panels.draw_elevation if view.resolves_elevation else other)
+    rows[1].append(panels.draw_elevation if resolves_elevation(view.cube.config) else other)
     return rows if view.aligned is not None else [rows[0] + rows[1]]
 
 

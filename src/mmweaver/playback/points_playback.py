@@ -5,17 +5,18 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.records import PointCloud
+from mmweaver.figures.theme import evenly_spaced
 from mmweaver.playback.sequence import MAX_FRAMES, Playback, as_bytes
 
 _RANGES, _VELOCITIES, _AZIMUTHS = 64, 33, 61
 _UNKNOWN_DB = 10.0  # of points without an SNR
-_LEAST_FAR_M, _LEAST_FAST_MPS = 1.0, 0.5  # ends of axes of still or near points
+_MIN_FAR_M, _MIN_FAST_MPS = 1.0, 0.5  # ends of axes of still or near points
 
 
 def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, meta: dict[str, Any]) -> Playback:
     """The arrays of `Playback`; a cell holds the SNR of its strongest point in decibels, 0 where there is none."""
     count = int(points.frame.max()) + 1 if len(points.frame) else 1
-    shown = np.unique(np.linspace(0, count - 1, min(count, MAX_FRAMES)).round().astype(int))
+    shown = evenly_spaced(count, MAX_FRAMES)
     place_of = np.full(count, -1)
     place_of[shown] = np.arange(len(shown))
     points = points.select(place_of[points.frame] >= 0)
@@ -24,8 +25,8 @@ def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, me
     velocity = np.nan_to_num(points.radial_velocity_mps)
     xyz_m = np.stack([points.x_m, points.y_m, points.z_m], axis=-1)
     range_m, azimuth_rad = np.linalg.norm(xyz_m, axis=-1), np.arctan2(points.x_m, points.y_m)
-    far_m = _end(np.percentile(range_m, 99) if len(range_m) else 0.0, _LEAST_FAR_M)
-    fast_mps = _end(np.abs(velocity).max(initial=0.0), _LEAST_FAST_MPS)
+    far_m = _end(np.percentile(range_m, 99) if len(range_m) else 0.0, _MIN_FAR_M)
+    fast_mps = _end(np.abs(velocity).max(initial=0.0), _MIN_FAST_MPS)
     edges = {
         "range": (0.0, far_m, _RANGES), "doppler": (-fast_mps, fast_mps, _VELOCITIES),
         "azimuth": (-np.pi / 2, np.pi / 2, _AZIMUTHS),

@@ -11,6 +11,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import BONES, joint
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
+from mmweaver.figures.theme import evenly_spaced
 from mmweaver.geometry.body_capsules import CAPSULES, pose_capsules, radii_m
 
 MAX_FRAMES = 600  # longer sequences are thinned out
@@ -43,7 +44,7 @@ def make_playback(
 ) -> Playback:
     """A sequence as the page plays it; `meta` is the content of its meta.json, `scale_db` a scale to keep to."""
     count = len(cube.grid.frame_time_s)
-    shown = np.unique(np.linspace(0, count - 1, min(count, MAX_FRAMES)).round().astype(int))
+    shown = evenly_spaced(count, MAX_FRAMES)
     time_s = cube.grid.frame_time_s[shown]
     cube = replace(cube, values=cube.values[shown], grid=replace(cube.grid, frame_time_s=time_s))
     maps, azimuth_rad = _maps(cube)

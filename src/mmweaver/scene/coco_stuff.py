@@ -17,12 +17,12 @@ SEGMENTER_GROUPS: tuple[tuple[str, ...], ...] = tuple(map(tuple, _TABLES["segmen
 CLASS_OF_MATERIAL: dict[str, str] = _TABLES["class_of_material"]
 
 
-def _by_name(key: str) -> dict[str, str]:
+def _inverted(key: str) -> dict[str, str]:
     """What a table says of each class."""
     return {name: value for value, names in _TABLES[key].items() for name in names}
 
 
-MATERIAL, LANDMARKS, ALIASES = map(_by_name, ("materials", "landmarks", "aliases"))
+MATERIAL, LANDMARKS, ALIASES = map(_inverted, ("materials", "landmarks", "aliases"))
 
 
 def coco_class(label: str) -> str | None:

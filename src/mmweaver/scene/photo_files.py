@@ -22,7 +22,7 @@ class RoomFiles:
     camera: Path | None
 
     @classmethod
-    def in_folder(cls, folder: Path) -> "RoomFiles":
+    def find(cls, folder: Path) -> "RoomFiles":
         """The files of a folder, by name. Raises InputError where the photo or the depth is missing."""
         check_exists(folder, f"a folder with {COLOUR[0]} and {DEPTH[0]}")
         rgb = next((folder / name for name in COLOUR if (folder / name).is_file()), None)

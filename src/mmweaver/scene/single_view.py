@@ -1,6 +1,6 @@
 """What one photo shows of a room, in the level frame of its own camera: geometry, places and materials."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from mmweaver.scene.layout.surface_materials import (
     MATERIAL_NAMES,
     apply_class_materials,
     cell_materials,
-    replace_material,
 )
 from mmweaver.scene.layout.surfaces import Surface, floor_cells
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_grid
@@ -86,7 +85,7 @@ def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SingleView:
         material, surface_names = apply_class_materials(
             material, surface_names, grid.class_index, photo.classes.names, surfaces, is_floor
         )
-    planes = tuple(replace_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True))
+    planes = tuple(replace(surface.plane, material=name) for surface, name in zip(surfaces, surface_names, strict=True))
     return SingleView(
         view=view, grid=grid, room=room, is_floor=is_floor, height_map=height_map, free_space=free_space, seats=seats,
         material=material, planes=planes, assumptions=(*pane_assumptions, *gravity.assumptions),

@@ -20,7 +20,7 @@ class OfferedRooms:
             name = folder.resolve().name
             while name in self._files or name == DEMO:
                 name += "-2"
-            self._files[name] = RoomFiles.in_folder(folder)
+            self._files[name] = RoomFiles.find(folder)
         self._read: dict[str, Room] = {}
         self._lock = Lock()
 

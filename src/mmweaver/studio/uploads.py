@@ -105,7 +105,7 @@ def _without_wrappers(folder: Path) -> Path:
 def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, Any]:
     """Files of a room by their names; a depth map is one that says depth, or is .npy or .tif."""
     if any(name in files for name in COLOUR) and any(name in files for name in DEPTH):
-        return _photographed(session, RoomFiles.in_folder(folder))
+        return _photographed(session, RoomFiles.find(folder))
     depth = [one for name, one in files.items() if "depth" in name or one.suffix.lower() in DEPTHS]
     colour = [one for one in files.values() if one not in depth and one.suffix.lower() in PICTURES]
     if not colour:

@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import LANDMARK_KINDS, Scene
 from mmweaver.motion.language.lexicon import TARGETS
-from mmweaver.scene.affordances.landmarks import with_given_landmarks
+from mmweaver.scene.affordances.landmarks import add_landmarks
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
 
@@ -50,7 +50,7 @@ def test_approaches_are_free_and_face_the_landmark(office: ProceduralRoom):
 
 def test_given_landmarks_replace_those_found(office: ProceduralRoom):
     scene = reconstruct(office.photo("lamps"))
-    given = with_given_landmarks(scene, [("door", (0.2, 2.0))])
+    given = add_landmarks(scene, [("door", (0.2, 2.0))])
     (door,) = [mark for mark in given.landmarks if mark.kind == "door"]
     assert door.position_m[:2] == pytest.approx([0.2, 2.0])
     assert np.hypot(*(np.array(door.approach_m) - [0.2, 2.0])) < 1.2
@@ -59,9 +59,9 @@ def test_given_landmarks_replace_those_found(office: ProceduralRoom):
     )
     assert "given by the user, not detected" in given.assumptions[-1]
     with pytest.raises(InputError, match=r"'swing'.*door, window"):
-        with_given_landmarks(scene, [("swing", (0.2, 2.0))])
+        add_landmarks(scene, [("swing", (0.2, 2.0))])
     with pytest.raises(InputError, match=r"0\.2,-2"):
-        with_given_landmarks(scene, [("door", (0.2, -2.0))])
+        add_landmarks(scene, [("door", (0.2, -2.0))])
 
 
 def test_whatever_a_sentence_can_go_to_can_be_given():

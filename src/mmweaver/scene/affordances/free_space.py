@@ -26,7 +26,7 @@ def find_free_space(height_map: HeightMap) -> FreeSpace:
     """
     distance_m = np.hypot(height_map.x_m[None, :], height_map.y_m[:, None])
     is_open = height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
-    is_free = is_open & ~height_map.is_blocked & ~behind_edges(height_map) & (distance_m >= MIN_DISTANCE_M)
+    is_free = is_open & ~height_map.is_blocked & ~hidden_by_tables(height_map) & (distance_m >= MIN_DISTANCE_M)
     return FreeSpace(
         x_m=height_map.x_m,
         y_m=height_map.y_m,
@@ -35,7 +35,7 @@ def find_free_space(height_map: HeightMap) -> FreeSpace:
     )
 
 
-def behind_edges(height_map: HeightMap) -> GridMask:
+def hidden_by_tables(height_map: HeightMap) -> GridMask:
     """Squares up to a table's depth behind edges at the camera's own height, and behind tables' rims above it."""
     above_camera_m = np.nan_to_num(height_map.top_m, nan=-9.0) + height_map.floor_z_m
     is_table = (height_map.top_m > _TABLE_HEIGHTS_M[0]) & (height_map.top_m < _TABLE_HEIGHTS_M[1])
@@ -90,7 +90,7 @@ def find_assumed_floor(
     behind = passes & (distance_m < farthest_m[bearing] - _BODY_M)
     before = distance_m < nearest_m[bearing] - _BODY_M
     possible = (behind | before) & (distance_m >= MIN_DISTANCE_M) & _is_inside(height_map, walls)
-    return possible & ~is_free & ~height_map.is_blocked & ~behind_edges(height_map)
+    return possible & ~is_free & ~height_map.is_blocked & ~hidden_by_tables(height_map)
 
 
 def _extent_m(view: AlignedPhoto) -> tuple[Float[Array, " bearing"], Float[Array, " bearing"]]:

@@ -45,7 +45,7 @@ def find_landmarks(
     return tuple(sorted(found, key=lambda mark: (mark.kind, float(np.hypot(*mark.position_m[:2])))))
 
 
-def with_given_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]) -> Scene:
+def add_landmarks(scene: Scene, given: Sequence[tuple[str, tuple[float, float]]]) -> Scene:
     """The scene with landmarks (kind, (x, y) in metres) given by the user; they replace those found of their kinds.
 
     Raises InputError for a kind that no sentence knows, and for a place behind or far from the radar.
@@ -81,7 +81,7 @@ def _horizontal_tops(view: AlignedPhoto, height_map: HeightMap, seats: tuple[Sea
     found = [
         _candidate("bed", squares, height_map) for squares in components if squares.sum() * CELL_M**2 >= _MIN_BED_M2
     ]
-    taken = beds | _near_seats(height_map, seats)
+    taken = beds | _seat_squares(height_map, seats)
     for height_m in np.arange(_TABLE_M[0], _COUNTER_M[1], 0.02):
         at_height = (np.abs(height_map.top_m - height_m) < _HEIGHT_TOLERANCE_M) & ~taken
         # Cups and noise leave gaps; legs and rails are narrower than a top.
@@ -135,7 +135,7 @@ def _solid_share(squares: GridMask, height_m: float, view: AlignedPhoto, height_
     return num_solid / max(len(bins), 1)
 
 
-def _near_seats(height_map: HeightMap, seats: tuple[Seat, ...]) -> GridMask:
+def _seat_squares(height_map: HeightMap, seats: tuple[Seat, ...]) -> GridMask:
     """Squares at the height of a seat and near it."""
     x, y = np.meshgrid(height_map.x_m, height_map.y_m)
     near = np.zeros(x.shape, bool)

@@ -61,7 +61,7 @@ class _Candidates:
     def select(self, chosen: CandidateMask) -> "_Candidates":
         return _Candidates(**{name: values[chosen] for name, values in vars(self).items()})
 
-    def at(self, height_map: HeightMap, offsets: Offsets) -> "_Squares":
+    def squares(self, height_map: HeightMap, offsets: Offsets) -> "_Squares":
         """The squares of the map at the offsets from each place."""
         forward, left = offsets[..., 0], offsets[..., 1]
         cosine, sine = np.cos(self.facing_rad)[:, None, None], np.sin(self.facing_rad)[:, None, None]
@@ -94,7 +94,7 @@ class _Squares:
         level = np.argmin(np.abs(SEAT_LEVELS_M - (self.seat_m[:, 0] - _SAG_M)), axis=1)[:, None, None]
         return self.inside & self.height_map.is_clear_at[level, self.row, self.column]
 
-    def of(self, mask: GridMask) -> SampleMask:
+    def look_up(self, mask: GridMask) -> SampleMask:
         """A mask of the map there; False outside the map."""
         return self.inside & mask[self.row, self.column]
 
@@ -122,7 +122,7 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
     if len(candidates.x_m) == 0:
         return ()
     # 1. The surface is flat where one sits.
-    seat_squares = candidates.at(height_map, _ON_SEAT)
+    seat_squares = candidates.squares(height_map, _ON_SEAT)
     on_seat = seat_squares.height_m
     is_flat = np.abs(on_seat) < _FLATNESS_M
     # A lower surface counts against a seat only where the seat would have been visible: not below a chair seen edge-on.
@@ -130,7 +130,7 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
     labelled = bed_squares(height_map)
     if evidence is not None:  # on a bed the duvet may be called something that is no furniture
         labelled = (evidence > 0) | (labelled & (evidence >= 0))
-    is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
+    is_labelled = candidates.squares(height_map, np.zeros((1, 1, 2))).look_up(labelled)[:, 0, 0]
     on_stool, on_bench = (_is_on(kind, height_map, is_seat_height, candidates) for kind in (_is_stool, _is_plank))
     inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
     is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
@@ -145,10 +145,10 @@ def _seats_of(height_map: HeightMap, evidence: GridClass | None) -> tuple[Seat, 
     # 2. A backrest stands behind, and legs have room in front: nothing above the seat, except a table top that is high
     # enough for the thighs.
     back_share = _back_share(height_map, candidates)
-    front_squares = candidates.at(height_map, _IN_FRONT)
+    front_squares = candidates.squares(height_map, _IN_FRONT)
     front = front_squares.height_m
     obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
-    is_drop = (front < -0.12) | (np.isnan(front) & front_squares.of(_is_open(height_map)))
+    is_drop = (front < -0.12) | (np.isnan(front) & front_squares.look_up(_is_open(height_map)))
     drop, under_table = is_drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
     # 3. Score, and keep what is a seat with a backrest, a stool, or labelled as a seat (one sits at its edge).
     score = 2 * back_share + (0.5 + 1.5 * is_flat_stool) * flat_share + drop + 0.7 * under_table - 2 * obstructed
@@ -253,13 +253,13 @@ def _candidates(height_map: HeightMap, squares: GridMask) -> _Candidates:
 
 def _back_share(height_map: HeightMap, candidates: _Candidates) -> PerCandidate:
     """Share of the width behind the sitter at which a backrest stands."""
-    squares = candidates.at(height_map, _BEHIND)
+    squares = candidates.squares(height_map, _BEHIND)
     behind = squares.height_m
     is_back = (behind > _BACK_M[0]) & (behind < _BACK_M[1])
     # An armrest is lower than a backrest and counts for less.
     highest = np.where(is_back, behind, 0.0).max(axis=1)
     share = np.minimum(highest / _FULL_BACK_M, 1.0).mean(axis=1)
-    is_back &= ~squares.of(table_squares(height_map))
+    is_back &= ~squares.look_up(table_squares(height_map))
     # A table top is as high as a low backrest, but horizontal: a backrest is thin, or slopes.
     height = np.where(is_back, behind, -1.0)
     quarter = height[0].size // 4
@@ -324,7 +324,7 @@ def _best_seats(height_map: HeightMap, candidates: _Candidates, score: PerCandid
         size_m = _size_m(height_map, one)
         if min(size_m) < _MIN_SIZE_M:
             continue
-        heights = one.at(height_map, _ON_SEAT).height_m[0]
+        heights = one.squares(height_map, _ON_SEAT).height_m[0]
         height_m = one.height_m[0] + float(np.median(heights[np.abs(heights) < _FLATNESS_M]))
         seats.append(
             Seat(
@@ -342,7 +342,7 @@ def _size_m(height_map: HeightMap, one: _Candidates) -> tuple[float, float]:
     lengths = []
     for forward, left in ((0, 1), (0, -1), (1, 0), (-1, 0)):
         offsets = np.stack([forward * reach_m, left * reach_m], axis=-1)[None]
-        on_seat = np.abs(one.at(height_map, offsets).height_m[0, 0]) < _FLATNESS_M
+        on_seat = np.abs(one.squares(height_map, offsets).height_m[0, 0]) < _FLATNESS_M
         # One missing square is a gap in the measurement, two are the edge.
         is_edge = ~(on_seat | np.append(on_seat[1:], False))
         lengths.append(reach_m[np.argmax(is_edge)] if is_edge.any() else reach_m[-1])

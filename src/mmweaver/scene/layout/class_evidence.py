@@ -95,9 +95,7 @@ def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[t
 def _intersection_with_walls(rays: Points, planes: tuple[Plane, ...]) -> Points:
     """Where rays from the radar first meet a wall, metres; nan where they meet none."""
     nearest = np.full(len(rays), np.inf)
-    for wall in planes:
-        if wall.kind != "wall":
-            continue
+    for wall in (plane for plane in planes if plane.kind == "wall"):
         along = rays @ wall.normal
         distance = float(wall.normal @ wall.centre_m) / np.where(np.abs(along) < 1e-6, np.nan, along)
         offset_m = np.abs((rays * distance[:, None] - wall.centre_m) @ wall.axis_u)

@@ -64,7 +64,7 @@ def find_openings(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[Landmar
         windows = [
             span
             for span in _spans(image, _WINDOW_BAND_M, _WINDOW_WIDTH_M)
-            if _share(image, span, _SILL_BAND_M) < 0.35 and not any(span[0] < b and a < span[1] for a, b in doors)
+            if _shares(image, span, _SILL_BAND_M)[1] < 0.35 and not any(span[0] < b and a < span[1] for a, b in doors)
         ]
         found += [_opening("door", span, image, wall, view.floor_z_m) for span in doors]
         found += [_opening("window", span, image, wall, view.floor_z_m) for span in windows]
@@ -118,11 +118,12 @@ def _spans(image: _WallImage, band_m: BandM, width_m: tuple[float, float]) -> li
 
 def _is_door(image: _WallImage, span: Span) -> bool:
     """Differs over its whole height, down to the floor where that is visible, and ends below the lintel."""
-    if _share(image, span, _DOOR_BAND_M) < _MIN_DOOR_SHARE or _share(image, span, _LINTEL_M) > _MAX_LINTEL_SHARE:
+    (band_seen, band), (foot_seen, foot), (_, lintel) = (
+        _shares(image, span, part) for part in (_DOOR_BAND_M, _DOOR_FOOT_M, _LINTEL_M)
+    )
+    if band < _MIN_DOOR_SHARE or lintel > _MAX_LINTEL_SHARE:
         return False
-    if _visible_share(image, span, _DOOR_FOOT_M) >= _MIN_FOOT_VISIBLE:
-        return _share(image, span, _DOOR_FOOT_M) >= _MIN_FOOT_SHARE
-    return _visible_share(image, span, _DOOR_BAND_M) >= _MIN_DOOR_VISIBLE
+    return foot >= _MIN_FOOT_SHARE if foot_seen >= _MIN_FOOT_VISIBLE else band_seen >= _MIN_DOOR_VISIBLE
 
 
 def _rows(image: _WallImage, band_m: BandM) -> Bool[Array, " height"]:
@@ -130,15 +131,11 @@ def _rows(image: _WallImage, band_m: BandM) -> Bool[Array, " height"]:
     return (image.height_m > band_m[0]) & (image.height_m < band_m[1])
 
 
-def _visible_share(image: _WallImage, span: Span, band_m: BandM) -> float:
-    return float(image.is_visible[_rows(image, band_m)][:, slice(*span)].mean())
-
-
-def _share(image: _WallImage, span: Span, band_m: BandM) -> float:
-    """Of the visible squares of a span and band, the share that differs from the wall."""
-    rows, columns = _rows(image, band_m), slice(*span)
-    visible = image.is_visible[rows][:, columns]
-    return float((image.differs[rows][:, columns] & visible).sum() / max(int(visible.sum()), 1))
+def _shares(image: _WallImage, span: Span, band_m: BandM) -> tuple[float, float]:
+    """Of the squares of a span and band, the share that is visible, and of these the share that differs."""
+    part = _rows(image, band_m), slice(*span)
+    visible = image.is_visible[part]
+    return float(visible.mean()), float((image.differs[part] & visible).sum() / max(int(visible.sum()), 1))
 
 
 def _opening(kind: str, span: Span, image: _WallImage, wall: Plane, floor_z_m: float) -> LandmarkCandidate:

@@ -112,14 +112,8 @@ def _continuous_faces(points: GridVectors, grid: AlignedGrid, surface_of: GridIn
     """Two triangles per square of four cells, those that bridge a depth discontinuity or graze the view left out."""
     rows, columns = surface_of.shape
     index = np.arange(rows * columns).reshape(rows, columns)
-    top_left, top_right = index[:-1, :-1].ravel(), index[:-1, 1:].ravel()
-    bottom_left, bottom_right = index[1:, :-1].ravel(), index[1:, 1:].ravel()
-    faces = np.concatenate(
-        [
-            np.stack([top_left, bottom_left, bottom_right], axis=1),
-            np.stack([top_left, bottom_right, top_right], axis=1),
-        ]
-    )
+    a, b, c, d = (part.ravel() for part in (index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]))
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     joined = np.ones(len(faces), bool)
     for a, b in ((0, 1), (1, 2), (2, 0)):
         joined &= _joined(points, grid, surface_of, faces[:, a], faces[:, b])

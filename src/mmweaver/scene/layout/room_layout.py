@@ -4,6 +4,7 @@ A radar's beam is wider than a camera's view. Its strongest echo of a wall is th
 perpendicular, which for the side walls lies outside the picture. Reference: docs/decisions/walls.md.
 """
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -185,23 +186,18 @@ def _cell_area_m2(grid: AlignedGrid, is_cell: GridBool, normal: Vec3) -> PerPoin
 
 def _wall_material(planes: Sequence[Plane]) -> str:
     """The material of most of the visible wall area: the walls of a room are alike."""
-    area: dict[str, float] = {}
+    area: dict[str, float] = defaultdict(float)
     for plane in planes:
         if plane.kind == "wall":
-            area[plane.material] = area.get(plane.material, 0.0) + plane.area_m2
-    return max(area, key=lambda name: area[name]) if area else DEFAULT_MATERIAL
-
-
-def _lies_on(plane: Plane, normal: Vec3, distance: float) -> bool:
-    """Whether a plane has that normal and that distance from the radar, metres."""
-    return bool(plane.normal @ normal > _SAME_FACING and abs(plane.centre_m @ normal + distance) < _SAME_PLANE_M)
+            area[plane.material] += plane.area_m2
+    return max(area, key=area.__getitem__, default=DEFAULT_MATERIAL)
 
 
 def _is_part_of(plane: Plane, wall: Plane) -> bool:
     """Whether a plane is a piece of the wall itself, and not a picture or a window on it."""
-    if not _lies_on(plane, wall.normal, -float(wall.centre_m @ wall.normal)):
-        return False
-    return plane.kind == "wall" or plane.material == wall.material
+    off_m = abs((plane.centre_m - wall.centre_m) @ wall.normal)
+    on_wall = plane.normal @ wall.normal > _SAME_FACING and off_m < _SAME_PLANE_M
+    return bool(on_wall and (plane.kind == "wall" or plane.material == wall.material))
 
 
 def _ceiling_m(grid: AlignedGrid, planes: Sequence[Plane]) -> float:
@@ -227,19 +223,12 @@ def _rectangles(
         "right": (right_m * right + far_m * ahead, right_m * right - behind_m * ahead),
         "back": (right_m * right - behind_m * ahead, left_m * right - behind_m * ahead),
     }
-    walls = []
     height_m = top_m - grid.floor_z_m
-    for name, wall in found.items():
-        start, end = corners[name]
-        walls.append(
-            Plane(
-                kind="wall",
-                centre_m=(start + end) / 2 + (grid.floor_z_m + height_m / 2) * UP,
-                normal=wall.normal,
-                axis_u=np.cross(UP, wall.normal),
-                axis_v=UP,
-                half_size_m=(float(np.linalg.norm(end - start)) / 2, float(height_m) / 2),
-                material=material,
-            )
+    middle_m = (grid.floor_z_m + height_m / 2) * UP
+    return tuple(
+        Plane(
+            kind="wall", centre_m=(start + end) / 2 + middle_m, normal=wall.normal, axis_u=np.cross(UP, wall.normal),
+            axis_v=UP, half_size_m=(float(np.linalg.norm(end - start)) / 2, float(height_m) / 2), material=material,
         )
-    return tuple(walls)
+        for wall, (start, end) in ((wall, corners[name]) for name, wall in found.items())
+    )  # fmt: skip

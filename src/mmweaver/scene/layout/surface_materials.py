@@ -4,12 +4,11 @@ Metal and glass are never guessed.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from mmweaver.core.records import Plane, Seat
+from mmweaver.core.records import Seat
 from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import material_of
 from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
@@ -32,6 +31,7 @@ ASSUMPTION_OF_CLASSES = (
     " concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
 )
 
+_BY_KIND = {"wall": "plasterboard", "ceiling": "ceiling_board"}  # of surfaces; others by colour
 _SEAT_REACH_M = 0.55
 _SOFA_M = 0.8  # a seat of at least this width is upholstered, whatever its colour
 
@@ -39,16 +39,6 @@ _SOFA_M = 0.8  # a seat of at least this width is upholstered, whatever its colo
 def floor_material(colours: Float[Array, "cell 3"]) -> str:
     """Floorboard where the colours (cell, 3), 0 to 1, are those of wood, else concrete."""
     return "floorboard" if _is_wooden(colours) else "concrete"
-
-
-def surface_material(surface: Surface, rgb: GridVectors) -> str:
-    """The material of a planar surface from its kind, else from the colours `rgb` (row, column, 3) of its cells."""
-    by_kind = {"wall": "plasterboard", "ceiling": "ceiling_board"}
-    return by_kind.get(surface.plane.kind) or _furniture(rgb[surface.cells])
-
-
-def replace_material(plane: Plane, name: str) -> Plane:
-    return replace(plane, material=name)
 
 
 def cell_materials(
@@ -61,7 +51,10 @@ def cell_materials(
     """Guesses materials: index into MATERIAL_NAMES of every cell (row, column), and the name of each surface's."""
     wooden = _wooden_cells(rgb)
     material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
-    names = [surface_material(surface, rgb) for surface in surfaces]
+    names = [
+        _BY_KIND.get(surface.plane.kind) or ("wood" if _is_wooden(rgb[surface.cells]) else "chipboard")
+        for surface in surfaces
+    ]
     for surface, name in zip(surfaces, names, strict=True):
         material[surface.cells] = MATERIAL_NAMES.index(name)
     fixed = is_floor.copy()
@@ -125,11 +118,6 @@ def _upholstered(grid: AlignedGrid, rgb: GridVectors, open_cells: GridBool, seat
         if max(seat.size_m) >= _SOFA_M or not _is_wooden(rgb[cells]):
             found.append(cells)
     return found
-
-
-def _furniture(colours: Float[Array, "cell 3"]) -> str:
-    """Wood or chipboard, by the colours (cell, 3)."""
-    return "wood" if _is_wooden(colours) else "chipboard"
 
 
 def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:

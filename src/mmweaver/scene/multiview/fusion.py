@@ -1,11 +1,11 @@
 """Joins what several photos show of one room: planes, floor, seats, landmarks."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.core.records import FreeSpace, Landmark, Plane
 from mmweaver.scene.affordances.free_space import MIN_DISTANCE_M
 from mmweaver.scene.layout.surfaces import AlignedGrid
 from mmweaver.scene.multiview.registration import LevelPose
@@ -17,7 +17,9 @@ SAME_SEAT_M, SAME_LANDMARK_M = 0.4, 0.8
 
 
 def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> AlignedGrid:
-    """The cells of all photos in one row, (1, cell), in the first camera's level frame."""
+    """The cells of all photos in one row, (1, cell), in the first camera's level frame; one photo's grid as it is."""
+    if len(seen) == 1:
+        return seen[0].room.grid
 
     def one_row(parts: list[np.ndarray]) -> np.ndarray:
         return np.concatenate([part.reshape(-1, *part.shape[2:]) for part in parts])[None]
@@ -34,16 +36,18 @@ def joined_grid(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> Align
     )
 
 
-def joined_planes(planes: Sequence[Plane]) -> tuple[Plane, ...]:
-    """The planes, those that are parts of one joined; the larger says kind, material and axes."""
+def joined_planes(planes: Sequence[Plane], is_whole: bool) -> Sequence[Plane]:
+    """The planes of several photos, those that are parts of one joined; the larger says kind, material and axes."""
+    if not is_whole:
+        return planes
     joined: list[Plane] = []
     for plane in sorted(planes, key=lambda one: -one.area_m2):
         at = next((index for index, one in enumerate(joined) if _is_one(one, plane)), None)
         if at is None:
             joined.append(plane)
         else:
-            joined[at] = _around(joined[at], plane)
-    return tuple(joined)
+            joined[at] = _joined(joined[at], plane)
+    return joined
 
 
 def _is_one(large: Plane, small: Plane) -> bool:
@@ -64,7 +68,7 @@ def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
     return local.min(axis=0), local.max(axis=0)
 
 
-def _around(large: Plane, small: Plane) -> Plane:
+def _joined(large: Plane, small: Plane) -> Plane:
     low, high = _extent(large, small)
     half = np.array(large.half_size_m)
     return large.spanned(np.minimum(low, -half), np.maximum(high, half))
@@ -73,6 +77,8 @@ def _around(large: Plane, small: Plane) -> Plane:
 def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) -> FreeSpace:
     """The first camera's map, with the floor that any photo shows free and none shows blocked."""
     first = seen[0].free_space
+    if len(seen) == 1:
+        return first
     is_free, is_seen = np.zeros_like(first.is_free), np.zeros_like(first.is_free)
     is_blocked = np.zeros_like(first.is_free)
     for one, pose in zip(seen, poses, strict=True):
@@ -85,21 +91,12 @@ def joined_free_space(seen: Sequence[SingleView], poses: Sequence[LevelPose]) ->
     return FreeSpace(x_m=first.x_m, y_m=first.y_m, is_free=is_free, is_seen=is_seen & is_free)
 
 
-def joined_seats(seats: Sequence[Seat]) -> tuple[Seat, ...]:
-    """The seats, each once."""
-    return _once(seats, SAME_SEAT_M, lambda one: "seat")
-
-
-def joined_landmarks(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
-    """The landmarks, each once."""
-    return _once(landmarks, SAME_LANDMARK_M, lambda one: one.kind)
-
-
-def _once(places: Sequence[Any], apart_m: float, kind: Callable[[Any], str]) -> tuple[Any, ...]:
-    """The first of places of a kind that are no more than `apart_m` from each other."""
+def joined_places(places: Sequence[Any]) -> list[Any]:
+    """Seats or landmarks, of those of one kind that are near each other the first."""
     kept: list[Any] = []
     for place in places:
-        same = (one for one in kept if kind(one) == kind(place))
+        apart_m = SAME_LANDMARK_M if isinstance(place, Landmark) else SAME_SEAT_M
+        same = (one for one in kept if getattr(one, "kind", "") == getattr(place, "kind", ""))
         if all(np.linalg.norm((place.position_m - one.position_m)[:2]) > apart_m for one in same):
             kept.append(place)
-    return tuple(kept)
+    return kept

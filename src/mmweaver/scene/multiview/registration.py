@@ -12,8 +12,10 @@ from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
 from mmweaver.core.shapes import Array, Points, Rotation, Vec3
 from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.layout.gravity import Gravity
+from mmweaver.scene.layout.height_map import nearest_squares
 from mmweaver.scene.layout.room_layout import room_azimuth_rad
 from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.single_view import SingleView
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +27,7 @@ class LevelPose:
 
     def points(self, points_m: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
         """Places in the first camera's level frame, metres."""
-        return points_m @ self.turn.T + self.position_m
+        return points_m if self is ALONE else points_m @ self.turn.T + self.position_m
 
     def directions(self, vectors: Float[Array, "*points 3"]) -> Float[Array, "*points 3"]:
         """Directions in the first camera's level frame."""
@@ -42,7 +44,7 @@ class LevelPose:
     @property
     def inverse(self) -> "LevelPose":
         """From the first camera's level frame to this one's."""
-        return LevelPose(turn=self.turn.T, position_m=-self.turn.T @ self.position_m)
+        return self if self is ALONE else LevelPose(turn=self.turn.T, position_m=-self.turn.T @ self.position_m)
 
     @property
     def azimuth_rad(self) -> float:
@@ -51,15 +53,19 @@ class LevelPose:
 
     def plane(self, plane: Plane) -> Plane:
         """A plane in the first camera's level frame."""
-        return plane.moved(self.points, self.directions)
+        return plane if self is ALONE else plane.moved(self.points, self.directions)
 
     def seat(self, seat: Seat) -> Seat:
         """A seat in the first camera's level frame."""
+        if self is ALONE:
+            return seat
         facing_rad = _wrapped(seat.facing_rad + self.azimuth_rad)
         return Seat(position_m=self.points(seat.position_m), facing_rad=facing_rad, size_m=seat.size_m)
 
     def landmark(self, landmark: Landmark) -> Landmark:
         """A landmark in the first camera's level frame."""
+        if self is ALONE:
+            return landmark
         x, y, _ = self.points(np.array([*landmark.approach_m, 0.0]))
         return Landmark(
             kind=landmark.kind, position_m=self.points(landmark.position_m), approach_m=(float(x), float(y)),
@@ -70,14 +76,11 @@ class LevelPose:
         """Values (y, x) of this camera's map of the floor at squares of the first camera's; False outside the map."""
         x, y = np.meshgrid(x_m, y_m)
         own = self.inverse.points(np.stack([x, y, np.zeros_like(x)], axis=-1))
-        cell_m = of.x_m[1] - of.x_m[0]
-        column = np.rint((own[..., 0] - of.x_m[0]) / cell_m).astype(int)
-        row = np.rint((own[..., 1] - of.y_m[0]) / cell_m).astype(int)
-        inside = (column >= 0) & (column < len(of.x_m)) & (row >= 0) & (row < len(of.y_m))
-        return inside & values[np.where(inside, row, 0), np.where(inside, column, 0)]
+        row, column, inside = nearest_squares(own[..., 0], own[..., 1], of.x_m, of.y_m)
+        return inside & values[row, column]
 
 
-AT_FIRST = LevelPose(turn=np.eye(3), position_m=np.zeros(3))
+AT_FIRST, ALONE = (LevelPose(turn=np.eye(3), position_m=np.zeros(3)) for _ in range(2))  # ALONE leaves bits as they are
 
 
 def about_vertical(angle_rad: float) -> Rotation:
@@ -251,3 +254,24 @@ def shift_by_heights(own: Float[Array, "y x"], known: Float[Array, "y x"], sprea
             if score > best and agree > MIN_CELLS:
                 best, shift = score, (rows, columns)
     return np.array([shift[1] * CELL_M, shift[0] * CELL_M, 0.0])
+
+
+def corrected_poses(
+    seen: Sequence[SingleView], poses: Sequence[LevelPose], others: Sequence[PosedPhoto]
+) -> tuple[LevelPose, ...]:
+    """The level pose of every photo, the first's first, each corrected by what those before it show."""
+    placed, known, floor_z_m = [AT_FIRST], list(seen[0].planes), seen[0].view.floor_z_m
+    heights = _heights(seen[0], AT_FIRST, floor_z_m)
+    for one, pose, other in zip(seen[1:], poses, others, strict=True):
+        pose = turned_by_walls(pose, one.planes, known, is_rough=other.is_rough)
+        if other.is_rough:
+            pose = pose.moved(shift_by_heights(_heights(one, pose, floor_z_m), heights, SPREAD_M[True]))
+        pose = moved_by_walls(pose, one.planes, known, is_rough=False)
+        placed.append(pose)
+        known += [pose.plane(plane) for plane in one.planes]
+        heights = np.fmax(heights, _heights(one, pose, floor_z_m))
+    return tuple(placed)
+
+
+def _heights(one: SingleView, pose: LevelPose, floor_z_m: float) -> Float[Array, "y x"]:
+    return height_map(pose.points(one.room.grid.points_m.reshape(-1, 3)), floor_z_m)

@@ -19,16 +19,20 @@ LIMITS = {
 }  # fmt: skip
 
 
+def centred_intrinsics(width: int, height: int, focal_px: float) -> CameraIntrinsics:
+    """Square pixels, and the principal point in the middle of the picture."""
+    return CameraIntrinsics(
+        fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
+    )  # fmt: skip
+
+
 def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
     """The intrinsics of a RealSense D455 for a picture of this size.
 
     >>> d455_intrinsics(640, 480).fx
     384.0
     """
-    focal = _D455_FOCAL * max(width / _D455_WIDTH, height / _D455_HEIGHT)
-    return CameraIntrinsics(
-        fx=focal, fy=focal, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
-    )  # fmt: skip
+    return centred_intrinsics(width, height, _D455_FOCAL * max(width / _D455_WIDTH, height / _D455_HEIGHT))
 
 
 def lens_intrinsics(width: int, height: int, focal_35mm: float) -> CameraIntrinsics:
@@ -37,10 +41,7 @@ def lens_intrinsics(width: int, height: int, focal_35mm: float) -> CameraIntrins
     >>> round(lens_intrinsics(4000, 3000, 26.0).fx)
     3005
     """
-    focal = focal_35mm * math.hypot(width, height) / math.hypot(36.0, 24.0)
-    return CameraIntrinsics(
-        fx=focal, fy=focal, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
-    )  # fmt: skip
+    return centred_intrinsics(width, height, focal_35mm * math.hypot(width, height) / math.hypot(36.0, 24.0))
 
 
 def read_camera_file(path: Path) -> dict[str, float]:

@@ -68,7 +68,7 @@ def _most_common(index: ClassPixels, size: int) -> GridInt:
     return present[np.argmax(shares, axis=0)].astype(np.int64)
 
 
-def remove_outliers(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:
+def remove_outliers(depth_m: DepthPixels) -> DepthPixels:
     """Sets pixels to nan whose depth fewer than two of their four neighbours share: speckle and flying pixels."""
     padded = np.pad(depth_m, 1, constant_values=np.nan)
     support = np.zeros(depth_m.shape, int)
@@ -76,7 +76,7 @@ def remove_outliers(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixel
     limit = depth_tolerance_m(depth_m) + 0.03 * depth_m
     for row, column in _NEIGHBOURS:
         support += np.abs(_shifted(padded, row, column, 1) - depth_m) < limit
-    return np.where(support >= min_neighbours, depth_m, np.nan)
+    return np.where(support >= 2, depth_m, np.nan)
 
 
 def _blocks(depth_m: DepthPixels, size: int) -> Float[Array, "row column pixel"]:

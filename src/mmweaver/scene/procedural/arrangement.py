@@ -78,7 +78,7 @@ def place_openings(shell: Shell, rng: np.random.Generator) -> Shell:
             wall = ("left", "right", "back")[int(rng.choice(3, p=(0.35, 0.35, 0.3)))]
             nearest = shell.radar_m[1] + 0.9
             along = float(rng.uniform(0.5, width - 0.5) if wall == "back" else rng.uniform(nearest, depth - 0.5))
-            candidate = _at_wall((PlacedPiece(piece=piece, x_m=0.0, y_m=0.0),), wall, along, shell.size_m)
+            candidate = _moved_to_wall((PlacedPiece(piece=piece, x_m=0.0, y_m=0.0),), wall, along, shell.size_m)
             if (
                 _fits(bounding_boxes(candidate), shell.size_m)
                 and not bounding_boxes(candidate).overlap(bounding_boxes(fixed), -0.15).any()
@@ -192,10 +192,10 @@ def _candidate(shell: Shell, group: FurnitureGroup, rng: np.random.Generator) ->
     sites = ("back",) if group.site == BACK else ("back", "left", "right")
     wall = sites[int(rng.integers(len(sites)))]
     along = float(rng.uniform(0.0, width) if wall == "back" else rng.uniform(shell.radar_m[1] + 0.5, depth))
-    return tuple(_at_wall(group.items, wall, along, shell.size_m))
+    return tuple(_moved_to_wall(group.items, wall, along, shell.size_m))
 
 
-def _at_wall(
+def _moved_to_wall(
     items: Sequence[PlacedPiece], wall: str, along_m: float, size_m: tuple[float, float, float]
 ) -> tuple[PlacedPiece, ...]:
     x, y, yaw_rad = {

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
+from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.coco_stuff import CLASS_OF_MATERIAL, MATERIAL, NAMES, UNLABELED, coco_class
+from mmweaver.scene.photo.camera_file import centred_intrinsics
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.scanned_mesh.read_mesh import ColouredMesh, read_mesh
@@ -50,7 +51,7 @@ def read_mesh_photo(
     found = upright(path, read_mesh(path), unit=unit, up=up)
     mesh = found.mesh
     caster = RayCaster(mesh.vertices, mesh.faces)
-    view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.of_file(np.asarray(eye, float)))
+    view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.converted(np.asarray(eye, float)))
     if look_deg is not None:
         view = Viewpoint(eye_m=view.eye_m, azimuth_rad=float(np.deg2rad(look_deg)))
     classes = _classes(mesh, given)
@@ -91,10 +92,7 @@ def _photo(
     mesh: ColouredMesh, caster: RayCaster, eye_m: np.ndarray, axes: np.ndarray, classes: np.ndarray | None
 ) -> tuple[RgbdPhoto, float]:
     """The picture from a place, and the share of its pixels that show anything."""
-    focal = WIDTH / 2 / np.tan(np.deg2rad(VIEW_DEG) / 2)
-    camera = CameraIntrinsics(
-        fx=focal, fy=focal, cx=(WIDTH - 1) / 2, cy=(HEIGHT - 1) / 2, width=WIDTH, height=HEIGHT
-    )  # fmt: skip
+    camera = centred_intrinsics(WIDTH, HEIGHT, WIDTH / 2 / np.tan(np.deg2rad(VIEW_DEG) / 2))
     rays = viewing_rays(camera).reshape(-1, 3) @ axes
     length = np.linalg.norm(rays, axis=1)
     distance_m, face = caster.first_hit(np.broadcast_to(eye_m, rays.shape), rays / length[:, None])

@@ -31,7 +31,7 @@ class UprightMesh:
     floor: float  # height of the floor along the upward direction, in the file's unit
     assumptions: tuple[str, ...]
 
-    def of_file(self, place: np.ndarray) -> np.ndarray:
+    def converted(self, place: np.ndarray) -> np.ndarray:
         """A place given in the file's own axes and unit, (3,) metres here."""
         return self.unit_m * (self.to_mesh @ place - np.array([0.0, 0.0, self.floor]))
 

@@ -34,12 +34,12 @@ def room_features(grid: DepthGrid, room: AlignedRoom) -> Features:
     height = aligned.points_m[..., 2] - aligned.floor_z_m
     geometry = [
         height / HEIGHT_UNIT_M, aligned.normals[..., 2], 1 / grid.depth_m, np.isfinite(grid.depth_m).astype(float),
-        _near_wall(room),
+        _wall_proximity(room),
     ]  # fmt: skip
     for kind in _KINDS:
         cells = [surface.cells for surface in room.surfaces if surface.plane.kind == kind]
         geometry.append(np.any(cells, axis=0).astype(float) if cells else np.zeros(height.shape))
-    geometry.append(_above(aligned.points_m[..., 0], aligned.points_m[..., 1], height))
+    geometry.append(_height_above(aligned.points_m[..., 0], aligned.points_m[..., 1], height))
     stacked = np.concatenate([_standardised(grid.rgb), np.stack(geometry)])
     return np.nan_to_num(stacked[:, ::STRIDE, ::STRIDE]).astype(np.float32)
 
@@ -50,7 +50,7 @@ def _standardised(rgb: Float[Array, "row column 3"]) -> Float[Array, "3 row colu
     return np.moveaxis((rgb - rgb.mean(axis=(0, 1))) / spread, -1, 0) / 3
 
 
-def _near_wall(room: AlignedRoom) -> GridFloat:
+def _wall_proximity(room: AlignedRoom) -> GridFloat:
     """Proximity to a wall: 1 on or behind it, 0 from a metre in front of it; 0 beyond its ends."""
     near = np.zeros(room.grid.depth_m.shape)
     for surface in room.surfaces:
@@ -63,7 +63,7 @@ def _near_wall(room: AlignedRoom) -> GridFloat:
     return near
 
 
-def _above(x: GridFloat, y: GridFloat, height: GridFloat) -> GridFloat:
+def _height_above(x: GridFloat, y: GridFloat, height: GridFloat) -> GridFloat:
     """Height of the highest point over the same place, above the cell, 0 to 1 in units of 1.5 m."""
     from scipy import ndimage
 

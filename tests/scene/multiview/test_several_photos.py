@@ -7,7 +7,6 @@ from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 
@@ -62,7 +61,7 @@ def pose_of(stand: RadarPose, *, wrong_deg: float = 0.0) -> np.ndarray:
     ids=["tracked", "rough"],
 )
 def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPose, off_m: float):
-    scene = reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose)])
+    scene = reconstruct(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose)])
     walls = {tuple(np.rint(plane.normal).astype(int)): plane for plane in scene.planes if plane.kind == "wall"}
     for normal, distance_m in {(1, 0, 0): -LEFT, (-1, 0, 0): RIGHT, (0, 1, 0): -BACK, (0, -1, 0): FRONT}.items():
         wall = walls[normal]
@@ -76,7 +75,7 @@ def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPo
 
 def test_floor_that_the_first_photo_cannot_see_is_free():
     alone = reconstruct(photo(FIRST)).free_space
-    free = reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose_of(SECOND))]).free_space
+    free = reconstruct(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose_of(SECOND))]).free_space
     x_m, y_m = alone.x_m[None], alone.y_m[:, None]
     aside = (np.abs(x_m + 1.3) < 0.2) & (np.abs(y_m - 0.4) < 0.2)  # outside the first picture
     on_table = (np.abs(x_m - 0.1) < 0.25) & (np.abs(y_m - 2.0) < 0.2)
