@@ -10,7 +10,7 @@ from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.step_names import in_turn, with_what_is_shown
-from mmweaver.motion.people import Person, person_of, subject_of, with_habits
+from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
@@ -100,7 +100,7 @@ def compose(
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
     plan = settled(plan if has_photo else without_targets(plan))
     person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
-    plan = with_habits(plan, person)
+    plan = apply_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
     plan, running_notes = _running(plan, floor)

@@ -26,7 +26,7 @@ ADULT_M = {"male": (1.756, 0.069), "female": (1.629, 0.064)}  # mean, standard d
 YOUNG_M = {"baby": (0.81, 0.01), "toddler": (0.85, 0.03), "child": (1.33, 0.07)}
 TEENAGER_M = {"male": (1.68, 0.08), "female": (1.61, 0.065)}
 OLD_SHORTER_M = 0.04
-MOST_SDS = 2.5  # nobody is farther from the mean
+MAX_SDS = 2.5  # nobody is farther from the mean
 TALL_SDS = (1.0, 2.0)  # of "tall", and the other way of "short"
 GIANT_SDS = (4.0, 5.0)  # of "giant", and the other way of "dwarf"
 # relative to the average man's, at equal height
@@ -82,7 +82,7 @@ def person_of(subject: int, described: DescribedPerson | None = None, height_m: 
     said = described or DescribedPerson()
     rng = stream(check_subject(subject), "motion", "person")
     draws = rng.random(3)  # sex, hand, build: drawn always, so that a description changes nothing else
-    sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MOST_SDS, MOST_SDS)
+    sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MAX_SDS, MAX_SDS)
     sex = said.sex or ("male" if draws[0] < 0.5 else "female")
     if said.stature:
         usual_sds = GIANT_SDS if abs(said.stature) > 1 else TALL_SDS
@@ -105,7 +105,7 @@ def person_of(subject: int, described: DescribedPerson | None = None, height_m: 
     )  # fmt: skip
 
 
-def with_habits(plan: MotionPlan, person: Person) -> MotionPlan:
+def apply_habits(plan: MotionPlan, person: Person) -> MotionPlan:
     """The plan as this person carries it out: at their pace, mostly with their usual hand."""
     steps = tuple(
         replace(step, pace=person.pace if step.moves else person.pace_on_the_spot, usual_hand=person.hand)

@@ -82,7 +82,7 @@ def whole_turns(gap_rad: Array) -> Array:
     return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))
 
 
-def _without_whole_turns(before: Controls, part: Controls, at: int) -> None:
+def _remove_whole_turns(before: Controls, part: Controls, at: int) -> None:
     """Takes whole turns out of the arms of a part: who has circled them does not turn them back afterwards."""
     at = min(at, len(part.heading_rad) - 1)
     for angle in TURNING:
@@ -99,7 +99,7 @@ def blended(
     from mmweaver.motion.animation.profiles import bump, rise
 
     for before, part, start_s in zip(parts, parts[1:], starts_s[1:], strict=False):
-        _without_whole_turns(before, part, int(np.searchsorted(time_s, start_s)))
+        _remove_whole_turns(before, part, int(np.searchsorted(time_s, start_s)))
     ups, foot_ups, lift = [np.ones_like(time_s)], [np.ones((len(time_s), 2))], np.zeros((len(time_s), 2))
     for k in range(1, len(parts)):
         u = (time_s - starts_s[k]) / blends_s[k] + 0.5

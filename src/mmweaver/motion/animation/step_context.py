@@ -12,7 +12,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, mix_arm
 from mmweaver.motion.animation.habits import Habits
-from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
+from mmweaver.motion.animation.kinematics import rotated, rotation_y, rotation_z
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
@@ -269,7 +269,7 @@ class StepContext:
     def mouth_m(self, side: int) -> Float[np.ndarray, "n 3"]:
         """Place (n, 3) in metres of the mouth for an arm: ahead, outward and up of spine3 in the chest's frame."""
         head_rad = self.controls.head_rad
-        half = about_z(head_rad[:, 1] / 2) @ about_y(head_rad[:, 0] / 2)
+        half = rotation_z(head_rad[:, 1] / 2) @ rotation_y(head_rad[:, 0] / 2)
         head = self.body.offset_m[joint("neck")] + rotated(half, self.body.offset_m[joint("head")])
         return (head + rotated(half @ half, self.body.mouth_m)) * [1.0, OUTWARD[side], 1.0]
 

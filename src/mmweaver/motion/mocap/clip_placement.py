@@ -21,7 +21,7 @@ from mmweaver.motion.planning.floor_map import FloorMap
 Array = np.ndarray
 SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: from the floor to the foot joint of a standing body
 HEADINGS = 24  # tried, evenly spaced
-MOST_STARTS = 400
+MAX_STARTS = 400
 TRACK_POINTS = 48
 LOW_PELVIS = 0.75  # of the height of the pelvis on straight legs: lower is sitting, crouching or lying
 TO_RADAR_RAD = -math.pi / 2
@@ -136,8 +136,8 @@ def _found(
 
 def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:
     cells = floor.cell_centres_m[floor.walkable]
-    if len(cells) > MOST_STARTS:
-        cells = cells[np.sort(rng.choice(len(cells), MOST_STARTS, replace=False))]
+    if len(cells) > MAX_STARTS:
+        cells = cells[np.sort(rng.choice(len(cells), MAX_STARTS, replace=False))]
     return cells
 
 

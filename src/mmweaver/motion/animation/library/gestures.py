@@ -7,7 +7,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import larger, raised_cosine, reached, rise, travel
-from mmweaver.motion.animation.spans import PerTime, spline_through
+from mmweaver.motion.animation.spans import PerTime, Span, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
@@ -273,10 +273,9 @@ def _stretch_arm(act: StepContext, out: PerTime) -> None:
 def drawing_circle(act: StepContext) -> None:
     """The straight arm draws large circles, clockwise for the person: from hanging across the body, up and round."""
     count = act.count or max(1, round(act.duration_s / 2.5))
-    turned = np.zeros_like(act.time_s)
-    for span in act.repeats(act.duration_s / count * 0.9, 0.9, 4.0)[:count]:
-        turned += rise((act.time_s - span.begin_s) / span.lasts_s)
-    _draw(act, -np.sin(2 * np.pi * turned), -np.cos(2 * np.pi * turned), 0.25)
+    spans = act.repeats(act.duration_s / count * 0.9, 0.9, 4.0)[:count]
+    angle = 2 * np.pi * np.sum([rise(span.progress()) for span in spans], axis=0)
+    _draw(act, -np.sin(angle), -np.cos(angle), 0.25)
 
 
 @gesture("draw_z")
@@ -305,10 +304,8 @@ def _draw(act: StepContext, aside: PerTime, up: PerTime, half: float) -> None:
 @gesture("swipe")
 def swiping(act: StepContext) -> None:
     """The hand is raised before the chest, sweeps through the air to one side, up or down, and comes back."""
-    stroke, swipes = np.zeros_like(act.time_s), act.repeats(1.1, 0.5, 1.6)
-    for span in swipes:
-        u = (act.time_s - span.begin_s) / span.lasts_s
-        stroke += rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35)
+    swipes = act.repeats(1.1, 0.5, 1.6)
+    stroke = np.sum([rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35) for u in map(Span.progress, swipes)], axis=0)
     first, last = swipes[0], swipes[-1]
     on = act.plateau(first.begin_s, last.at(1), 0.3 * first.lasts_s, 0.3 * last.lasts_s)
     along, side = act.vary(0.13, 0.12) * (2 * stroke - 1), act.sides()[0]
@@ -332,8 +329,7 @@ def yawning(act: StepContext) -> None:
 def knocking_from_elbow(act: StepContext) -> None:
     """The hand at the side is raised from the elbow and lowered, without a pause between."""
     count = act.count or max(1, round(act.duration_s / 1.2))
-    up = np.zeros_like(act.time_s)
-    for span in act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]:
-        up += span.plateau(0, 1, 0.5, 0.5)
+    spans = act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]
+    up = sum_plateaus(spans, 0, 1, 0.5, 0.5)
     for side in act.sides():
         act.add(up, side, elbow=act.vary(1.9, 0.08), flexion=0.15)

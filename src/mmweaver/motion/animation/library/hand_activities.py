@@ -4,16 +4,15 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine, rise
-from mmweaver.motion.animation.spans import PerTime, Span
+from mmweaver.motion.animation.spans import PerTime, Span, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
 @gesture("eat")
 def eating(act: StepContext) -> None:
     """From a plate in front of the belly to the mouth and back, again and again; the head meets the hand."""
-    side, lift = act.one_side(), np.zeros_like(act.time_s)
-    for span in act.in_turn(act.tempo(2.6, 2.0, 1.5), 1.2, 3.6, lag=0.08, more=0.4):
-        lift += span.plateau(0, 0.86, 0.34, 0.36)
+    side, spans = act.one_side(), act.in_turn(act.tempo(2.6, 2.0, 1.5), 1.2, 3.6, lag=0.08, more=0.4)
+    lift = sum_plateaus(spans, 0, 0.86, 0.34, 0.36)
     act.add(1, head_pitch=0.12 + 0.1 * lift, spine_pitch=0.06)
     spoon = act.mouth_m(side) / act.height_m + np.array([0.045, 0.03, -0.03])
     plate = np.array([act.uniform(0.17, 0.2), act.uniform(0.03, 0.06), act.uniform(-0.12, -0.07)])

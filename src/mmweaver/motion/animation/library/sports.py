@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import plateau
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: it leaves the guard, hits, is in the guard again
@@ -146,10 +146,8 @@ def pushing(act: StepContext) -> None:
 @gesture("pull")
 def pulling(act: StepContext) -> None:
     """Stretched arms pull something towards the body, the trunk leaning back, again and again."""
-    hands, draw = act.named_arms, np.zeros_like(act.time_s)
-    for span in act.in_turn(act.tempo(1.8, 1.4, 1.1), 1.0, 2.4, lag=0.1):
-        draw += span.plateau(0, 0.88, 0.42, 0.42)
-    act.hand_to(hands, (0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw), 1.0, (-0.7, 0.6, -0.7))
+    draw = sum_plateaus(act.in_turn(act.tempo(1.8, 1.4, 1.1), 1.0, 2.4, lag=0.1), 0, 0.88, 0.42, 0.42)
+    act.hand_to(act.named_arms, (0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw), 1.0, (-0.7, 0.6, -0.7))
     act.add(1, spine_pitch=0.12 - 0.26 * draw)
 
 
