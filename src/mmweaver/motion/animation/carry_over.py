@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.controls import TURNING, Array, Controls, whole_turns
+from mmweaver.motion.animation.controls import FEET, TURNING, Array, Controls, scaled, whole_turns
 from mmweaver.motion.animation.profiles import bump
 
 FADING_S = 0.6
@@ -68,10 +68,9 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
         if field.name == "arm_rad":
             gaps[0][..., TURNING] -= whole_turns(gaps[0][..., TURNING])
         values = getattr(controls, field.name)
-        of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
         shares = _moving_and_left(u, FADING_S)
-        shares = (_left(each), *shares[1:]) if of_feet else shares
-        offset = sum(_over(share, values.ndim) * gap for share, gap in zip(shares, gaps, strict=True))
+        shares = (_left(each), *shares[1:]) if field.name in FEET else shares
+        offset = sum(scaled(np.broadcast_to(gap, values.shape), share) for share, gap in zip(shares, gaps, strict=True))
         changed[field.name] = values + offset
         if field.name in ("contact", "knee_room"):  # shares, whose rates would lead them on beyond 0 and 1
             known = np.stack([values, np.broadcast_to(getattr(before.value, field.name), values.shape)])
@@ -113,7 +112,3 @@ def _moving_and_left(u: Float[Array, " n"], lasts_s: float) -> tuple[Array, Arra
 def _left(u: Array) -> Array:
     """1 at 0, 0 from 1 on, smooth to the second derivative at both ends."""
     return np.asarray((1 - u) ** 3 * (1 + 3 * u + 6 * u**2))
-
-
-def _over(share: Array, ndim: int) -> Array:
-    return share.reshape(share.shape + (1,) * (ndim - share.ndim))

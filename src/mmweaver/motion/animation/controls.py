@@ -11,6 +11,7 @@ from jaxtyping import Float
 Array = np.ndarray
 LEFT, RIGHT = 0, 1
 OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
+FEET = ("foot_m", "foot_rad", "contact", "knee_out_rad")  # fields that each foot has of its own
 TURNING = (0, 2)  # of the angles of an arm: flexion and twist go round
 
 
@@ -62,14 +63,16 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     """Weighted sum of Controls over the same times; weights sum to 1 at each time, feet have their own (n, 2)."""
     values: dict[str, Array] = {}
     for field in fields(Controls):
-        of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
-        total = 0.0
-        for part, weight, foot in zip(parts, weights, feet, strict=True):
-            value = getattr(part, field.name)
-            share = foot if of_feet else weight
-            total = total + value * share.reshape(share.shape + (1,) * (value.ndim - share.ndim))
-        values[field.name] = np.asarray(total)
+        shares = feet if field.name in FEET else weights
+        values[field.name] = np.asarray(
+            sum(scaled(getattr(part, field.name), share) for part, share in zip(parts, shares, strict=True))
+        )
     return Controls(**values)
+
+
+def scaled(values: Array, share: Array) -> Array:
+    """Values (n, ...) times shares (n,) or (n, 2)."""
+    return values * share.reshape(share.shape + (1,) * (values.ndim - share.ndim))
 
 
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Float[Array, "..."] | float) -> None:

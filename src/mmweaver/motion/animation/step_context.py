@@ -248,17 +248,16 @@ class StepContext:
             mix_arm(self.controls, side, np.asarray(angles), weight)
 
     def hand_to(
-        self,
-        side: int | tuple[int, ...],
-        target: Place,
-        weight: Curve = 1.0,
-        elbow: Sequence[float] = (-0.3, 0.5, -1.0),
+        self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
     ) -> None:
         """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
-    def hand_to_m(self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: Sequence[float]) -> None:
-        """The same in metres; the elbow points in the direction `elbow`."""
+    def hand_to_m(
+        self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
+    ) -> None:
+        """The same in metres; elbows point as `elbow` says, else as the gesture's record in `movements.toml`."""
+        elbow = elbow or MOVEMENTS.get(self.step.upper, {}).get("elbow", (-0.3, 0.5, -1.0))
         self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
     def _points(self, target: Place) -> Float[np.ndarray, "n 3"]:
@@ -301,6 +300,7 @@ def gesture(key: str) -> Callable[[Animate], Animate]:
     def register(animate: Animate) -> Animate:
         def perform(act: StepContext, controls: Controls) -> Controls:
             act.controls = controls
+            act.add(1, **MOVEMENTS.get(key, {}).get("hold", {}))
             animate(act)
             return controls
 
