@@ -30,7 +30,16 @@ class ControlsState:
 
     @classmethod
     def at(cls, controls: Controls, time_s: Float[Array, " n"], at_s: float) -> "ControlsState":
-        """Of controls at times (n,), at a time within them."""
+        """The state at one instant, by cubic splines.
+
+        Args:
+            controls: at the times `time_s` (n,), in seconds.
+            time_s: increasing times.
+            at_s: the instant, within them.
+
+        Returns:
+            Values, rates and accelerations; angles of a roll are unwrapped first.
+        """
         from scipy.interpolate import CubicSpline
 
         near = np.abs(time_s - at_s) < 0.2
@@ -51,7 +60,16 @@ class ControlsState:
 
 
 def carried_over(controls: Controls, time_s: Float[Array, " n"], before: ControlsState) -> Controls:
-    """The controls, changed within FADING_S from time 0 such that they begin in the state `before`."""
+    """Makes a motion begin in a given state.
+
+    Args:
+        controls: of the motion, at the times `time_s` (n,) in seconds.
+        time_s: increasing times; the seam is at 0.
+        before: the state at the seam.
+
+    Returns:
+        The controls, changed within FADING_S from the seam on.
+    """
     own = ControlsState.at(controls, time_s, 0.0)
     u = np.clip(time_s / FADING_S, 0.0, 1.0)
     each = np.clip(np.stack([u / STEP_SHARE, (u - 1 + STEP_SHARE) / STEP_SHARE], axis=1), 0.0, 1.0)

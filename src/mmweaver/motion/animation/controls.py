@@ -60,7 +60,16 @@ CHANNELS |= {"heading": ("heading_rad", None), "contact": ("contact", None)}
 
 
 def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[Float[Array, "n 2"]]) -> Controls:
-    """Weighted sum of Controls over the same times; weights sum to 1 at each time, feet have their own (n, 2)."""
+    """Weighted sum of Controls over the same times.
+
+    Args:
+        parts: the Controls.
+        weights: of each part, (n,); they sum to 1 at each time.
+        feet: the same for what each foot has of its own, (n, 2).
+
+    Returns:
+        The blended Controls.
+    """
     values: dict[str, Array] = {}
     for field in fields(Controls):
         shares = feet if field.name in FEET else weights
@@ -76,7 +85,14 @@ def scaled(values: Array, share: Array) -> Array:
 
 
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Float[Array, "..."] | float) -> None:
-    """Blends an arm's angles to `arm`, (4,) or (n, 4), as `weight` (n,) goes to 1."""
+    """Blends the angles of an arm, in place.
+
+    Args:
+        controls: whose `arm_rad` changes.
+        side: LEFT or RIGHT.
+        arm: flexion, abduction, twist and elbow flexion in radians, (4,) or (n, 4).
+        weight: 0 keeps the angles, 1 replaces them; (n,) or a number.
+    """
     controls.arm_rad[:, side] += np.asarray(weight)[..., None] * (arm - controls.arm_rad[:, side])
 
 
@@ -95,9 +111,16 @@ def _remove_whole_turns(before: Controls, part: Controls, at: int) -> None:
 def blended(
     parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
 ) -> Controls:
-    """Concatenates parts: part k takes over around `starts_s[k]`, within `blends_s[k]` seconds.
+    """Concatenates parts; where the feet of two are at different positions, they step over one after the other.
 
-    Where the feet of two parts are at different positions, they step over one after the other.
+    Args:
+        parts: Controls of each step, all at the times `time_s` (n,) in seconds.
+        starts_s: time around which each part takes over.
+        blends_s: seconds within which it does.
+        time_s: increasing times.
+
+    Returns:
+        Controls at the same times.
     """
     from mmweaver.motion.animation.profiles import bump, rise
 

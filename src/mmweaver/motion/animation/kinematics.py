@@ -59,7 +59,15 @@ def roll_pitch_yaw(angles: Vectors) -> Frames:
 
 
 def solve(body: SkeletonProportions, controls: Controls) -> Joints:
-    """Joints (n, 22, 3) in metres in the floor frame (z up from the floor)."""
+    """Solves the joints of a pose at every time.
+
+    Args:
+        body: whose bones.
+        controls: at n times.
+
+    Returns:
+        Joints (n, 22, 3) in metres in the floor frame (z up from the floor).
+    """
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
     pelvis_frame = rotation_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
     if controls.roll_over_rad.any():
@@ -104,7 +112,16 @@ def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
 
 
 def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Vectors:
-    """The ankle (n, 3) from the flat foot's position: the foot pivots on its ball or, toes up, on its heel."""
+    """Where the ankle is: the foot pivots on its ball or, toes up, on its heel.
+
+    Args:
+        body: whose bones.
+        yaw: heading of the foot (n,) in radians.
+        pitch: heel up positive, (n,) in radians.
+
+    Returns:
+        The ankle (n, 3) in metres from the point of the floor under the ankle of the flat foot.
+    """
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
     on_ball = rise((pitch + 0.2) / 0.4)
     forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)

@@ -47,12 +47,23 @@ def place_clip(
     heading_rad: float | None = None,
     as_recorded: bool = False,
 ) -> Motion:
-    """Places the first `duration_s` of a clip in a scene.
+    """Places the beginning of a clip in a scene.
 
-    `start_m` (x, y) is where the pelvis starts, `heading_rad` the heading there (from +x towards +y). What is not given
-    is searched for: a start and a heading, towards the radar if possible, from which the whole track is free and in
-    view. With `as_recorded` the clip's positions are in the radar's frame (x right, y away, z up, metres), and nothing
-    is moved or checked. Raises InputError where there is no room, saying how much there is.
+    Args:
+        clip: the recorded motion.
+        scene: the room, in the radar's frame.
+        duration_s: how much of the clip, in seconds.
+        seed: chooses between equally good places.
+        range_window_m: nearest and farthest slant range that the radar keeps.
+        start_m: (x, y) where the pelvis starts; searched for by default, such that the whole track is free and in view.
+        heading_rad: heading there, from +x towards +y; searched for by default, towards the radar if possible.
+        as_recorded: the clip's positions are in the radar's frame already, and nothing is moved or checked.
+
+    Returns:
+        The motion at 120 Hz with notes on what was assumed.
+
+    Raises:
+        InputError: where there is no room, with the free area.
     """
     time_s, joints_m = resampled_clip(clip, duration_s)
     height_m = clip.height_m

@@ -37,10 +37,19 @@ def read_motion(
 ) -> MotionClip:
     """Reads a recorded motion.
 
-    `fps` is needed where the file states none, and overrides what it states. `unit` (m, cm, mm, inch or the metres in
-    one unit) and `up` (y, z, ...) are estimated from the body where they are not given, which the notes report. `clip`
-    names one motion of a file of several; `body_model` is the user's own SMPL model (.npz). Raises InputError for
-    whatever is no human motion.
+    Args:
+        path: a .bvh, .npy or .npz file.
+        fps: frames per second; needed where the file states none, and overrides what it states.
+        unit: m, cm, mm, inch, cmu, or the metres in one unit; estimated from the body by default.
+        up: the upward axis, y, z, ...; estimated from the body by default.
+        clip: name of one motion in a file of several.
+        body_model: the user's own SMPL model (.npz); the mean skeleton by default.
+
+    Returns:
+        22 joints in metres, z up; what was estimated is in its notes.
+
+    Raises:
+        InputError: for whatever is no human motion.
     """
     path = Path(path)
     if not path.is_file():
