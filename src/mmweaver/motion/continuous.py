@@ -89,7 +89,7 @@ class ContinuousMotion:
         return part
 
     def _walked_on(self, usual: MotionPlan, before: Step | None, plan: MotionPlan, person: Person) -> MotionPart | None:
-        """The plan after a walk to where there is room for it; None where nobody can walk, or there is none."""
+        """The plan after a walk to where there is room for it; None where the body cannot walk, or there is none."""
         if before is None or before.posture != "feet" or plan.steps[0].moves:
             return None
         walk = replace(plan.steps[0], lower="walk", upper="", direction="", seconds=WALK_ON_S)
@@ -114,7 +114,7 @@ class ContinuousMotion:
         return replace(self._compose(held, person, self._last.text), refused=refused)
 
     def cut(self, end_frame: int) -> None:
-        """The last part ends at this frame already, because something new is said."""
+        """The last part ends at this frame already, because a new sentence has arrived."""
         assert self._last is not None
         self._last = replace(self._last, num_frames=end_frame - self._last.first_frame)
 

@@ -22,7 +22,7 @@ STEP_HEIGHT_M, SHUFFLE_M = 0.05, 0.1  # of a step over much more than the second
 
 @dataclass(frozen=True, kw_only=True)
 class ControlsState:
-    """Controls (1, ...) at one instant, their rates a second and the rates of these."""
+    """Controls (1, ...) at one instant, their rates per second and the rates of these."""
 
     value: Controls
     rate: Controls

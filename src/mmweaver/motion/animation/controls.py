@@ -34,7 +34,7 @@ class Controls:
     foot_rad: Float[Array, "n 2 2"]
     knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
     knee_up_rad: Float[Array, " n"]  # where the knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (belly)
-    roll_over_rad: Float[Array, " n"]  # about the body's own long axis, to its left: of somebody who lies
+    roll_over_rad: Float[Array, " n"]  # about the body's own long axis, to its left, of a lying body
     knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay bent as in stepping
     contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
 

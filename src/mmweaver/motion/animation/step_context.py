@@ -132,7 +132,7 @@ class StepContext:
 
     # ---- functions of time
 
-    def repeats(self, natural_s: float, least_s: float, most_s: float, usual: int = 1) -> list[Span]:
+    def repeats(self, natural_s: float, min_s: float, max_s: float, usual: int = 1) -> list[Span]:
         """The repetitions: as many as the sentence asks for, else the usual number.
 
         Several without a number are two, or more where the time allows it.
@@ -140,13 +140,13 @@ class StepContext:
         whole_body = self.style == "several" and not self.step.upper
         count = self.count or (max(2, int(self.duration_s / natural_s)) if whole_body else usual)
         wanted = natural_s / self.step.pace * self.by_speed(1.35, 1.0, 0.8) * float(np.exp(self.rng.normal(0, 0.07)))
-        each = float(np.clip(min(wanted, self.duration_s / count), least_s, most_s))
+        each = float(np.clip(min(wanted, self.duration_s / count), min_s, max_s))
         spare = 0.0 if count > 1 else max(self.duration_s - each, 0.0)
         begin = self.start_s + min(0.1, 0.3 * spare)
         return [Span(self.time_s, begin + k * each, each) for k in range(count)]
 
     def in_turn(
-        self, usual_s: float, least_s: float, most_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
+        self, usual_s: float, min_s: float, max_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
     ) -> list[Span]:
         """Repetitions that fill the step: as many as asked for, else as the time allows at `usual_s` each.
 
@@ -154,7 +154,7 @@ class StepContext:
         """
         fits = self.duration_s / usual_s
         count = self.count or max(fewest, int(fits + more) if more else round(fits))
-        each = float(np.clip(self.duration_s / count, least_s, most_s))
+        each = float(np.clip(self.duration_s / count, min_s, max_s))
         return [Span(self.time_s, self.start_s + (k + lag) * each, each) for k in range(count)]
 
     def cycles(self, slow: float, usual: float, fast: float, low_hz: float, high_hz: float) -> tuple[float, float]:

@@ -83,7 +83,7 @@ def place_clip(
 
 
 def floor_under(joints_m: Float[Array, "frame 22 3"], height_m: float) -> float:
-    """Height in metres of the recording's floor: the lowest joints less the height of a standing foot's joint; z up.
+    """Height in metres of the recording's floor: the lowest joints minus the height of a standing foot's joint; z up.
 
     Uses the second percentile of the lowest joint over time, so that a single bad frame does not count.
     """

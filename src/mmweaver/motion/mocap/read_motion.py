@@ -105,7 +105,7 @@ def _rate(fps: float | None, label: str) -> float:
     if fps is None:
         raise InputError(f"{label} states no frame rate; give --motion-fps (HumanML3D and MotionGPT: 20)")
     if not (math.isfinite(fps) and low <= fps <= high):
-        raise InputError(f"a motion has {low:g} to {high:g} frames a second, not {fps:g}; give --motion-fps")
+        raise InputError(f"a motion has {low:g} to {high:g} frames per second, not {fps:g}; give --motion-fps")
     return float(fps)
 
 

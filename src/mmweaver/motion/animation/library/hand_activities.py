@@ -72,7 +72,7 @@ def counting_on_fingers(act: StepContext) -> None:
 
 @gesture("brush_teeth")
 def brushing_teeth(act: StepContext) -> None:
-    """A hand in front of the mouth moves to and fro by a few centimetres, three times a second."""
+    """A hand in front of the mouth moves to and fro by a few centimetres, three times per second."""
     side, phase = act.one_side(), act.phase(act.tempo(2.0, 2.8, 3.6))
     stroke = np.sin(phase + act.rng.uniform(0, 2 * np.pi)) * act.vary(0.011)
     drift = act.wander(0.1, 0.4)
@@ -241,7 +241,7 @@ def breathing_deeply(act: StepContext) -> None:
 
 @gesture("tremble")
 def trembling(act: StepContext) -> None:
-    """Arms drawn to the chest; they shake six to nine times a second in bouts, and the trunk and the head with them.
+    """Arms drawn to the chest; they shake six to nine times per second in bouts, and the trunk and the head with them.
 
     Rates as of shivering and of enhanced physiological tremor (6 to 12 Hz; Deuschl et al., "Consensus statement of the
     Movement Disorder Society on tremor", 1998); some 1 cm at the hands.

@@ -93,7 +93,7 @@ def jumping(act: StepContext) -> None:
 
 @posture("hop")
 def hopping(act: StepContext) -> None:
-    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
+    """Small quick jumps from the ankles, about two per second, the arms bent and almost still."""
     _bounce(act, act.start_s, act.duration_s)
     act.add(1, elbow=act.uniform(0.0, 1.1), flexion=0.1)
 

@@ -242,10 +242,10 @@ def downward_dog(act: StepContext) -> None:
     act.arm((2.75, 0.12, 0.0, 0.08), held)
 
 
-def _there_and_back(act: StepContext, usual_s: float, least_s: float, most_s: float) -> PerTime:
+def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float) -> PerTime:
     """0 to 1 and back (n,), as often as asked for or as the time allows, each a little different and with a hold."""
     ramp = 0.5 * (1 - act.uniform(0.05, 0.3))
-    spans = act.in_turn(usual_s, least_s, most_s)
+    spans = act.in_turn(usual_s, min_s, max_s)
     return np.sum([act.vary(1.0, 0.06) * span.plateau(0, 0.98, ramp, ramp) for span in spans], axis=0)
 
 
