@@ -123,7 +123,7 @@ ROWS = (
         f"{ONE} --motion {{motion}}",
         (plus("HumanML3D and MotionGPT: 20", "--motion-fps", "20"),),
     ),
-    Row("frames a second, not", f"{ONE} --motion {{motion}} --motion-fps 0", (add("--motion-fps", "30"),)),
+    Row("frames per second, not", f"{ONE} --motion {{motion}} --motion-fps 0", (add("--motion-fps", "30"),)),
     Row("is a person of", f"{ONE} --motion {{giant}} --motion-fps 30", (add("--motion-unit", "0.1"),)),
     Row(
         "the upward axis cannot be estimated",

@@ -8,19 +8,12 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
-from mmweaver.core.skeleton import BONES, joint
+from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
-
-ACTIVITIES = (
-    "walks", "walks slowly", "jogs", "waves", "claps", "does jumping jacks", "jumps", "raises the left hand",
-    "raises the right hand", "sits", "sits and drinks", "squats", "punches", "stands", "turns around", "sits down",
-    "stands up", "drinks", "walks while waving", "walks to the left, then sits down",
-    "claps, then does two jumping jacks, then squats",
-)  # fmt: skip
 
 
 def motion(text: str, scene: Scene | None = None, seed: int = 0, duration_s: float = 2.0, **more) -> Motion:
@@ -30,31 +23,6 @@ def motion(text: str, scene: Scene | None = None, seed: int = 0, duration_s: flo
 def speeds(made: Motion) -> np.ndarray:
     pose = made.pose
     return np.linalg.norm(np.gradient(pose.joints_m, pose.time_s, axis=0), axis=-1)
-
-
-@pytest.mark.parametrize("text", ACTIVITIES)
-def test_every_activity_keeps_bones_floor_and_human_limits(text: str):
-    """Each with a seed of its own; `library/test_activity_registry.py` tries every activity with three."""
-    seed = len(text) % 7
-    duration = 5.0 if "," in text else 2.0
-    made = motion(text, seed=seed, duration_s=duration)
-    joints, time = made.pose.joints_m, made.pose.time_s
-    assert np.isfinite(joints).all()
-    assert time[0] < 0
-    assert time[-1] > duration
-    for parent, child in BONES:
-        length = np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1)
-        assert np.ptp(length) < 1e-3
-    assert joints[..., 2].min() > FLOOR_Z_M - 0.01
-    low = joints[:, [10, 11], 2].min(axis=1) - FLOOR_Z_M
-    if "jump" not in text and "jog" not in text:
-        assert low.max() < 0.05, "the lowest foot is on the floor"
-    speed = speeds(made)
-    acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
-    assert speed.max() < 7.0
-    assert speed.max() > (0.005 if text == "stands" else 0.02)
-    assert acceleration.max() < 160
-    assert speed[:, 0].max() < (3.3 if "jog" in text else 2.6)
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_seed_another_motion():
@@ -103,7 +71,7 @@ def test_walking_backwards_faces_the_other_way():
 def test_a_person_in_place_faces_this_way_and_that():
     """The sentence leaves it open, so it varies by seed."""
     ahead = []
-    for seed in range(8):
+    for seed in range(5):
         joints = motion("claps", seed=seed).pose.joints_m
         reach = (joints[:, [20, 21]].mean(axis=1) - joints[:, 0])[:, :2].mean(axis=0)
         ahead.append(reach / np.linalg.norm(reach))
@@ -133,7 +101,7 @@ def planted(joints: np.ndarray, foot: str, toe: str) -> list[np.ndarray]:
     return [ball[run] for run in runs if flat[run[0]] and len(run) > 8]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_feet_do_not_slide(seed: int):
     for text in ("walks", "walks quickly to the left", "walks, then claps", "walks in a circle", "turns around"):
         joints = motion(text, seed=seed, duration_s=3.0, height_m=1.75).pose.joints_m

@@ -20,7 +20,7 @@ TEXTS = ["a person walks to the left", "a person walks to the right", "someone d
 PLANS = [plan_motion(text, 2.0) for text in TEXTS]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_nobody_comes_too_near(seed: int):
     people = compose_people(PLANS[:3], SCENE, seed=seed, **REST)
     for one, other in combinations(people, 2):
@@ -29,7 +29,7 @@ def test_nobody_comes_too_near(seed: int):
         assert body_m >= 0.02
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_the_radars_own_bodies_do_not_touch_either(seed: int):
     """No corner of one person's hull lies within the other's capsules, at any time."""
     people = compose_people(PLANS[:2], SCENE, seed=seed, **REST)

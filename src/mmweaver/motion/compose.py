@@ -11,6 +11,9 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Shape, Step
 from mmweaver.motion.language.step_names import add_shown_text, in_turn
 from mmweaver.motion.people import Person, person_of, subject_of, with_habits
+from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
+from mmweaver.motion.language.step_names import in_turn, with_what_is_shown
+from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair
 from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
@@ -82,7 +85,7 @@ def compose(
         range_window_m: nearest and farthest slant range that the radar keeps; the body stays inside.
         start_m: where the person starts, (x, y); chosen if None.
         height_m: the body's height; if None as the sentence describes the person, else of the population.
-        subject: who it is: surface, build, habits and usual height; drawn by the seed if None.
+        subject: who it is: surface, build, habits and usual height; sampled by the seed if None.
         heading_rad: where the body faces first, from +x towards +y; chosen if None.
         is_varied: False keeps people who stand facing the radar, where it sees them best, and gives them no habits.
         person: instead of the two, a person made otherwise.
@@ -91,8 +94,8 @@ def compose(
         has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
             walk leads where there is room, and an assumption says so.
         after: how the motion before ended, which this one goes on from (see `continuous`).
-        may_touch: where nothing else has room, what travels is done on the spot, falls go another way, and who lies
-            touches furniture, all of it said. False raises instead.
+        may_touch: where nothing else has room, travelling movements are done on the spot, falls go another way, and a
+            lying body touches furniture; each deviation is reported. False raises instead.
 
     Raises InputError where the room has no place for the motion.
     """
@@ -100,7 +103,7 @@ def compose(
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
     plan = settled(plan if has_photo else drop_targets(plan))
     person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
-    plan = with_habits(plan, person)
+    plan = apply_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
     plan, running_notes = _running(plan, floor)
@@ -142,7 +145,7 @@ def _depth_m(result: RankedPlacement) -> float:
 
 
 def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:
-    """Running to and fro takes more room than most rooms have: without a direction it is then on the spot, and said."""
+    """Running to and fro takes more room than most rooms have: without a direction it is then on the spot."""
     if not any(_runs_anywhere(step) for step in plan.steps):
         return plan, ()
     longest_m = floor.longest_free_m(RUN_ROOM_M)

@@ -21,7 +21,7 @@ from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.plan_resumption import HELD_FIRST_S, continued, goes_on, posture_held
 from mmweaver.motion.language.sentence_parser import parse_sentence
 from mmweaver.motion.language.timing import natural_s, schedule
-from mmweaver.motion.people import Person, person_of, subject_of, with_habits
+from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.seating import preferred, usable_seats
@@ -79,7 +79,7 @@ class ContinuousMotion:
         """The motion of a parsed sentence, from how the last part ends. Raises InputError where there is no room."""
         person = self._person or person_of(self._subject, plan.person, self._height_m)
         before = None if self._end is None else _held(self._end, HELD_FIRST_S)
-        usual = with_habits(plan, person)
+        usual = apply_habits(plan, person)
         try:
             whole = continued(usual, before, seat_m=self._way_to_seat_m(plan, person))
             part = self._compose(whole, person, plan.text, may_touch=False)
@@ -89,7 +89,7 @@ class ContinuousMotion:
         return part
 
     def _walked_on(self, usual: MotionPlan, before: Step | None, plan: MotionPlan, person: Person) -> MotionPart | None:
-        """The plan after a walk to where there is room for it; None where nobody can walk, or there is none."""
+        """The plan after a walk to where there is room for it; None where the body cannot walk, or there is none."""
         if before is None or before.posture != "feet" or plan.steps[0].moves:
             return None
         walk = replace(plan.steps[0], lower="walk", upper="", direction=None, seconds=WALK_ON_S)
@@ -114,7 +114,7 @@ class ContinuousMotion:
         return replace(self._compose(held, person, self._last.text), refused=refused)
 
     def cut(self, end_frame: int) -> None:
-        """The last part ends at this frame already, because something new is said."""
+        """The last part ends at this frame already, because a new sentence has arrived."""
         assert self._last is not None
         self._last = replace(self._last, num_frames=end_frame - self._last.first_frame)
 

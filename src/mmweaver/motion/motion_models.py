@@ -54,7 +54,7 @@ def load_motion_model(name: str) -> MotionModel:
     module, colon, attribute = name.partition(":")
     if colon and all(part.isidentifier() for part in (*module.split("."), attribute)):
         return _imported(module, attribute)
-    return partial(_of_motiongpt, name)
+    return partial(_run_motiongpt, name)
 
 
 def clip_of(model: MotionModel, task: MotionTask) -> MotionClip:
@@ -99,7 +99,7 @@ def _imported(module: str, attribute: str) -> MotionModel:
     return model
 
 
-def _of_motiongpt(name: str, task: MotionTask) -> MotionClip:
+def _run_motiongpt(name: str, task: MotionTask) -> MotionClip:
     """MotionGPT; it knows neither start nor path, which the placement in the room supplies as far as it can."""
     from dataclasses import replace
 

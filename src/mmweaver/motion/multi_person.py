@@ -98,7 +98,7 @@ def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int
 
 
 def _subjects(seed: int, given: list[int | None]) -> list[int]:
-    """Everybody's number: as given, else drawn by the seed, no number twice. Raises InputError for one given twice."""
+    """Each person's number, as given or sampled by the seed, all different. Raises InputError for one given twice."""
     fixed = [check_subject(subject) for subject in given if subject is not None]
     if len(set(fixed)) < len(fixed):
         raise InputError(f"nobody is there twice; the subjects {', '.join(map(str, fixed))} must differ")

@@ -26,7 +26,7 @@ ADULT_M = {"male": (1.756, 0.069), "female": (1.629, 0.064)}  # mean, standard d
 YOUNG_M = {"baby": (0.81, 0.01), "toddler": (0.85, 0.03), "child": (1.33, 0.07)}
 TEENAGER_M = {"male": (1.68, 0.08), "female": (1.61, 0.065)}
 OLD_SHORTER_M = 0.04
-MOST_SDS = 2.5  # nobody is farther from the mean
+MAX_SDS = 2.5  # standard deviations from the mean, at most
 TALL_SDS = (1.0, 2.0)  # of "tall", and the other way of "short"
 GIANT_SDS = (4.0, 5.0)  # of "giant", and the other way of "dwarf"
 # relative to the average man's, at equal height
@@ -79,33 +79,33 @@ def person_of(subject: int, described: DescribedPerson | None = None, height_m: 
 
     Raises InputError for a height that no body has.
     """
-    said = described or DescribedPerson()
+    traits = described or DescribedPerson()
     rng = stream(check_subject(subject), "motion", "person")
     draws = rng.random(3)  # sex, hand, build: drawn always, so that a description changes nothing else
-    sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MOST_SDS, MOST_SDS)
-    sex = said.sex or ("male" if draws[0] < 0.5 else "female")
-    if said.stature:
-        usual_sds = GIANT_SDS if abs(said.stature) > 1 else TALL_SDS
-        sds = float(np.sign(said.stature) * np.interp(draws[2], (0, 1), usual_sds))
-    mean, spread = YOUNG_M.get(said.age) or (TEENAGER_M if said.age == "teenager" else ADULT_M)[sex]
-    if said.age == "old":
+    sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MAX_SDS, MAX_SDS)
+    sex = traits.sex or ("male" if draws[0] < 0.5 else "female")
+    if traits.stature:
+        usual_sds = GIANT_SDS if abs(traits.stature) > 1 else TALL_SDS
+        sds = float(np.sign(traits.stature) * np.interp(draws[2], (0, 1), usual_sds))
+    mean, spread = YOUNG_M.get(traits.age) or (TEENAGER_M if traits.age == "teenager" else ADULT_M)[sex]
+    if traits.age == "old":
         mean -= OLD_SHORTER_M
     low, high = ALLOWED_M
     drawn_m = float(np.clip(mean + spread * sds, low + 0.02, high))
     if height_m is None:
-        height_m = said.height_m or drawn_m
-    girth = GIRTH[said.age if said.age in GIRTH else sex] * float(np.exp(GIRTH_SPREAD * girth_sds))
-    if said.build:
-        girth = float(np.interp(draws[2], (0, 1), HEAVY if said.build > 0 else SLIM))
-    own_pace, usual_pace = float(np.exp(PACE_SPREAD * pace_sds)), (said.pace(moves=True), said.pace(moves=False))
+        height_m = traits.height_m or drawn_m
+    girth = GIRTH[traits.age if traits.age in GIRTH else sex] * float(np.exp(GIRTH_SPREAD * girth_sds))
+    if traits.build:
+        girth = float(np.interp(draws[2], (0, 1), HEAVY if traits.build > 0 else SLIM))
+    own_pace, usual_pace = float(np.exp(PACE_SPREAD * pace_sds)), (traits.pace(moves=True), traits.pace(moves=False))
     return Person(
-        height_m=height_m, subject=subject, sex=sex, age=said.age or "adult", girth=round(girth, 4),
+        height_m=height_m, subject=subject, sex=sex, age=traits.age or "adult", girth=round(girth, 4),
         pace=own_pace * usual_pace[0], pace_on_the_spot=own_pace * usual_pace[1],
-        hand="left" if draws[1] < LEFT_HANDED else "right", described=said.words if said.is_described else "",
+        hand="left" if draws[1] < LEFT_HANDED else "right", described=traits.words if traits.is_described else "",
     )  # fmt: skip
 
 
-def with_habits(plan: MotionPlan, person: Person) -> MotionPlan:
+def apply_habits(plan: MotionPlan, person: Person) -> MotionPlan:
     """The plan as this person carries it out: at their pace, mostly with their usual hand."""
     steps = tuple(
         replace(step, pace=person.pace if step.moves else person.pace_on_the_spot, usual_hand=person.hand)

@@ -5,7 +5,7 @@ import pytest
 from mocap_files import walk
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_reflected, metres_of, unit_of, up_of, with_z_up
+from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_reflected, metres_of, rotate_z_up, unit_of, up_of
 
 
 @pytest.mark.parametrize("unit", UNITS_M)
@@ -29,13 +29,13 @@ def test_what_could_be_anything_is_asked_for():
 @pytest.mark.parametrize("up", UPS)
 def test_up_is_where_the_head_is(up: str):
     """A body turned so that `up` is up is found and turned back, never mirrored."""
-    to_up = with_z_up(np.repeat(np.eye(3)[:, None], 22, axis=1), up)[:, 0].T  # columns: where the file's axes go
+    to_up = rotate_z_up(np.repeat(np.eye(3)[:, None], 22, axis=1), up)[:, 0].T  # columns: where the file's axes go
     lying = walk() @ to_up  # the inverse rotation, for rows
     assert np.linalg.det(to_up) == pytest.approx(1.0)
     found, note = up_of(lying, None, "walk")
     assert found == up
     assert up in note
-    np.testing.assert_allclose(with_z_up(lying, found), walk(), atol=1e-12)
+    np.testing.assert_allclose(rotate_z_up(lying, found), walk(), atol=1e-12)
 
 
 def test_who_lies_is_asked_about():

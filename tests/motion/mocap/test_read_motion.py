@@ -46,19 +46,6 @@ def test_units_axes_and_kinds(tmp_path: Path, kind: str, up: str, unit: float):
     assert any("upward axis" in note for note in clip.notes)
 
 
-@pytest.mark.parametrize("seconds", [0.8, 2.0])
-def test_a_bvh_of_the_cmu_collection_is_known_by_its_unit(tmp_path: Path, seconds: float):
-    """Names, unit (1 is 0.05644 m), axes and 120 frames a second as in the BVH conversions; clips may be short."""
-    theirs, joints = CONVENTIONS["cmu"], walk(fps=120.0)[: round(120 * seconds)]
-    names = tuple(theirs.get(name, name) for name in JOINT_NAMES)
-    write_bvh(tmp_path / "01_01.bvh", y_up(joints) * 0.45 / 0.0254, names=names, fps=120.0, order="ZYX")
-    clip = read_motion(tmp_path / "01_01.bvh")
-    assert clip.fps == pytest.approx(120.0)
-    assert clip.height_m == pytest.approx(1.75, abs=0.05)
-    assert any("the CMU collection's unit" in note for note in clip.notes)
-    np.testing.assert_allclose(shape_of(clip.joints_m), shape_of(joints), atol=0.01)
-
-
 @pytest.mark.parametrize("kind", ["npz", "bvh"])
 def test_bones_of_a_clip_of_the_cmu_collection_have_their_metres(tmp_path: Path, kind: str):
     """The collection's own unit in .bvh, metres in the arrays of its 38 joints."""
@@ -115,8 +102,8 @@ def test_what_cannot_be_read_is_refused_in_one_line(tmp_path: Path):
         ("none.bvh", {}, r"there is no motion file \S+none.bvh; give .*\.bvh"),
         ("walk.fbx", {}, r"read from \.bvh"),
         ("walk.npy", {}, "--motion-fps"),
-        ("walk.npy", {"fps": 0.0}, "frames a second"),
-        ("walk.npy", {"fps": float("nan")}, "frames a second"),
+        ("walk.npy", {"fps": 0.0}, "frames per second"),
+        ("walk.npy", {"fps": float("nan")}, "frames per second"),
         ("walk.npy", {"fps": 20.0, "unit": "yard"}, "unit of length"),
         ("walk.npy", {"fps": 20.0, "clip": "b"}, "--clip"),
         ("short.npy", {"fps": 20.0}, "1 frames"),

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import PARENTS, joint
-from mmweaver.motion.mocap.axes import is_reflected, with_z_up
+from mmweaver.motion.mocap.axes import is_reflected, rotate_z_up
 from mmweaver.motion.mocap.clip import body_height
 from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward, rate_of, read_smpl
 
@@ -25,7 +25,7 @@ def test_at_rest_it_is_the_mean_body_in_a_t_pose():
     assert at[joint("left_wrist"), 0] - at[joint("right_wrist"), 0] == pytest.approx(1.40, abs=0.05)
     assert at[joint("head"), 1] - at[joint("left_ankle"), 1] == pytest.approx(1.45, abs=0.05)
     assert body_height(raw.positions) == pytest.approx(1.71, abs=0.03)
-    assert not is_reflected(with_z_up(raw.positions, "y"))
+    assert not is_reflected(rotate_z_up(raw.positions, "y"))
 
 
 def test_rotations_turn_what_is_below_them():

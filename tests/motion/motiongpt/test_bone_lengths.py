@@ -4,13 +4,13 @@ import numpy as np
 from mocap_files import walk
 
 from mmweaver.core.skeleton import BONES
-from mmweaver.motion.motiongpt.bone_lengths import with_constant_bone_lengths
+from mmweaver.motion.motiongpt.bone_lengths import fix_bone_lengths
 
 
 def test_stretching_goes_and_directions_stay():
     joints = walk()
     noisy = joints + np.random.default_rng(0).normal(0, 0.01, joints.shape)
-    steady = with_constant_bone_lengths(noisy)
+    steady = fix_bone_lengths(noisy)
     for parent, child in BONES:
         length = np.linalg.norm(steady[:, child] - steady[:, parent], axis=-1)
         assert np.ptp(length) < 1e-9
@@ -21,4 +21,4 @@ def test_stretching_goes_and_directions_stay():
 
 
 def test_a_body_of_steady_bones_is_left_alone():
-    np.testing.assert_allclose(with_constant_bone_lengths(walk()), walk(), atol=1e-9)
+    np.testing.assert_allclose(fix_bone_lengths(walk()), walk(), atol=1e-9)

@@ -17,10 +17,16 @@ Array = np.ndarray
 def reach(
     body: SkeletonProportions, target_m: Float[Array, "n 3"], elbow: Sequence[float] = (-0.3, 0.5, -1.0)
 ) -> Float[Array, "n 4"]:
-    """Angles (n, 4) in radians of an arm whose wrist is at `target_m`, relative to spine3 in the chest's frame.
+    """Arm angles that bring a wrist to a place; one out of reach is approached as far as the arm goes.
 
-    y is outward (left for the left arm, right for the right arm), so that one target serves both arms.
-    `elbow` is the direction in which the elbow points. A target out of reach is approached as far as the arm goes.
+    Args:
+        body: whose bones.
+        target_m: place of the wrist (n, 3) in metres from spine3 in the chest's frame, y outward (left for the left
+            arm, right for the right one), so that one target serves both arms.
+        elbow: direction in which the elbow points, in the same axes.
+
+    Returns:
+        Flexion, abduction, twist and elbow flexion (n, 4) in radians.
     """
     angles = np.zeros((len(target_m), 4))
     collar = body.offset_m[joint("left_collar")]

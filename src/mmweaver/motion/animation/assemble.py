@@ -26,7 +26,14 @@ _IN_THE_AIR = ("jump", "leap", "hop", "hop_one_leg", "jumping_jacks", "jog", "tu
 
 
 def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:
-    """Times (n,) in seconds at 120 Hz, from two samples before 0 to at least two samples after the end."""
+    """Times at which motions are composed.
+
+    Args:
+        duration_s: of the motion, in seconds.
+
+    Returns:
+        Times (n,) in seconds at 120 Hz, from two samples before 0 to at least two samples after the end.
+    """
     count = int(np.ceil(duration_s * RATE_HZ - 1e-9))
     return np.arange(-MARGIN_SAMPLES, count + MARGIN_SAMPLES + 1) / RATE_HZ
 
@@ -41,13 +48,36 @@ def assemble(
     floor_z_m: float,
     habits: Habits = NO_HABITS,
 ) -> PoseSequence:
-    """Animates every step along the path, blends neighbours and solves the joints, in the radar's frame."""
+    """Animates every step along the path, blends neighbours and solves the joints.
+
+    Args:
+        steps: the scheduled steps of a plan in their order, each with its moves.
+        path: position and heading of the root over time.
+        body: whose bones.
+        seed: decides what the sentence leaves open.
+        duration_s: of the motion, in seconds.
+        floor_z_m: height of the floor in the radar's frame.
+        habits: of the person; none by default.
+
+    Returns:
+        The motion at `dense_times`, in the radar's frame.
+    """
     controls = assembled_controls(steps, path, body, seed=seed, duration_s=duration_s, habits=habits)
     return solved(controls, body, duration_s=duration_s, floor_z_m=floor_z_m)
 
 
 def solved(controls: Controls, body: SkeletonProportions, *, duration_s: float, floor_z_m: float) -> PoseSequence:
-    """The joints of controls at `dense_times`, in the radar's frame."""
+    """The joints of controls.
+
+    Args:
+        controls: at `dense_times`.
+        body: whose bones.
+        duration_s: of the motion, in seconds.
+        floor_z_m: height of the floor in the radar's frame.
+
+    Returns:
+        The motion in the radar's frame.
+    """
     joints_m = solve(body, controls)
     joints_m[..., 2] += floor_z_m
     return PoseSequence(time_s=dense_times(duration_s), joints_m=joints_m, height_m=body.height_m)
@@ -63,7 +93,20 @@ def assembled_controls(
     habits: Habits = NO_HABITS,
     entry: ControlsState | None = None,
 ) -> Controls:
-    """Controls at `dense_times` of every step along the path, neighbours blended; they begin in the state `entry`."""
+    """Animates every step along the path and blends neighbours.
+
+    Args:
+        steps: the scheduled steps of a plan in their order, each with its moves.
+        path: position and heading of the root over time.
+        body: whose bones.
+        seed: decides what the sentence leaves open; each step has a random stream of its own.
+        duration_s: of the motion, in seconds.
+        habits: of the person; none by default.
+        entry: the state in which the motion begins; that of the first step by default.
+
+    Returns:
+        Controls at `dense_times`.
+    """
     time_s = dense_times(duration_s)
     parts, starts, blends = [], [], []
     steps = _merge_gait(steps)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.controls import TURNING, Array, Controls, whole_turns
+from mmweaver.motion.animation.controls import FEET, TURNING, Array, Controls, scaled, whole_turns
 from mmweaver.motion.animation.profiles import bump
 
 FADING_S = 0.6
@@ -22,7 +22,7 @@ STEP_HEIGHT_M, SHUFFLE_M = 0.05, 0.1  # of a step over much more than the second
 
 @dataclass(frozen=True, kw_only=True)
 class ControlsState:
-    """Controls (1, ...) at one instant, their rates a second and the rates of these."""
+    """Controls (1, ...) at one instant, their rates per second and the rates of these."""
 
     value: Controls
     rate: Controls
@@ -30,7 +30,16 @@ class ControlsState:
 
     @classmethod
     def at(cls, controls: Controls, time_s: Float[Array, " n"], at_s: float) -> "ControlsState":
-        """Of controls at times (n,), at a time within them."""
+        """The state at one instant, by cubic splines.
+
+        Args:
+            controls: at the times `time_s` (n,), in seconds.
+            time_s: increasing times.
+            at_s: the instant, within them.
+
+        Returns:
+            Values, rates and accelerations; angles of a roll are unwrapped first.
+        """
         from scipy.interpolate import CubicSpline
 
         near = np.abs(time_s - at_s) < 0.2
@@ -51,7 +60,16 @@ class ControlsState:
 
 
 def carried_over(controls: Controls, time_s: Float[Array, " n"], before: ControlsState) -> Controls:
-    """The controls, changed within FADING_S from time 0 such that they begin in the state `before`."""
+    """Makes a motion begin in a given state.
+
+    Args:
+        controls: of the motion, at the times `time_s` (n,) in seconds.
+        time_s: increasing times; the seam is at 0.
+        before: the state at the seam.
+
+    Returns:
+        The controls, changed within FADING_S from the seam on.
+    """
     own = ControlsState.at(controls, time_s, 0.0)
     u = np.clip(time_s / FADING_S, 0.0, 1.0)
     each = np.clip(np.stack([u / STEP_SHARE, (u - 1 + STEP_SHARE) / STEP_SHARE], axis=1), 0.0, 1.0)
@@ -68,10 +86,9 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
         if field.name == "arm_rad":
             gaps[0][..., TURNING] -= whole_turns(gaps[0][..., TURNING])
         values = getattr(controls, field.name)
-        of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
         shares = _moving_and_left(u, FADING_S)
-        shares = (_left(each), *shares[1:]) if of_feet else shares
-        offset = sum(_over(share, values.ndim) * gap for share, gap in zip(shares, gaps, strict=True))
+        shares = (_left(each), *shares[1:]) if field.name in FEET else shares
+        offset = sum(scaled(np.broadcast_to(gap, values.shape), share) for share, gap in zip(shares, gaps, strict=True))
         changed[field.name] = values + offset
         if field.name in ("contact", "knee_room"):  # shares, whose rates would lead them on beyond 0 and 1
             known = np.stack([values, np.broadcast_to(getattr(before.value, field.name), values.shape)])
@@ -113,7 +130,3 @@ def _moving_and_left(u: Float[Array, " n"], lasts_s: float) -> tuple[Array, Arra
 def _left(u: Array) -> Array:
     """1 at 0, 0 from 1 on, smooth to the second derivative at both ends."""
     return np.asarray((1 - u) ** 3 * (1 + 3 * u + 6 * u**2))
-
-
-def _over(share: Array, ndim: int) -> Array:
-    return share.reshape(share.shape + (1,) * (ndim - share.ndim))

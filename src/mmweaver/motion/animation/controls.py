@@ -11,6 +11,7 @@ from jaxtyping import Float
 Array = np.ndarray
 LEFT, RIGHT = 0, 1
 OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
+FEET = ("foot_m", "foot_rad", "contact", "knee_out_rad")  # fields that each foot has of its own
 TURNING = (0, 2)  # of the angles of an arm: flexion and twist go round
 
 
@@ -33,7 +34,7 @@ class Controls:
     foot_rad: Float[Array, "n 2 2"]
     knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
     knee_up_rad: Float[Array, " n"]  # where the knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (belly)
-    roll_over_rad: Float[Array, " n"]  # about the body's own long axis, to its left: of somebody who lies
+    roll_over_rad: Float[Array, " n"]  # about the body's own long axis, to its left, of a lying body
     knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay bent as in stepping
     contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
 
@@ -59,21 +60,39 @@ CHANNELS |= {"heading": ("heading_rad", None), "contact": ("contact", None)}
 
 
 def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[Float[Array, "n 2"]]) -> Controls:
-    """Weighted sum of Controls over the same times; weights sum to 1 at each time, feet have their own (n, 2)."""
+    """Weighted sum of Controls over the same times.
+
+    Args:
+        parts: the Controls.
+        weights: of each part, (n,); they sum to 1 at each time.
+        feet: the same for what each foot has of its own, (n, 2).
+
+    Returns:
+        The blended Controls.
+    """
     values: dict[str, Array] = {}
     for field in fields(Controls):
-        of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
-        total = 0.0
-        for part, weight, foot in zip(parts, weights, feet, strict=True):
-            value = getattr(part, field.name)
-            share = foot if of_feet else weight
-            total = total + value * share.reshape(share.shape + (1,) * (value.ndim - share.ndim))
-        values[field.name] = np.asarray(total)
+        shares = feet if field.name in FEET else weights
+        values[field.name] = np.asarray(
+            sum(scaled(getattr(part, field.name), share) for part, share in zip(parts, shares, strict=True))
+        )
     return Controls(**values)
 
 
+def scaled(values: Array, share: Array) -> Array:
+    """Values (n, ...) times shares (n,) or (n, 2)."""
+    return values * share.reshape(share.shape + (1,) * (values.ndim - share.ndim))
+
+
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Float[Array, "..."] | float) -> None:
-    """Blends an arm's angles to `arm`, (4,) or (n, 4), as `weight` (n,) goes to 1."""
+    """Blends the angles of an arm, in place.
+
+    Args:
+        controls: whose `arm_rad` changes.
+        side: LEFT or RIGHT.
+        arm: flexion, abduction, twist and elbow flexion in radians, (4,) or (n, 4).
+        weight: 0 keeps the angles, 1 replaces them; (n,) or a number.
+    """
     controls.arm_rad[:, side] += np.asarray(weight)[..., None] * (arm - controls.arm_rad[:, side])
 
 
@@ -82,7 +101,7 @@ def whole_turns(gap_rad: Array) -> Array:
     return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))
 
 
-def _without_whole_turns(before: Controls, part: Controls, at: int) -> None:
+def _remove_whole_turns(before: Controls, part: Controls, at: int) -> None:
     """Takes whole turns out of the arms of a part: who has circled them does not turn them back afterwards."""
     at = min(at, len(part.heading_rad) - 1)
     for angle in TURNING:
@@ -92,14 +111,21 @@ def _without_whole_turns(before: Controls, part: Controls, at: int) -> None:
 def blended(
     parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
 ) -> Controls:
-    """Concatenates parts: part k takes over around `starts_s[k]`, within `blends_s[k]` seconds.
+    """Concatenates parts; where the feet of two are at different positions, they step over one after the other.
 
-    Where the feet of two parts are at different positions, they step over one after the other.
+    Args:
+        parts: Controls of each step, all at the times `time_s` (n,) in seconds.
+        starts_s: time around which each part takes over.
+        blends_s: seconds within which it does.
+        time_s: increasing times.
+
+    Returns:
+        Controls at the same times.
     """
     from mmweaver.motion.animation.profiles import bump, rise
 
     for before, part, start_s in zip(parts, parts[1:], starts_s[1:], strict=False):
-        _without_whole_turns(before, part, int(np.searchsorted(time_s, start_s)))
+        _remove_whole_turns(before, part, int(np.searchsorted(time_s, start_s)))
     ups, foot_ups, lift = [np.ones_like(time_s)], [np.ones((len(time_s), 2))], np.zeros((len(time_s), 2))
     for k in range(1, len(parts)):
         u = (time_s - starts_s[k]) / blends_s[k] + 0.5

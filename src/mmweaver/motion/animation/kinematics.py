@@ -22,17 +22,17 @@ LONGEST_LEG = 0.9995  # and of any leg
 SIDES = ("left", "right")
 
 
-def about_x(angle: Angles) -> Frames:
+def rotation_x(angle: Angles) -> Frames:
     """Rotation matrices (n, 3, 3) about x; angles (n,) in radians."""
     return _about(angle, 1, 2)
 
 
-def about_y(angle: Angles) -> Frames:
+def rotation_y(angle: Angles) -> Frames:
     """Rotation matrices (n, 3, 3) about y."""
     return _about(angle, 2, 0)
 
 
-def about_z(angle: Angles) -> Frames:
+def rotation_z(angle: Angles) -> Frames:
     """Rotation matrices (n, 3, 3) about z."""
     return _about(angle, 0, 1)
 
@@ -55,15 +55,23 @@ def rotated(frame: Frames, vector: Array) -> Vectors:
 
 def roll_pitch_yaw(angles: Vectors) -> Frames:
     """Rotations (n, 3, 3) of roll (right side down), pitch (forward) and yaw (to the left), applied in this order."""
-    return about_z(angles[:, 2]) @ about_y(angles[:, 1]) @ about_x(angles[:, 0])
+    return rotation_z(angles[:, 2]) @ rotation_y(angles[:, 1]) @ rotation_x(angles[:, 0])
 
 
 def solve(body: SkeletonProportions, controls: Controls) -> Joints:
-    """Joints (n, 22, 3) in metres in the floor frame (z up from the floor)."""
+    """Solves the joints of a pose at every time.
+
+    Args:
+        body: whose bones.
+        controls: at n times.
+
+    Returns:
+        Joints (n, 22, 3) in metres in the floor frame (z up from the floor).
+    """
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
-    pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
+    pelvis_frame = rotation_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
     if controls.roll_over_rad.any():
-        pelvis_frame = pelvis_frame @ about_z(controls.roll_over_rad)
+        pelvis_frame = pelvis_frame @ rotation_z(controls.roll_over_rad)
     ankles = [_ankle(body, controls, side) for side in (LEFT, RIGHT)]
     joints[:, 0] = _pelvis(body, controls, pelvis_frame, ankles)
     for side in (LEFT, RIGHT):
@@ -77,7 +85,7 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
 def chest_of(body: SkeletonProportions, controls: Controls) -> tuple[Vectors, Frames]:
     """Places (n, 3) in metres of spine3 in the floor frame, and rotations (n, 3, 3) of the chest."""
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
-    pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
+    pelvis_frame = rotation_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
     joints[:, 0] = _pelvis(body, controls, pelvis_frame, [_ankle(body, controls, side) for side in (LEFT, RIGHT)])
     chest_frame = _place_trunk(joints, body, controls, pelvis_frame)
     return joints[:, joint("spine3")], chest_frame
@@ -87,14 +95,14 @@ def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
     """Rotation of the upper arm in the chest's frame, (n, 3, 3)."""
     sign = 1.0 if side == LEFT else -1.0
     flexion, abduction, twist = arm_rad[:, 0], sign * arm_rad[:, 1], sign * arm_rad[:, 2]
-    return about_y(-flexion) @ about_x(abduction) @ about_z(twist)
+    return rotation_y(-flexion) @ rotation_x(abduction) @ rotation_z(twist)
 
 
 def collar_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
     """Rotation of the collar bone, which rises with the arm, (n, 3, 3)."""
     sign = 1.0 if side == LEFT else -1.0
     share = 0.5 - 0.5 * np.cos(arm_rad[:, 0]) * np.cos(arm_rad[:, 1])  # 0 hanging, 1 overhead
-    return about_x(sign * 0.45 * share)
+    return rotation_x(sign * 0.45 * share)
 
 
 def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
@@ -104,7 +112,16 @@ def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
 
 
 def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Vectors:
-    """The ankle (n, 3) from the flat foot's position: the foot pivots on its ball or, toes up, on its heel."""
+    """Where the ankle is: the foot pivots on its ball or, toes up, on its heel.
+
+    Args:
+        body: whose bones.
+        yaw: heading of the foot (n,) in radians.
+        pitch: heel up positive, (n,) in radians.
+
+    Returns:
+        The ankle (n, 3) in metres from the point of the floor under the ankle of the flat foot.
+    """
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
     on_ball = rise((pitch + 0.2) / 0.4)
     forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)
@@ -142,7 +159,7 @@ def _place_leg(
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)
     ankle = hip + reach[:, None] * direction
     yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
-    foot_frame = about_z(yaw) @ about_y(pitch)
+    foot_frame = rotation_z(yaw) @ rotation_y(pitch)
     joints[:, joint(f"{name}_hip")] = hip
     joints[:, joint(f"{name}_knee")] = knee
     joints[:, joint(f"{name}_ankle")] = ankle
@@ -168,7 +185,7 @@ def _place_trunk(joints: Joints, body: SkeletonProportions, controls: Controls, 
         place = place + rotated(frame, body.offset_m[joint(name)])
         joints[:, joint(name)] = place
         frame = frame @ third
-    half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
+    half = rotation_z(controls.head_rad[:, 1] / 2) @ rotation_y(controls.head_rad[:, 0] / 2)
     neck = place + rotated(frame, body.offset_m[joint("neck")])
     joints[:, joint("neck")] = neck
     joints[:, joint("head")] = neck + rotated(frame @ half, body.offset_m[joint("head")])
@@ -181,7 +198,7 @@ def _place_arm(joints: Joints, body: SkeletonProportions, controls: Controls, ch
     shoulder = collar + rotated(chest @ collar_frame(arm, side), body.offset_m[joint(f"{name}_shoulder")])
     upper = chest @ arm_frame(arm, side)
     elbow = shoulder + rotated(upper, body.offset_m[joint(f"{name}_elbow")])
-    lower = upper @ about_y(-arm[:, 3])
+    lower = upper @ rotation_y(-arm[:, 3])
     joints[:, joint(f"{name}_collar")] = collar
     joints[:, joint(f"{name}_shoulder")] = shoulder
     joints[:, joint(f"{name}_elbow")] = elbow

@@ -42,6 +42,10 @@ class Span:
         """`profiles.plateau` from share `begin` to share `end`, with ramps of these shares."""
         return plateau(self.time_s, self.at(begin), self.at(end), up * self.lasts_s, down * self.lasts_s)
 
+    def progress(self) -> PerTime:
+        """Share of the duration that has passed, without limits."""
+        return (self.time_s - self.begin_s) / self.lasts_s
+
     def keys(self, shares: Sequence[Number], values: Sequence[Number]) -> PerTime:
         """`spline_through` keyframes at shares of the duration."""
         return spline_through(self.time_s, [self.at(share) for share in shares], values)
@@ -50,3 +54,8 @@ class Span:
         """Keyframes of a movement in `movements.toml`, smoothly interpolated."""
         record = MOVEMENTS[movement]
         return [self.keys(record["at"], record[name]) for name in names]
+
+
+def sum_plateaus(spans: list[Span], begin: Number, end: Number, up: Number, down: Number) -> PerTime:
+    """The same plateau in each of several repetitions."""
+    return np.sum([span.plateau(begin, end, up, down) for span in spans], axis=0)

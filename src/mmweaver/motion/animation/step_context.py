@@ -12,7 +12,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import CHANNELS, LEFT, OUTWARD, RIGHT, Controls, mix_arm
 from mmweaver.motion.animation.habits import Habits
-from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
+from mmweaver.motion.animation.kinematics import rotated, rotation_y, rotation_z
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
@@ -132,7 +132,7 @@ class StepContext:
 
     # ---- functions of time
 
-    def repeats(self, natural_s: float, least_s: float, most_s: float, usual: int = 1) -> list[Span]:
+    def repeats(self, natural_s: float, min_s: float, max_s: float, usual: int = 1) -> list[Span]:
         """The repetitions: as many as the sentence asks for, else the usual number.
 
         Several without a number are two, or more where the time allows it.
@@ -140,13 +140,13 @@ class StepContext:
         whole_body = self.step.several and not self.step.upper
         count = self.count or (max(2, int(self.duration_s / natural_s)) if whole_body else usual)
         wanted = natural_s / self.step.pace * self.by_speed(1.35, 1.0, 0.8) * float(np.exp(self.rng.normal(0, 0.07)))
-        each = float(np.clip(min(wanted, self.duration_s / count), least_s, most_s))
+        each = float(np.clip(min(wanted, self.duration_s / count), min_s, max_s))
         spare = 0.0 if count > 1 else max(self.duration_s - each, 0.0)
         begin = self.start_s + min(0.1, 0.3 * spare)
         return [Span(self.time_s, begin + k * each, each) for k in range(count)]
 
     def in_turn(
-        self, usual_s: float, least_s: float, most_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
+        self, usual_s: float, min_s: float, max_s: float, *, fewest: int = 1, lag: float = 0.0, more: float = 0.0
     ) -> list[Span]:
         """Repetitions that fill the step: as many as asked for, else as the time allows at `usual_s` each.
 
@@ -154,7 +154,7 @@ class StepContext:
         """
         fits = self.duration_s / usual_s
         count = self.count or max(fewest, int(fits + more) if more else round(fits))
-        each = float(np.clip(self.duration_s / count, least_s, most_s))
+        each = float(np.clip(self.duration_s / count, min_s, max_s))
         return [Span(self.time_s, self.start_s + (k + lag) * each, each) for k in range(count)]
 
     def cycles(self, slow: float, usual: float, fast: float, low_hz: float, high_hz: float) -> tuple[float, float]:
@@ -248,17 +248,16 @@ class StepContext:
             mix_arm(self.controls, side, np.asarray(angles), weight)
 
     def hand_to(
-        self,
-        side: int | tuple[int, ...],
-        target: Place,
-        weight: Curve = 1.0,
-        elbow: Sequence[float] = (-0.3, 0.5, -1.0),
+        self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
     ) -> None:
         """Brings wrists to a place in body heights: ahead, outward and up of spine3 in the chest's frame."""
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
-    def hand_to_m(self, side: int | tuple[int, ...], target: Place, weight: Curve, elbow: Sequence[float]) -> None:
-        """The same in metres; the elbow points in the direction `elbow`."""
+    def hand_to_m(
+        self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
+    ) -> None:
+        """The same in metres; elbows point as `elbow` says, else as the gesture's record in `movements.toml`."""
+        elbow = elbow or MOVEMENTS.get(self.step.upper, {}).get("elbow", (-0.3, 0.5, -1.0))
         self.arm(reach(self.body, self._points(target), elbow), weight, *(side if isinstance(side, tuple) else (side,)))
 
     def _points(self, target: Place) -> Float[np.ndarray, "n 3"]:
@@ -269,7 +268,7 @@ class StepContext:
     def mouth_m(self, side: int) -> Float[np.ndarray, "n 3"]:
         """Place (n, 3) in metres of the mouth for an arm: ahead, outward and up of spine3 in the chest's frame."""
         head_rad = self.controls.head_rad
-        half = about_z(head_rad[:, 1] / 2) @ about_y(head_rad[:, 0] / 2)
+        half = rotation_z(head_rad[:, 1] / 2) @ rotation_y(head_rad[:, 0] / 2)
         head = self.body.offset_m[joint("neck")] + rotated(half, self.body.offset_m[joint("head")])
         return (head + rotated(half @ half, self.body.mouth_m)) * [1.0, OUTWARD[side], 1.0]
 
@@ -301,6 +300,7 @@ def gesture(key: str) -> Callable[[Animate], Animate]:
     def register(animate: Animate) -> Animate:
         def perform(act: StepContext, controls: Controls) -> Controls:
             act.controls = controls
+            act.add(1, **MOVEMENTS.get(key, {}).get("hold", {}))
             animate(act)
             return controls
 

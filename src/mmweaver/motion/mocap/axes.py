@@ -73,7 +73,7 @@ def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) ->
     return up, f"{up} is taken as the upward axis of {source}, because the head is there"
 
 
-def with_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
+def rotate_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
     """The joints rotated (never mirrored) so that z is up; y up becomes (x, -z, y)."""
     x, y, z = (joints[..., axis] for axis in range(3))
     rotated = {

@@ -21,7 +21,7 @@ ROTATIONS = {"Xrotation": "X", "Yrotation": "Y", "Zrotation": "Z"}
 
 @dataclass
 class Node:
-    """One joint: its parent's index, its offset, and its channels within a frame."""
+    """One joint: its parent's index, its offset, and its channels within each frame."""
 
     name: str
     parent: int

@@ -14,7 +14,7 @@ BONE_SPREAD = 0.3  # 5th to 95th percentile of a limb's length, as a share of it
 LIMBS = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist"))
 
 
-def without_gaps(
+def fill_gaps(
     joints: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "frame 22 3"], tuple[str, ...]]:
     """Fills gaps (nan, infinities, frames of zeros) of up to 0.25 s by cubic splines; returns joints and notes.
@@ -69,7 +69,7 @@ def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]
         joints[~there, k] = CubicSpline(frame[there], joints[there, k], axis=0)(frame[~there])
 
 
-def without_t_pose(
+def cut_t_pose(
     joints_m: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "left 22 3"], tuple[str, ...]]:
     """Cuts off a T-pose of up to a second at the start if the motion jumps after it; else only notes it."""

@@ -21,7 +21,7 @@ from mmweaver.motion.planning.floor_map import FloorMap
 Array = np.ndarray
 SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: from the floor to the foot joint of a standing body
 HEADINGS = 24  # tried, evenly spaced
-MOST_STARTS = 400
+MAX_STARTS = 400
 TRACK_POINTS = 48
 LOW_PELVIS = 0.75  # of the height of the pelvis on straight legs: lower is sitting, crouching or lying
 TO_RADAR_RAD = -math.pi / 2
@@ -47,12 +47,23 @@ def place_clip(
     heading_rad: float | None = None,
     as_recorded: bool = False,
 ) -> Motion:
-    """Places the first `duration_s` of a clip in a scene.
+    """Places the beginning of a clip in a scene.
 
-    `start_m` (x, y) is where the pelvis starts, `heading_rad` the heading there (from +x towards +y). What is not given
-    is searched for: a start and a heading, towards the radar if possible, from which the whole track is free and in
-    view. With `as_recorded` the clip's positions are in the radar's frame (x right, y away, z up, metres), and nothing
-    is moved or checked. Raises InputError where there is no room, saying how much there is.
+    Args:
+        clip: the recorded motion.
+        scene: the room, in the radar's frame.
+        duration_s: how much of the clip, in seconds.
+        seed: chooses between equally good places.
+        range_window_m: nearest and farthest slant range that the radar keeps.
+        start_m: (x, y) where the pelvis starts; searched for by default, such that the whole track is free and in view.
+        heading_rad: heading there, from +x towards +y; searched for by default, towards the radar if possible.
+        as_recorded: the clip's positions are in the radar's frame already, and nothing is moved or checked.
+
+    Returns:
+        The motion at 120 Hz with notes on what was assumed.
+
+    Raises:
+        InputError: where there is no room, with the free area.
     """
     time_s, joints_m = resampled_clip(clip, duration_s)
     height_m = clip.height_m
@@ -72,7 +83,7 @@ def place_clip(
 
 
 def floor_under(joints_m: Float[Array, "frame 22 3"], height_m: float) -> float:
-    """Height in metres of the recording's floor: the lowest joints less the height of a standing foot's joint; z up.
+    """Height in metres of the recording's floor: the lowest joints minus the height of a standing foot's joint; z up.
 
     Uses the second percentile of the lowest joint over time, so that a single bad frame does not count.
     """
@@ -136,8 +147,8 @@ def _found(
 
 def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:
     cells = floor.cell_centres_m[floor.walkable]
-    if len(cells) > MOST_STARTS:
-        cells = cells[np.sort(rng.choice(len(cells), MOST_STARTS, replace=False))]
+    if len(cells) > MAX_STARTS:
+        cells = cells[np.sort(rng.choice(len(cells), MAX_STARTS, replace=False))]
     return cells
 
 

@@ -29,7 +29,18 @@ def check_lasts(clip: MotionClip, duration_s: float) -> None:
 
 
 def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
-    """Times (n,) from just before 0 to just after `duration_s` at 120 Hz, and joints (n, 22, 3) in metres."""
+    """Resamples a clip to 120 Hz, without jitter.
+
+    Args:
+        clip: at any frame rate.
+        duration_s: how much of it, in seconds.
+
+    Returns:
+        Times (n,) from just before 0 to just after `duration_s`, and joints (n, 22, 3) in metres.
+
+    Raises:
+        InputError: where the clip is shorter.
+    """
     from scipy.interpolate import CubicSpline
 
     check_lasts(clip, duration_s)

@@ -31,15 +31,15 @@ def read_npy(path: Path) -> RawMotion:
     if values.shape[:1] == (1,) and (values.ndim == 4 or values.shape[2:] == (NUM_FEATURES,)):
         values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
-        return _of_features(values, path)
-    return RawMotion(names=JOINT_NAMES, positions=_of_22(values, path), kind="joints")
+        return _read_features(values, path)
+    return RawMotion(names=JOINT_NAMES, positions=_check_22(values, path), kind="joints")
 
 
 def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None) -> RawMotion:
     """SMPL poses, CMU clips (`clip` names one), or joints under a known key. Raises InputError for anything else."""
     arrays = dict(safe_arrays.read_npz(path, skip_unreadable=True))
     if {"names", "lengths", "pos", "parents"} <= set(arrays):
-        return _of_cmu(arrays, path, clip)
+        return _read_cmu(arrays, path, clip)
     if clip is not None:
         raise InputError(f"{path} holds a single motion, so there is no clip {clip!r}; leave out --clip")
     if is_smpl(arrays):
@@ -53,7 +53,7 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
     names = next((tuple(map(str, arrays[name])) for name in NAME_KEYS if name in arrays), None)
     positions = real_numbers(path, key, arrays[key])
     if names is None:
-        positions, names = _of_22(positions, path), JOINT_NAMES
+        positions, names = _check_22(positions, path), JOINT_NAMES
     elif positions.ndim != 3 or positions.shape[1:] != (len(names), 3):
         raise InputError(
             f"{path}: {key} has shape {positions.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
@@ -71,7 +71,7 @@ def clips_of(path: Path) -> tuple[str, ...]:
     return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
 
 
-def _of_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
+def _read_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
     if len(values) < 2:
         raise InputError(f"{path} has {len(values)} frames; a motion has at least 2")
     if np.isfinite(values[:, 3]).all() and abs(float(values[:, 3].mean())) < NORMALISED_BELOW_M:
@@ -84,7 +84,7 @@ def _of_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
     )
 
 
-def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
+def _check_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
     if values.ndim == 2 and values.shape[1] == 3 * NUM_JOINTS:
         values = values.reshape(-1, NUM_JOINTS, 3)
     if values.ndim == 3 and values.shape[1:] == (24, 3):
@@ -97,7 +97,7 @@ def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
     return np.asarray(values, float)
 
 
-def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion:
+def _read_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion:
     lengths = ArrayChecks(path).numbers("lengths", arrays["lengths"], ("clip",), kinds="iu", low=0, high=1e9)
     names, positions = [str(name) for name in np.ravel(arrays["names"])], arrays["pos"]
     if (

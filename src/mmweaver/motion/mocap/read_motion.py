@@ -13,16 +13,16 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.array_checks import ArrayChecks
-from mmweaver.motion.mocap.axes import is_reflected, unit_of, up_of, with_z_up
+from mmweaver.motion.mocap.axes import is_reflected, rotate_z_up, unit_of, up_of
 from mmweaver.motion.mocap.bvh import read_bvh
-from mmweaver.motion.mocap.cleaning import check_bones, without_gaps, without_t_pose
+from mmweaver.motion.mocap.cleaning import check_bones, cut_t_pose, fill_gaps
 from mmweaver.motion.mocap.clip import MotionClip, RawMotion
 from mmweaver.motion.mocap.joint_arrays import read_npy, read_npz
 from mmweaver.motion.mocap.joint_names import to_22
 
 FPS_LIMITS = (1.0, 2000.0)
-MOST_FRAMES = 1_000_000
-MOST_UNITS = 1e7  # 10 km in millimetres
+MAX_FRAMES = 1_000_000
+MAX_UNITS = 1e7  # 10 km in millimetres
 KINDS = ".bvh, .npy (22 joints or HumanML3D features) or .npz (AMASS, SMPL, CMU, joints)"
 
 
@@ -37,10 +37,19 @@ def read_motion(
 ) -> MotionClip:
     """Reads a recorded motion.
 
-    `fps` is needed where the file states none, and overrides what it states. `unit` (m, cm, mm, inch or the metres in
-    one unit) and `up` (y, z, ...) are estimated from the body where they are not given, which the notes report. `clip`
-    names one motion of a file of several; `body_model` is the user's own SMPL model (.npz). Raises InputError for
-    whatever is no human motion.
+    Args:
+        path: a .bvh, .npy or .npz file.
+        fps: frames per second; needed where the file states none, and overrides what it states.
+        unit: m, cm, mm, inch, cmu, or the metres in one unit; estimated from the body by default.
+        up: the upward axis, y, z, ...; estimated from the body by default.
+        clip: name of one motion in a file of several.
+        body_model: the user's own SMPL model (.npz); the mean skeleton by default.
+
+    Returns:
+        22 joints in metres, z up; what was estimated is in its notes.
+
+    Raises:
+        InputError: for whatever is no human motion.
     """
     path = Path(path)
     if not path.is_file():
@@ -69,21 +78,21 @@ def to_clip(
     up: str | None = None,
 ) -> MotionClip:
     """Converts a RawMotion to our joints, metres and axes, without gaps; see `read_motion`."""
-    ArrayChecks(label).numbers("the motion", np.asarray(raw.positions), low=-MOST_UNITS, high=MOST_UNITS, nan=True)
-    if not 2 <= len(raw.positions) <= MOST_FRAMES:
-        raise InputError(f"{label} has {len(raw.positions)} frames; a motion has 2 to {MOST_FRAMES}")
+    ArrayChecks(label).numbers("the motion", np.asarray(raw.positions), low=-MAX_UNITS, high=MAX_UNITS, nan=True)
+    if not 2 <= len(raw.positions) <= MAX_FRAMES:
+        raise InputError(f"{label} has {len(raw.positions)} frames; a motion has 2 to {MAX_FRAMES}")
     rate = _rate(fps if fps is not None else raw.fps, label)
     notes = [*raw.notes]
     joints = to_22(raw, label)
-    joints, gaps = without_gaps(joints, rate, label)
+    joints, gaps = fill_gaps(joints, rate, label)
     check_bones(joints, label)
     metres, note = unit_of(joints, unit if unit is not None else raw.unit_m, label)
     notes.append(note)
     axis, note = up_of(joints, up if up is not None else raw.up, label)
     notes.append(note)
-    joints_m = with_z_up(joints * metres, axis)
-    joints_m, mirrored = _as_right_handed(joints_m, label)
-    shown, t_pose = without_t_pose(joints_m, rate, label)
+    joints_m = rotate_z_up(joints * metres, axis)
+    joints_m, mirrored = _mirror_if_reflected(joints_m, label)
+    shown, t_pose = cut_t_pose(joints_m, rate, label)
     notes += [*gaps, *mirrored, *t_pose]
     return MotionClip(
         joints_m=shown, fps=rate, label=label, notes=tuple(note for note in notes if note),
@@ -96,11 +105,11 @@ def _rate(fps: float | None, label: str) -> float:
     if fps is None:
         raise InputError(f"{label} states no frame rate; give --motion-fps (HumanML3D and MotionGPT: 20)")
     if not (math.isfinite(fps) and low <= fps <= high):
-        raise InputError(f"a motion has {low:g} to {high:g} frames a second, not {fps:g}; give --motion-fps")
+        raise InputError(f"a motion has {low:g} to {high:g} frames per second, not {fps:g}; give --motion-fps")
     return float(fps)
 
 
-def _as_right_handed(
+def _mirror_if_reflected(
     joints_m: Float[np.ndarray, "frame 22 3"], label: str
 ) -> tuple[Float[np.ndarray, "frame 22 3"], tuple[str, ...]]:
     if not is_reflected(joints_m):

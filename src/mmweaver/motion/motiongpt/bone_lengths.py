@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.skeleton import PARENTS
 
 
-def with_constant_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
+def fix_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
     """Joints (frame, 22, 3) with the same bone directions, each bone of its median length.
 
     The pelvis keeps its position on the floor, the lower foot its height.

@@ -18,7 +18,7 @@ from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
-from mmweaver.motion.motiongpt.bone_lengths import with_constant_bone_lengths
+from mmweaver.motion.motiongpt.bone_lengths import fix_bone_lengths
 from mmweaver.motion.motiongpt.checkpoint import (
     LANGUAGE,
     MEAN,
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 SMALL_NAME = "small"
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
-FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
+MIN_FRAMES, MAX_FRAMES = 40, 196  # what MotionGPT was trained on
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs by a factor of about 25
 
 
@@ -113,15 +113,15 @@ class MotionGPT:
             raise InputError("the text is empty; say what the person does")
         per_token = self.tokenizer.config.frames_per_token
         frames = None if seconds is None else int(np.ceil(seconds * FPS - 1e-9))
-        if frames is not None and not 1 <= frames <= MOST_FRAMES:
+        if frames is not None and not 1 <= frames <= MAX_FRAMES:
             raise InputError(
-                f"the motion model makes up to {MOST_FRAMES / FPS:g} s at a time, {seconds:g} s are needed; use"
+                f"the motion model makes up to {MAX_FRAMES / FPS:g} s at a time, {seconds:g} s are needed; use"
                 " fewer --frames"
             )
-        tokens = None if frames is None else -(-max(frames, FEWEST_FRAMES) // per_token)
+        tokens = None if frames is None else -(-max(frames, MIN_FRAMES) // per_token)
         codes = sample_codes(
             self.language, torch.tensor([self._ids(text)]), first_motion_id=self.first_motion_id,
-            codes=self.tokenizer.config.codes, tokens=tokens, most_tokens=MOST_FRAMES // per_token, seed=seed,
+            codes=self.tokenizer.config.codes, tokens=tokens, most_tokens=MAX_FRAMES // per_token, seed=seed,
             temperature=temperature, top_k=top_k,
         )  # fmt: skip
         if not codes:
@@ -134,9 +134,7 @@ class MotionGPT:
         if odd:
             notes.append(f"the motion model does not know these words: {', '.join(odd)}")
         z_up = np.stack([joints[..., 0], -joints[..., 2], joints[..., 1]], axis=-1)
-        return MotionClip(
-            joints_m=with_constant_bone_lengths(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes)
-        )
+        return MotionClip(joints_m=fix_bone_lengths(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
 
     def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
         """HumanML3D features (frame, 263) of motion codes, four frames each."""

@@ -16,7 +16,7 @@ from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE, TOES_O
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
 GRAVITY_MPS2 = 9.81
-SHORT_REST_S, REST_SMOOTH_S = 0.6, 0.06  # between two movements of the root, in which nobody comes to rest
+SHORT_REST_S, REST_SMOOTH_S = 0.6, 0.06  # between two movements of the root, without coming to rest
 SOLE_DOWN_S = 0.07  # at the least, from the strike of the heel until the sole is flat
 ELBOW_LAG = 0.15  # of a step, behind the shoulder
 NOD = 0.4  # share of the pelvis's surge that the neck does not follow

@@ -7,7 +7,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import larger, raised_cosine, reached, rise, travel
-from mmweaver.motion.animation.spans import PerTime, spline_through
+from mmweaver.motion.animation.spans import PerTime, Span, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
@@ -46,7 +46,7 @@ def clapping(act: StepContext) -> None:
     open_m = act.uniform(0.08, 0.13) * min(1.0, 2.0 / rate) * h
     ahead, up = act.uniform(0.16, 0.19), act.uniform(0.02, 0.07)
     x, y = (ahead - act.uniform(0.0, 0.04) * opening) * h, 0.024 * h + open_m * opening
-    act.hand_to_m(BOTH, (x, y, (up + 0.01 * opening) * h), _until(act, end + 0.2), (-0.1, 0.8, -1.0))
+    act.hand_to_m(BOTH, (x, y, (up + 0.01 * opening) * h), _until(act, end + 0.2))
 
 
 @gesture("raise")
@@ -84,7 +84,7 @@ def drinking(act: StepContext) -> None:
     rest = np.array([act.uniform(0.15, 0.18), act.uniform(0.05, 0.08), act.uniform(-0.08, -0.04)]) * h
     bow = np.array([0.03, 0.0, 0.0]) * h  # the path bows slightly outward
     target = rest + lift[:, None] * (cup - rest) + (4 * lift * (1 - lift))[:, None] * bow
-    act.hand_to_m(side, target, 1.0, (-0.25, 0.75, -1.0))
+    act.hand_to_m(side, target)
 
 
 def _hold_arms(act: StepContext, up_s: float) -> PerTime:
@@ -162,13 +162,13 @@ def crossing_arms(act: StepContext) -> None:
     held, over = _hold_arms(act, 0.9), int(act.rng.integers(2))
     for side in BOTH:
         place = (0.135, -0.055, 0.0) if side == over else (0.105, -0.055, -0.02)
-        act.hand_to(side, place, held, (-0.1, 0.8, -1.0))
+        act.hand_to(side, place, held)
 
 
 @gesture("hips")
 def hands_on_hips(act: StepContext) -> None:
     """Hands on the hips, elbows out."""
-    act.hand_to(act.named_arms, (0.035, 0.1, -0.17), _hold_arms(act, 0.8), (-0.35, 1.0, -0.1))
+    act.hand_to(act.named_arms, (0.035, 0.1, -0.17), _hold_arms(act, 0.8))
 
 
 @gesture("shrug")
@@ -265,7 +265,7 @@ def _stretch_arm(act: StepContext, out: PerTime) -> None:
     """A hand between the chest (0) and as far ahead as it reaches (1); the shoulder goes along."""
     near, far = np.array([0.09, 0.06, 0.03]), np.array([0.297, 0.08, 0.07])
     for side in act.sides():
-        act.hand_to(side, near + out[:, None] * (far - near), 1.0, (-0.2, 0.6, -1.0))
+        act.hand_to(side, near + out[:, None] * (far - near))
         act.add(out, spine_yaw=-OUTWARD[side] * 0.3)
 
 
@@ -273,10 +273,9 @@ def _stretch_arm(act: StepContext, out: PerTime) -> None:
 def drawing_circle(act: StepContext) -> None:
     """The straight arm draws large circles, clockwise for the person: from hanging across the body, up and round."""
     count = act.count or max(1, round(act.duration_s / 2.5))
-    turned = np.zeros_like(act.time_s)
-    for span in act.repeats(act.duration_s / count * 0.9, 0.9, 4.0)[:count]:
-        turned += rise((act.time_s - span.begin_s) / span.lasts_s)
-    _draw(act, -np.sin(2 * np.pi * turned), -np.cos(2 * np.pi * turned), 0.25)
+    spans = act.repeats(act.duration_s / count * 0.9, 0.9, 4.0)[:count]
+    angle = 2 * np.pi * np.sum([rise(span.progress()) for span in spans], axis=0)
+    _draw(act, -np.sin(angle), -np.cos(angle), 0.25)
 
 
 @gesture("draw_z")
@@ -299,23 +298,21 @@ def _draw(act: StepContext, aside: PerTime, up: PerTime, half: float) -> None:
     ahead = np.sqrt(larger(0.28**2 - size**2 * (out**2 + up**2), 0.06**2, 0.01))
     ahead += 0.08 * (np.hypot(out, 0.3) - out) / 2
     # an elbow that pointed down would jump where the arm of a circle points down, too
-    act.hand_to(side, (ahead, 0.09 + size * out, 0.07 + size * up), on, (-1.0, 0.0, -0.3))
+    act.hand_to(side, (ahead, 0.09 + size * out, 0.07 + size * up), on)
 
 
 @gesture("swipe")
 def swiping(act: StepContext) -> None:
     """The hand is raised before the chest, sweeps through the air to one side, up or down, and comes back."""
-    stroke, swipes = np.zeros_like(act.time_s), act.repeats(1.1, 0.5, 1.6)
-    for span in swipes:
-        u = (act.time_s - span.begin_s) / span.lasts_s
-        stroke += rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35)
+    swipes = act.repeats(1.1, 0.5, 1.6)
+    stroke = np.sum([rise((u - 0.3) / 0.3) - rise((u - 0.65) / 0.35) for u in map(Span.progress, swipes)], axis=0)
     first, last = swipes[0], swipes[-1]
     on = act.plateau(first.begin_s, last.at(1), 0.3 * first.lasts_s, 0.3 * last.lasts_s)
     along, side = act.vary(0.13, 0.12) * (2 * stroke - 1), act.sides()[0]
     outward = 1.0 if act.direction == ("right" if side == RIGHT else "left") else -1.0  # inward where no side is named
     vertical = {"up": 1.0, "down": -1.0}.get(act.style, 0.0)
     out = 0.05 + (0.0 if vertical else outward) * along
-    act.hand_to(side, (0.27 - 0.5 * np.square(along), out, -0.02 + vertical * along), on, (-0.2, 0.5, -1.0))
+    act.hand_to(side, (0.27 - 0.5 * np.square(along), out, -0.02 + vertical * along), on)
 
 
 @gesture("yawn")
@@ -325,15 +322,14 @@ def yawning(act: StepContext) -> None:
     act.add(up, head_pitch=-act.vary(0.22), spine_pitch=-act.vary(0.08, 0.3))
     side = act.sides()[0]
     target = act.mouth_m(side) + np.array([0.03, 0.03, -0.015]) * act.height_m
-    act.hand_to_m(side, target, up, (-0.2, 0.8, -1.0))
+    act.hand_to_m(side, target, up)
 
 
 @gesture("knock_elbow")
 def knocking_from_elbow(act: StepContext) -> None:
     """The hand at the side is raised from the elbow and lowered, without a pause between."""
     count = act.count or max(1, round(act.duration_s / 1.2))
-    up = np.zeros_like(act.time_s)
-    for span in act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]:
-        up += span.plateau(0, 1, 0.5, 0.5)
+    spans = act.repeats(min(1.0, 0.95 * act.duration_s / count), 0.45, 1.6)[:count]
+    up = sum_plateaus(spans, 0, 1, 0.5, 0.5)
     for side in act.sides():
         act.add(up, side, elbow=act.vary(1.9, 0.08), flexion=0.15)

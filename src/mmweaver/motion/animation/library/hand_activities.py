@@ -4,16 +4,15 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, plateau, raised_cosine, rise
-from mmweaver.motion.animation.spans import PerTime, Span
+from mmweaver.motion.animation.spans import PerTime, Span, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 
 @gesture("eat")
 def eating(act: StepContext) -> None:
     """From a plate in front of the belly to the mouth and back, again and again; the head meets the hand."""
-    side, lift = act.one_side(), np.zeros_like(act.time_s)
-    for span in act.in_turn(act.tempo(2.6, 2.0, 1.5), 1.2, 3.6, lag=0.08, more=0.4):
-        lift += span.plateau(0, 0.86, 0.34, 0.36)
+    side, spans = act.one_side(), act.in_turn(act.tempo(2.6, 2.0, 1.5), 1.2, 3.6, lag=0.08, more=0.4)
+    lift = sum_plateaus(spans, 0, 0.86, 0.34, 0.36)
     act.add(1, head_pitch=0.12 + 0.1 * lift, spine_pitch=0.06)
     spoon = act.mouth_m(side) / act.height_m + np.array([0.045, 0.03, -0.03])
     plate = np.array([act.uniform(0.17, 0.2), act.uniform(0.03, 0.06), act.uniform(-0.12, -0.07)])
@@ -24,19 +23,18 @@ def eating(act: StepContext) -> None:
 @gesture("type")
 def typing(act: StepContext) -> None:
     """Both hands over a keyboard: movements of centimetres, fast and irregular, with pauses."""
-    act.add(1, head_pitch=0.22, spine_pitch=0.05)
     busy = 0.6 + 0.4 * np.tanh(2 * act.wander(0.15, 0.6))
     tap_hz = act.tempo(2.2, 3.2, 4.2)
     for side in BOTH:
         tap, drift = act.wander(0.7 * tap_hz, 1.3 * tap_hz) * busy, act.wander(0.3, 1.2)
         target = (0.2 + 0.006 * drift, 0.045 + 0.008 * drift, -0.085 + 0.0035 * tap)
-        act.hand_to(side, target, 1.0, (-0.6, 0.4, -1.0))
+        act.hand_to(side, target)
 
 
 @gesture("read")
 def reading(act: StepContext) -> None:
     """A book in both hands in front of the chest, eyes down; a page is turned every few seconds."""
-    act.add(1, head_pitch=0.32, head_yaw=0.07 * np.sin(2 * np.pi * 0.35 * act.time_s))
+    act.add(1, head_yaw=0.07 * np.sin(2 * np.pi * 0.35 * act.time_s))
     page_s, first, turn = act.uniform(2.5, 4.0), act.start_s + act.uniform(0.4, 1.4), np.zeros_like(act.time_s)
     for begin in np.arange(first, act.end_s, page_s):
         turn += act.plateau(float(begin), float(begin) + 0.9, 0.45, 0.45)
@@ -48,7 +46,7 @@ def reading(act: StepContext) -> None:
 @gesture("phone")
 def phoning(act: StepContext) -> None:
     """One hand at the ear; the head tilts slightly and nods while talking."""
-    act.hand_to(act.one_side(), (0.035, 0.075, act.uniform(0.12, 0.135)), 1.0, (0.5, 0.8, -1.0))
+    act.hand_to(act.one_side(), (0.035, 0.075, act.uniform(0.12, 0.135)))
     act.add(act.wander(0.3, 1.2), head_pitch=0.05)
     act.add(act.wander(0.1, 0.5), head_yaw=0.12)
 
@@ -57,9 +55,8 @@ def phoning(act: StepContext) -> None:
 def texting(act: StepContext) -> None:
     """A phone in one or both hands in front of the chest, head down; thumbs move the wrists by millimetres."""
     hands = act.sides() if act.hand else (BOTH if act.rng.random() < 0.5 else (RIGHT,))
-    act.add(1, head_pitch=0.4)
     for side in hands:
-        act.hand_to(side, (0.15, 0.022, 0.0 + 0.0015 * act.wander(1.5, 4.0)), 1.0, (-0.5, 0.4, -1.0))
+        act.hand_to(side, (0.15, 0.022, 0.0 + 0.0015 * act.wander(1.5, 4.0)))
 
 
 @gesture("count_fingers")
@@ -75,13 +72,12 @@ def counting_on_fingers(act: StepContext) -> None:
 
 @gesture("brush_teeth")
 def brushing_teeth(act: StepContext) -> None:
-    """A hand in front of the mouth moves to and fro by a few centimetres, three times a second."""
+    """A hand in front of the mouth moves to and fro by a few centimetres, three times per second."""
     side, phase = act.one_side(), act.phase(act.tempo(2.0, 2.8, 3.6))
     stroke = np.sin(phase + act.rng.uniform(0, 2 * np.pi)) * act.vary(0.011)
     drift = act.wander(0.1, 0.4)
     target = (0.115 + 0.2 * stroke, 0.035 + stroke + 0.008 * drift, 0.13 + 0.004 * drift)
-    act.hand_to(side, target, 1.0, (-0.1, 1.0, -0.7))
-    act.add(1, head_pitch=0.08)
+    act.hand_to(side, target)
 
 
 @gesture("comb")
@@ -90,8 +86,7 @@ def combing(act: StepContext) -> None:
     side, phase = act.one_side(), act.phase(act.tempo(0.45, 0.65, 0.85))
     back, off = raised_cosine(phase), np.maximum(np.sin(phase + np.pi), 0) ** 3
     target = (0.09 - 0.1 * back, 0.05 + 0.02 * back, 0.235 - 0.04 * back + 0.025 * off)
-    act.hand_to(side, target, 1.0, (0.4, 1.0, -0.1))
-    act.add(1, head_pitch=0.06)
+    act.hand_to(side, target)
 
 
 @gesture("wipe")
@@ -101,9 +96,9 @@ def wiping(act: StepContext) -> None:
     across, ahead = np.sin(act.phase(rate)), np.cos(act.phase(rate))
     wide = act.vary(0.075) * min(1.0, 1.0 / rate)
     deep = wide * float(act.rng.choice([0.15, 0.8]))
-    act.add(1, spine_pitch=0.3, head_pitch=0.12, spine_yaw=OUTWARD[side] * 0.07 * across)
+    act.add(1, spine_yaw=OUTWARD[side] * 0.07 * across)
     target = (0.21 + deep * ahead, 0.06 + wide * across, -0.1 - 0.2 * deep * ahead)
-    act.hand_to(side, target, 1.0, (-0.4, 0.6, -0.8))
+    act.hand_to(side, target)
 
 
 @gesture("write")
@@ -118,7 +113,7 @@ def writing(act: StepContext) -> None:
     if act.step.lower != "stand":
         target = (0.2 + 0.005 * stroke, 0.6 * outward + 0.005 * other, -0.08)
         act.add(1, head_pitch=0.28)
-    act.hand_to(side, target, 1.0, (-0.3, 0.6, -1.0))
+    act.hand_to(side, target)
 
 
 @gesture("stir")
@@ -127,7 +122,6 @@ def stirring(act: StepContext) -> None:
     side, phase, wide = act.one_side(), act.phase(act.tempo(0.7, 1.1, 1.6)), act.vary(0.03)
     act.hand_to(side, (0.2 + wide * np.cos(phase), 0.03 + wide * np.sin(phase), -0.03), 1.0, (-0.2, 0.9, -0.8))
     act.hand_to(1 - side, (0.19, 0.06, -0.1))
-    act.add(1, head_pitch=0.25)
 
 
 @gesture("knock")
@@ -149,7 +143,7 @@ def opening_door(act: StepContext) -> None:
     press = span.plateau(0.28, 0.62, 0.1, 0.1)
     draw = rise((act.time_s - span.begin_s - 0.4 * span.lasts_s) / (0.4 * span.lasts_s))
     target = (0.235 - 0.12 * draw, 0.05 + 0.13 * draw, -0.055 - 0.02 * press)
-    act.hand_to(side, target, span.plateau(0, 1, 0.28, 0.26), (-0.5, 0.6, -0.8))
+    act.hand_to(side, target, span.plateau(0, 1, 0.28, 0.26))
     act.add(span.plateau(0.4, 1.05, 0.35, 0.3), spine_yaw=OUTWARD[side] * 0.25)
     if act.step.lower != "stand":
         return
@@ -173,7 +167,7 @@ def playing_guitar(act: StepContext) -> None:
     act.hand_to(side, (0.155, 0.035 + 0.15 * wide * strum, -0.105 + wide * strum), 1.0, (-0.3, 0.9, -0.5))
     slide = act.wander(0.15, 0.6)
     act.hand_to(1 - side, (0.16, 0.165 + 0.012 * slide, -0.005 + 0.008 * slide), 1.0, (-0.2, 0.3, -1.0))
-    act.add(1, head_pitch=0.18, spine_pitch=0.04 * np.sin(2 * np.pi * 0.5 * rate * time_s))
+    act.add(1, spine_pitch=0.04 * np.sin(2 * np.pi * 0.5 * rate * time_s))
 
 
 @gesture("violin")
@@ -183,7 +177,7 @@ def playing_violin(act: StepContext) -> None:
     draw = 0.5 + 0.5 * np.sin(act.phase(bow_hz))
     act.hand_to(side, (0.185 - 0.02 * draw, -0.01 + 0.17 * draw, 0.125 - 0.05 * draw), 1.0, (0.2, 0.9, -0.3))
     act.hand_to(1 - side, (0.22, 0.15 + 0.0012 * act.wander(3.0, 5.0), 0.125))
-    act.add(1, head_yaw=-0.4 * OUTWARD[side], head_pitch=0.12)
+    act.add(1, head_yaw=-0.4 * OUTWARD[side])
 
 
 @gesture("sweep")
@@ -192,7 +186,7 @@ def sweeping(act: StepContext) -> None:
     rate, _ = act.cycles(0.45, 0.7, 1.0, 0.3, 1.3)
     stroke = np.sin(act.phase(rate)) * act.vary(1.0, 0.15)
     low = act.sides()[0]
-    act.add(1, spine_pitch=0.28, spine_yaw=0.22 * stroke * OUTWARD[low], head_pitch=0.25)
+    act.add(1, spine_yaw=0.22 * stroke * OUTWARD[low])
     act.hand_to(low, (0.2 + 0.02 * stroke, 0.04 + 0.09 * stroke, -0.13))
     act.hand_to(1 - low, (0.15, 0.02 - 0.03 * stroke, 0.02))
 
@@ -214,7 +208,7 @@ def taking_jacket_off(act: StepContext) -> None:
     for side in BOTH:
         late = Span(act.time_s - (0.0 if side == first else 0.06 * span.lasts_s), span.begin_s, span.lasts_s)
         target = late.rows("jacket_off", "ahead", "out", "up")
-        act.hand_to(side, target, span.plateau(0, 1, 0.18, 0.18), (-0.4, 0.8, -0.6))
+        act.hand_to(side, target, span.plateau(0, 1, 0.18, 0.18))
     act.add(span.plateau(0.3, 0.9, 0.2, 0.2), spine_pitch=0.12, spine_yaw=OUTWARD[first] * 0.3)
 
 
@@ -230,7 +224,7 @@ def coughing(act: StepContext) -> None:
     act.add(1, spine_pitch=0.08 + 0.17 * jerk, head_pitch=0.12 + 0.15 * jerk)
     side = act.sides()[0]
     target = act.mouth_m(side) + np.array([0.035, 0.02, -0.02]) * act.height_m
-    act.hand_to_m(side, target, _raised(act), (-0.2, 0.8, -1.0))
+    act.hand_to_m(side, target, _raised(act))
 
 
 def _raised(act: StepContext) -> PerTime:
@@ -247,7 +241,7 @@ def breathing_deeply(act: StepContext) -> None:
 
 @gesture("tremble")
 def trembling(act: StepContext) -> None:
-    """Arms drawn to the chest; they shake six to nine times a second in bouts, and the trunk and the head with them.
+    """Arms drawn to the chest; they shake six to nine times per second in bouts, and the trunk and the head with them.
 
     Rates as of shivering and of enhanced physiological tremor (6 to 12 Hz; Deuschl et al., "Consensus statement of the
     Movement Disorder Society on tremor", 1998); some 1 cm at the hands.
@@ -256,7 +250,7 @@ def trembling(act: StepContext) -> None:
     bout = on * np.clip(0.65 + 0.35 * act.wander(0.2, 0.7), 0.2, 1.2)
     for side in BOTH:
         shake = act.vary(0.005, 0.2) * bout * np.sin(phase + act.rng.uniform(0, 2 * np.pi))
-        act.hand_to(side, (0.1, 0.03, 0.02 + shake), on, (-0.2, 0.5, -1.0))
+        act.hand_to(side, (0.1, 0.03, 0.02 + shake), on)
         act.add(shake, side, elbow=2.0)
     whole = bout * np.sin(phase + act.rng.uniform(0, 2 * np.pi))
     act.add(1, spine_pitch=0.14 * on + 0.006 * whole, head_pitch=0.1 * on + 0.008 * whole)

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD
 from mmweaver.motion.animation.profiles import plateau, rise, through, travel
-from mmweaver.motion.animation.spans import PerTime
+from mmweaver.motion.animation.spans import PerTime, sum_plateaus
 from mmweaver.motion.animation.standing import STAND_STRETCH, home_feet
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
@@ -93,7 +93,7 @@ def jumping(act: StepContext) -> None:
 
 @posture("hop")
 def hopping(act: StepContext) -> None:
-    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
+    """Small quick jumps from the ankles, about two per second, the arms bent and almost still."""
     _bounce(act, act.start_s, act.duration_s)
     act.add(1, elbow=act.uniform(0.0, 1.1), flexion=0.1)
 
@@ -246,9 +246,7 @@ def squatting(act: StepContext) -> None:
     for foot in BOTH:
         act.move_foot(foot, out=wider)
         act.add(1, foot, foot_yaw=OUTWARD[foot] * 0.2)
-    down = np.zeros_like(act.time_s)
-    for span in spans:
-        down += span.plateau(0, 0.98, 0.45, 0.45)
+    down = sum_plateaus(spans, 0, 0.98, 0.45, 0.45)
     knee = np.radians(rng.uniform(120, 136))
     back, lean = act.uniform(0.085, 0.125) * h, act.uniform(0.4, 1.3)
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))

@@ -8,7 +8,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, reached, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture, posture
 
 
@@ -161,10 +161,7 @@ def _lunge_between_planted_feet(act: StepContext, spans: list[Span], side: int, 
     step_s = min(0.6, 0.15 * act.duration_s)
     gone = act.plateau(act.start_s, act.end_s, step_s, step_s)
     air = sum(act.plateau(at, at + step_s, 0.5 * step_s, 0.5 * step_s) for at in (act.start_s, act.end_s - step_s))
-    over = np.zeros_like(gone)
-    for span in spans:
-        over += span.plateau(0.1, 0.95, 0.4, 0.4)
-    over *= gone
+    over = sum_plateaus(spans, 0.1, 0.95, 0.4, 0.4) * gone
     act.move_foot(side, long_m * gone, 0.0, 0.03 * act.height_m * air)
     act.lift_weight(side, np.asarray(air))
     act.bend_knees(0.8 * gone)
@@ -245,14 +242,11 @@ def downward_dog(act: StepContext) -> None:
     act.arm((2.75, 0.12, 0.0, 0.08), held)
 
 
-def _there_and_back(act: StepContext, usual_s: float, least_s: float, most_s: float) -> PerTime:
+def _there_and_back(act: StepContext, usual_s: float, min_s: float, max_s: float) -> PerTime:
     """0 to 1 and back (n,), as often as asked for or as the time allows, each a little different and with a hold."""
-    spans, share = act.in_turn(usual_s, least_s, most_s), np.zeros_like(act.time_s)
-    hold = act.uniform(0.05, 0.3)
-    for span in spans:
-        high = act.vary(1.0, 0.06)
-        share += high * span.plateau(0, 0.98, 0.5 * (1 - hold), 0.5 * (1 - hold))
-    return share
+    ramp = 0.5 * (1 - act.uniform(0.05, 0.3))
+    spans = act.in_turn(usual_s, min_s, max_s)
+    return np.sum([act.vary(1.0, 0.06) * span.plateau(0, 0.98, ramp, ramp) for span in spans], axis=0)
 
 
 @posture("side_lunge")

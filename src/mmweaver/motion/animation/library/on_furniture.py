@@ -12,7 +12,7 @@ from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
 from mmweaver.motion.animation.standing import ANKLE_BEHIND, HALF_STANCE
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
-PELVIS_OVER_SEAT = 0.075  # of the height: of the pelvis of somebody who lies
+PELVIS_OVER_SEAT = 0.075  # of the height: of the pelvis, lying
 OFF_SEAT_AHEAD_M = 0.25  # in front of the feet of the sitter: where somebody who falls off lands
 _TOWARDS_FEET = 0.06  # of the height: how far the pelvis moves along the couch, so that head and feet fit
 _LASTS = (1.4, 3.6, 2.6, 1.8, 0.95)

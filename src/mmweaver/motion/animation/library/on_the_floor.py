@@ -8,7 +8,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, rise
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, spline_through, sum_plateaus
 from mmweaver.motion.animation.standing import STAND_STRETCH
 from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 
@@ -99,9 +99,7 @@ def roll(act: StepContext) -> None:
     """Rolls a lying body onto its left or right side and back; the knees point where the chest does."""
     h, count = act.height_m, max(act.count, 1)
     left = 1.0 if (act.direction or ("left" if act.rng.random() < 0.5 else "right")) == "left" else -1.0
-    over = np.zeros_like(act.time_s)
-    for span in act.repeats(min(3.4, act.duration_s / count), 1.5, 6.0)[:count]:
-        over += span.plateau(0, 1, 0.4, 0.4)
+    over = sum_plateaus(act.repeats(min(3.4, act.duration_s / count), 1.5, 6.0)[:count], 0, 1, 0.4, 0.4)
     on_belly = act.style == "front"
     act.add(over, roll_over=left * 1.3)
     act.pelvis(0.0, (-left if on_belly else left) * 0.05 * h * over, 0.045 * h * over)

@@ -69,7 +69,7 @@ def _sit(act: StepContext, u: PerTime) -> None:
 
 @posture("pedal")
 def pedalling(act: StepContext) -> None:
-    """One turn of the cranks a second, after getting on; the root is under the saddle."""
+    """One turn of the cranks per second, after getting on; the root is under the saddle."""
     body, h, on = act.body, act.height_m, act.edges(MOUNTING_S, MOUNTING_S, 0.2)
     rate, _ = act.cycles(0.7, 1.05, 1.5, 0.5, 1.8)
     phase = act.phase(rate)

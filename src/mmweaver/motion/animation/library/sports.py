@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import plateau
-from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through
+from mmweaver.motion.animation.spans import MOVEMENTS, PerTime, Span, spline_through, sum_plateaus
 from mmweaver.motion.animation.step_context import BOTH, StepContext, gesture
 
 BEGINS, THERE, BACK = 0.18, 0.52, 0.98  # shares of a punch: it leaves the guard, hits, is in the guard again
@@ -139,17 +139,15 @@ def pushing(act: StepContext) -> None:
     hands = act.named_arms
     for span in act.repeats(1.6, 1.1, 2.6):
         on, out = span.plateau(0, 1, 0.28, 0.28), span.plateau(0.25, 0.85, 0.28, 0.3)
-        act.hand_to(hands, (0.13 + 0.15 * out, 0.08, 0.02 + 0.03 * out), on, (-0.5, 0.8, -0.8))
+        act.hand_to(hands, (0.13 + 0.15 * out, 0.08, 0.02 + 0.03 * out), on)
         act.add(1, spine_pitch=0.22 * out - 0.06 * on)
 
 
 @gesture("pull")
 def pulling(act: StepContext) -> None:
     """Stretched arms pull something towards the body, the trunk leaning back, again and again."""
-    hands, draw = act.named_arms, np.zeros_like(act.time_s)
-    for span in act.in_turn(act.tempo(1.8, 1.4, 1.1), 1.0, 2.4, lag=0.1):
-        draw += span.plateau(0, 0.88, 0.42, 0.42)
-    act.hand_to(hands, (0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw), 1.0, (-0.7, 0.6, -0.7))
+    draw = sum_plateaus(act.in_turn(act.tempo(1.8, 1.4, 1.1), 1.0, 2.4, lag=0.1), 0, 0.88, 0.42, 0.42)
+    act.hand_to(act.named_arms, (0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw))
     act.add(1, spine_pitch=0.12 - 0.26 * draw)
 
 
@@ -161,7 +159,7 @@ def carrying(act: StepContext) -> None:
         act.arm((0.0, 0.16, 0.0, 0.08), 1.0, side)
         act.add(1, spine_roll=0.06 * OUTWARD[side])
         return
-    act.hand_to(BOTH, (act.vary(0.17, 0.05), act.vary(0.085), act.uniform(-0.13, -0.05)), 1.0, (-0.7, 0.35, -1.0))
+    act.hand_to(BOTH, (act.vary(0.17, 0.05), act.vary(0.085), act.uniform(-0.13, -0.05)))
     act.add(1, spine_pitch=-0.05)
 
 
@@ -173,7 +171,7 @@ def cradling(act: StepContext) -> None:
     act.hand_to(head, (0.15, -0.03, -0.03), 1.0, (-0.3, 0.5, -1.0))
     act.hand_to(1 - head, (0.165, 0.0, -0.1), 1.0, (-0.5, 0.4, -1.0))
     act.add(np.sin(act.phase(rate)), spine_roll=act.vary(0.07, 0.2), spine_yaw=act.vary(0.12, 0.2))
-    act.add(1, spine_pitch=-0.04, head_pitch=0.3, head_yaw=0.25 * OUTWARD[head])
+    act.add(1, head_yaw=0.25 * OUTWARD[head])
 
 
 @gesture("reach")
@@ -187,7 +185,7 @@ def reaching(act: StepContext) -> None:
     for span in act.repeats(1.7, 1.1, 2.6):
         out = span.plateau(0, 0.78, 0.36, 0.34)
         target = (0.15 + 0.13 * out, 0.07, up + 0.02 - 0.02 * out)
-        act.hand_to(hands, target, span.plateau(0, 1, 0.3, 0.3), (-0.5, 0.6, -1.0))
+        act.hand_to(hands, target, span.plateau(0, 1, 0.3, 0.3))
         act.add(out, spine_pitch=0.24, head_pitch=0.12)
 
 

@@ -32,7 +32,7 @@ def _hinge(act: StepContext, down: PerTime, angle_rad: float) -> None:
     act.bend_knees(0.5 * down)
 
 
-def _spells(act: StepContext, usual_s: float, least_s: float, most_s: float, share: float) -> list[PerTime]:
+def _spells(act: StepContext, usual_s: float, min_s: float, max_s: float, share: float) -> list[PerTime]:
     """How far (n,) the body is down, 0 to 1, each time: once, all the time, where it is held; ramps of a `share`.
 
     Who stays down at the end of a sequence is down in its last frame, unless the hands have something to do meanwhile.
@@ -41,8 +41,8 @@ def _spells(act: StepContext, usual_s: float, least_s: float, most_s: float, sha
         stays = act.last and act.style == "held" and not act.step.upper
         spans = [Span(act.time_s, act.start_s, act.duration_s + _BEYOND_S * stays)]
     else:
-        spans = act.repeats(usual_s, least_s, most_s)
-    ramps = [share * min(span.lasts_s, act.duration_s, most_s) for span in spans]
+        spans = act.repeats(usual_s, min_s, max_s)
+    ramps = [share * min(span.lasts_s, act.duration_s, max_s) for span in spans]
     return [act.plateau(span.begin_s, span.at(1), ramp, ramp) for span, ramp in zip(spans, ramps, strict=True)]
 
 

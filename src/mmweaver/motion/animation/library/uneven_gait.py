@@ -12,7 +12,7 @@ from mmweaver.motion.animation.step_context import BOTH, StepContext, posture
 from mmweaver.motion.language.plan import FALLING_ON
 
 _MOST_OUT_OF_BALANCE = 0.65  # share of a stumble after which the trunk leans most
-LUNGES_HZ = (0.58, 0.7, 0.9)  # steps a second of walking lunges: slowly, usually, quickly
+LUNGES_HZ = (0.58, 0.7, 0.9)  # steps per second of walking lunges: slowly, usually, quickly
 
 
 @posture("sidestep", stands=False)
