@@ -19,9 +19,9 @@ def short(step: Step) -> str:
     goal = (step.target and f">{step.target}", step.facing and f"facing-{step.facing}", step.place and "@place")
     amount = (("", "fast", "slow")[step.speed], step.count and f"x{step.count}", step.seconds and f"{step.seconds:g}s")
     several = "several" if step.several else ""
-    words = (doing, step.direction, *limbs, *angles, step.style, *goal, *amount, several)
+    words: tuple[object, ...] = (doing, step.direction, *limbs, *angles, step.style, *goal, *amount, several)
     other = "" if step.other_hand is None else f" & {short(step.other_hand)}"
-    return " ".join(word for word in words if word) + other
+    return " ".join(str(word) for word in words if word) + other
 
 
 @pytest.mark.parametrize("section", READINGS)

@@ -6,6 +6,7 @@ animating them: their bodies are estimated by moving the first one along their p
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -100,7 +101,8 @@ def least_collision(
         except InputError:  # this attempt finds no placement
             continue
         best = ranking.best_of(others, better_than=best)
-    return RankedPlacement(**{**vars(best), "pose": best.pose or animate(best.placement)})
+    chosen: dict[str, Any] = {**vars(best), "pose": best.pose or animate(best.placement)}
+    return RankedPlacement(**chosen)
 
 
 class _Ranking:
