@@ -49,12 +49,6 @@ def test_labelled_data_is_not_read_roughly():
         parse("a person is wiggling their arms")
 
 
-def test_movements_that_exclude_each_other_follow_each_other_at_last():
-    plan = parse("jumping up and down waving arms.", in_part=True)
-    assert [step.upper or step.lower for step in plan.steps] == ["jump", "wave"]
-    assert "one after the other" in plan.clauses[0].how
-
-
 @pytest.mark.parametrize(
     "text", ["a person walks without waving", "a person walks, but does not wave", "someone walks so nobody hears him"]
 )

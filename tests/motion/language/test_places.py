@@ -86,11 +86,6 @@ def test_a_walk_goes_to_the_place_of_what_follows():
         settled(parse("a person walks to the left, then waves near the table"))
 
 
-def test_distances_of_walks_are_kept():
-    step = parse("a person walks two metres to the left").steps[0]
-    assert (step.direction, step.distance_m) == ("left", 2.0)
-
-
 def test_cells_are_where_the_words_say():
     from dataclasses import replace
 

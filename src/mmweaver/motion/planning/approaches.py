@@ -12,7 +12,6 @@ from jaxtyping import Float
 
 from mmweaver.core.records import Scene
 from mmweaver.motion.animation.assemble import assembled_controls, solved
-from mmweaver.motion.animation.library.sitting import knees_ahead_m, pelvis_behind_feet_m
 from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep
@@ -73,11 +72,7 @@ class Approach:
 
     def scaled_to(self, body: SkeletonProportions) -> "Approach":
         """The same for a body of exactly this size: its pelvis is on the seat."""
-        seat, facing = self.sitting.seat_m, self.sitting.facing_rad
-        ahead = unit_vector(facing)
-        feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
-        knees_m = knees_ahead_m(body, self.sitting.height_m)
-        return replace(self, sitting=replace(self.sitting, feet_m=feet_m, knees_m=knees_m).clear_knees())
+        return replace(self, sitting=self.sitting.fitted_to(body))
 
 
 def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
@@ -216,14 +211,12 @@ def _is_alike(one: Sitting, other: Sitting) -> bool:
 
 def _sittings(seat: Sitting, floor: FloorMap) -> Iterator[Sitting]:
     """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it, on a chair pulled out."""
-    aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
     spare_m = max(0.0, (seat.width_m - _SEAT_WIDTH_M) / 2)
     along_m = np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M)))
     places = [(float(shift_m), 0.0) for shift_m in along_m]
     places += [(-_LITTLE_M, 0.0), (_LITTLE_M, 0.0), (0.0, -_LITTLE_M), (0.0, _LITTLE_M)]
     for shift_m, ahead_m in places:
-        moved = replace(seat, feet_m=seat.feet_m + shift_m * aside, seat_m=seat.seat_m + shift_m * aside)
-        moved = moved.moved_ahead(ahead_m).clear_knees()
+        moved = seat.moved(shift_m * seat.aside).moved_ahead(ahead_m).clear_knees()
         for turn_rad in {sign * turn for turn in _TURNS_RAD for sign in (-1.0, 1.0)}:
             cost = _SHIFT_COST * float(np.hypot(shift_m, ahead_m))
             cost += 0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0

@@ -6,6 +6,7 @@ animating them: their bodies are estimated by moving the first one along their p
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -39,34 +40,13 @@ _SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
 
 @dataclass(frozen=True, kw_only=True)
-class RankedPlacement:
-    """A placement, the body animated along it, and how deep that collides (negative: the distance it keeps)."""
+class _Tested:
+    """A placement whose body was tested, or estimated: how deep it collides (negative: the distance it keeps)."""
 
     placement: Placement
-    pose: PoseSequence
     penetration_m: float
     trunk_cost_m: float = 0.0  # for an occluded trunk
     legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What is reported to the user where the body collides."""
-        if self.penetration_m <= REPORTED_PENETRATION_M:
-            return ()
-        penetration_cm = 100 * self.penetration_m
-        return (
-            f"the body gets {penetration_cm:.0f} cm into furniture or a wall, because the room leaves no better place",
-        )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Tested:
-    """A placement whose body was tested, or estimated; see `RankedPlacement`."""
-
-    placement: Placement
-    penetration_m: float
-    trunk_cost_m: float
-    legs_cost_m: float
     pose: PoseSequence | None = None  # where it was animated
     samples: BodySamples | None = None  # where it was estimated
 
@@ -81,6 +61,21 @@ class _Tested:
         """Whether there is no reason to look for another placement."""
         hidden_m = self.trunk_cost_m + self.legs_cost_m
         return self.penetration_m <= -MARGIN_M and hidden_m <= _NEGLIGIBLE_M and not self.placement.invents_seat
+
+
+@dataclass(frozen=True, kw_only=True)
+class RankedPlacement(_Tested):
+    """A placement, and the body animated along it."""
+
+    pose: PoseSequence
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is reported to the user where the body collides."""
+        if self.penetration_m <= REPORTED_PENETRATION_M:
+            return ()
+        depth_cm = 100 * self.penetration_m
+        return (f"the body gets {depth_cm:.0f} cm into furniture or a wall, because the room leaves no better place",)
 
 
 def least_collision(
@@ -106,10 +101,8 @@ def least_collision(
         except InputError:  # this attempt finds no placement
             continue
         best = ranking.best_of(others, better_than=best)
-    return RankedPlacement(
-        placement=best.placement, pose=best.pose or animate(best.placement), penetration_m=best.penetration_m,
-        trunk_cost_m=best.trunk_cost_m, legs_cost_m=best.legs_cost_m,
-    )  # fmt: skip
+    chosen: dict[str, Any] = {**vars(best), "pose": best.pose or animate(best.placement)}
+    return RankedPlacement(**chosen)
 
 
 class _Ranking:

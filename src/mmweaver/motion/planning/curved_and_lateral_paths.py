@@ -1,7 +1,6 @@
 """Paths other than walking straight ahead: bends, sidesteps, stumbles, leaps, turns by an angle; room to lie down."""
 
 import numpy as np
-from jaxtyping import Float
 
 from mmweaver.motion.animation.library.on_furniture import OFF_SEAT_AHEAD_M
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M, SIDE_AWAY_M
@@ -83,7 +82,7 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
         )  # fmt: skip
         places = trajectory.position_m + move.shift_m(np.linspace(begin, begin + span, 60))
         if trajectory.floor.can_stand(places).all():
-            _append_move(trajectory, move, places, extra_cost=0.5 * stops)
+            trajectory.append(move, places, 0.5 * stops)
             trajectory.heading_rad += bend
             across, along = move.end_shift_m[::-1]  # who walks back goes straight to where the bend began
             trajectory.last_direction_rad = float(np.arctan2(across, along))
@@ -133,13 +132,6 @@ def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None)
         raise NoTrajectory(f"only {free:.1f} m")
     ramp = min(0.3, 0.4 * span)
     trajectory.go(step, direction, free, (begin, begin + span), (ramp, ramp))
-
-
-def _append_move(trajectory: Trajectory, move: Move, places: Float[Array, "n 2"], extra_cost: float) -> None:
-    trajectory.moves[-1].append(move)
-    trajectory.position_m = trajectory.position_m + move.end_shift_m
-    trajectory.cost += float(trajectory.floor.cost_at(places).mean()) + extra_cost
-    trajectory.from_seat = False
 
 
 def turn_by(trajectory: Trajectory, step: Step) -> None:

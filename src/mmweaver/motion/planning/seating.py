@@ -50,11 +50,24 @@ class Sitting:
     cost: float = 0.0  # of unusual ways to sit
     chair: PulledChair | None = None  # where the seat is no longer where the photo shows it
 
+    @property
+    def ahead(self) -> Float[Array, "2"]:
+        """Where the sitter faces, (x, y) of length 1."""
+        return unit_vector(self.facing_rad)
+
+    @property
+    def aside(self) -> Float[Array, "2"]:
+        """To the sitter's left, (x, y) of length 1."""
+        return np.array([-np.sin(self.facing_rad), np.cos(self.facing_rad)])
+
+    def fitted_to(self, body: SkeletonProportions) -> "Sitting":
+        """The same for a body of this size: feet and knees are where its legs reach."""
+        feet_m = self.seat_m + pelvis_behind_feet_m(body, self.height_m) * self.ahead
+        return replace(self, feet_m=feet_m, knees_m=knees_ahead_m(body, self.height_m)).clear_knees()
+
     def moved_ahead(self, by_m: float) -> "Sitting":
         """The same farther ahead on the seat."""
-        shift_m = by_m * unit_vector(self.facing_rad)
-        edge_m = self.edge_m - by_m
-        return replace(self, feet_m=self.feet_m + shift_m, seat_m=self.seat_m + shift_m, edge_m=edge_m)
+        return replace(self.moved(by_m * self.ahead), edge_m=self.edge_m - by_m)
 
     def moved(self, by_m: Float[Array, "2"]) -> "Sitting":
         """The same elsewhere, (x, y)."""
@@ -95,10 +108,8 @@ def centred_to_lie(seats: list[Sitting], height_m: float) -> list[Sitting]:
     """
     centred = []
     for seat in seats:
-        aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
-        along_m = [float((other.seat_m - seat.seat_m) @ aside) for other in seats if _share_couch(seat, other)]
-        shift_m = (float(np.mean(along_m)) + _LYING_OFF_CENTRE * height_m) * aside
-        centred.append(replace(seat, feet_m=seat.feet_m + shift_m, seat_m=seat.seat_m + shift_m))
+        along_m = [float((other.seat_m - seat.seat_m) @ seat.aside) for other in seats if _share_couch(seat, other)]
+        centred.append(seat.moved((float(np.mean(along_m)) + _LYING_OFF_CENTRE * height_m) * seat.aside))
     return centred
 
 
@@ -141,14 +152,15 @@ def _edge_sittings(sitting: Sitting, floor: FloorMap, body: SkeletonProportions)
             height = obstacles.low_surface_m(place)
             if not LOWEST_M <= height <= HIGHEST_M:
                 break
-            feet_m = place + pelvis_behind_feet_m(body, height) * ahead
-            knees_m = knees_ahead_m(body, height)
             edge = replace(
-                sitting, feet_m=feet_m, facing_rad=facing, height_m=height, seat_m=place, width_m=_BED_WIDTH_M,
-                edge_m=_BODY_WIDTH_M / 2, knees_m=knees_m,
-            ).clear_knees()  # fmt: skip
-            aside = _KNEES_APART_M * np.array([-ahead[1], ahead[0]])
-            ways = [edge.moved(side * aside) for side in (-1.0, 0.0, 1.0)]
+                sitting,
+                facing_rad=facing,
+                height_m=height,
+                seat_m=place,
+                width_m=_BED_WIDTH_M,
+                edge_m=_BODY_WIDTH_M / 2,
+            ).fitted_to(body)
+            ways = [edge.moved(side * (_KNEES_APART_M * edge.aside)) for side in (-1.0, 0.0, 1.0)]
             is_floor = floor.is_seen_floor(np.stack([way.feet_m for way in ways])).all()
             if is_floor and all(_has_room_for_shins(way, floor.scene) for way in ways):
                 found += [edge] if bool(floor.sees(edge.seat_m)) else []
@@ -157,25 +169,21 @@ def _edge_sittings(sitting: Sitting, floor: FloorMap, body: SkeletonProportions)
 
 
 def _has_room_for_shins(sitting: Sitting, scene: Scene) -> bool:
-    ahead = unit_vector(sitting.facing_rad)
-    knees_m = sitting.seat_m + (sitting.knees_m + _KNEE_M) * ahead
+    knees_m = sitting.seat_m + (sitting.knees_m + _KNEE_M) * sitting.ahead
     return CollisionMap.of(scene).has_room_for_shins(knees_m, sitting.feet_m, sitting.height_m)
 
 
 def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
-    height = float(seat.position_m[2]) - floor.scene.floor_z_m
-    ahead = unit_vector(seat.facing_rad)
     place = np.asarray(seat.position_m[:2], dtype=float)
     return Sitting(
-        feet_m=place + pelvis_behind_feet_m(body, height) * ahead,
+        feet_m=place,
         facing_rad=float(seat.facing_rad),
-        height_m=height,
+        height_m=float(seat.position_m[2]) - floor.scene.floor_z_m,
         seat_m=place,
         width_m=float(seat.size_m[0]),
         depth_m=float(seat.size_m[1]),
         edge_m=float(seat.size_m[1]) / 2,
-        knees_m=knees_ahead_m(body, height),
-    ).clear_knees()
+    ).fitted_to(body)
 
 
 def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
@@ -186,38 +194,30 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     reach = sitting.feet_m - sitting.seat_m
     if kind == 3:
         back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
-        further = replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
-        return replace(further, edge_m=sitting.edge_m + float(np.hypot(*back))).clear_knees()
+        return replace(sitting.moved(-back), edge_m=sitting.edge_m + float(np.hypot(*back)), cost=0.2).clear_knees()
     return turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
 
 
 def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     """The same seat in any possible way: turned, and ahead, behind, left or right of its centre."""
-    ahead = unit_vector(sitting.facing_rad)
-    aside = np.array([-ahead[1], ahead[0]])
     spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_WIDTH_M) / 2, 0.03, 0.3)
     shift = rng.uniform(-1, 1, 2) * spare
-    moved = shift[0] * ahead + shift[1] * aside
-    sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
-    sitting = replace(sitting, edge_m=sitting.edge_m - float(shift[0])).clear_knees()
-    return turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
+    moved = sitting.moved(shift[0] * sitting.ahead + shift[1] * sitting.aside)
+    moved = replace(moved, edge_m=sitting.edge_m - float(shift[0])).clear_knees()
+    return turned(moved, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
 def pulled_out(sitting: Sitting, floor: FloorMap, by_m: float) -> Sitting | None:
     """On the same chair pulled back from what is ahead of it; None for a couch or bed, or without floor behind."""
     if sitting.width_m >= _COUCH_M or _is_bed(sitting, floor.scene):
         return None
-    ahead = unit_vector(sitting.facing_rad)
-    aside = np.array([-ahead[1], ahead[0]])
     place = (float(sitting.seat_m[0]), float(sitting.seat_m[1]))
-    moved = sitting.seat_m - by_m * ahead
-    behind = moved - _CHAIR_BEHIND_M * ahead + np.array([[-1.0], [0.0], [1.0]]) * _CHAIR_ASIDE_M * aside
-    if not (floor.clearance_at(behind) > 0).all() or not bool(floor.sees(moved)):
+    moved = sitting.moved(-(by_m * sitting.ahead))
+    to_sides = np.array([[-1.0], [0.0], [1.0]]) * _CHAIR_ASIDE_M * sitting.aside
+    behind = moved.seat_m - _CHAIR_BEHIND_M * sitting.ahead + to_sides
+    if not (floor.clearance_at(behind) > 0).all() or not bool(floor.sees(moved.seat_m)):
         return None
-    chair = PulledChair(place, sitting.facing_rad, by_m)
-    return replace(
-        sitting, seat_m=moved, feet_m=sitting.feet_m - by_m * ahead, chair=chair, cost=sitting.cost + PULLED_COST + by_m
-    )
+    return replace(moved, chair=PulledChair(place, sitting.facing_rad, by_m), cost=sitting.cost + PULLED_COST + by_m)
 
 
 def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
@@ -251,9 +251,8 @@ def stool_fits(stool: Sitting, floor: FloorMap, *, is_bed: bool = False) -> bool
 
     On a tight floor it only has to be in view.
     """
-    aside = np.array([-np.sin(stool.facing_rad), np.cos(stool.facing_rad)])
     reach = np.linspace(-0.9, 0.9, 5) if is_bed else np.zeros(1)
-    places = stool.seat_m + reach[:, None] * aside
+    places = stool.seat_m + reach[:, None] * stool.aside
     is_free = floor.is_tight or bool((floor.clearance_at(places) >= 0.2).all())
     return is_free and bool(floor.sees(stool.seat_m))
 

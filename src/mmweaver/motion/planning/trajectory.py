@@ -139,13 +139,14 @@ class Trajectory:
             start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
             ramp_in_s=ramps[0], ramp_out_s=ramps[1],
         )  # fmt: skip
-        self.moves[-1].append(move)
-        samples = self.position_m + np.linspace(0, length_m, 8)[:, None] * np.array(
-            [np.cos(direction_rad), np.sin(direction_rad)]
-        )
-        self.cost += float(self.floor.cost_at(samples).mean())
-        self.position_m = self.position_m + move.end_shift_m
+        self.append(move, self.position_m + np.linspace(0, length_m, 8)[:, None] * unit_vector(direction_rad))
         self.last_direction_rad = direction_rad
+
+    def append(self, move: Move, places_m: Float[Array, "place 2"], extra_cost: float = 0.0) -> None:
+        """Appends a move through places (x, y), which cost as the floor there does."""
+        self.moves[-1].append(move)
+        self.position_m = self.position_m + move.end_shift_m
+        self.cost += float(self.floor.cost_at(places_m).mean()) + extra_cost
         self.from_seat = False
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -214,10 +215,7 @@ class CandidateSampler:
         if self.after is not None:
             spot = np.array(self.after.position_m)
             is_before_seat = self.after.sitting is not None or not bool(self.floor.can_stand(spot))
-            going_on = Trajectory(
-                floor=self.floor, rng=self.rng, position_m=spot, heading_rad=self.after.heading_rad,
-                from_seat=is_before_seat,
-            )  # fmt: skip
+            going_on = self._trajectory(spot, self.after.heading_rad, from_seat=is_before_seat)
             return going_on, self.after.sitting if starts_seated(self.plan) else None
         if starts_seated(self.plan):
             usable = preferred(seats, first.seat, self.floor.scene)
@@ -233,10 +231,7 @@ class CandidateSampler:
             return self._start_seated(usable)
         before_seat = self._seat_to_start_at(seats)
         if before_seat is not None:
-            feet_m, facing = before_seat.feet_m, before_seat.facing_rad
-            return Trajectory(
-                floor=self.floor, rng=self.rng, position_m=feet_m, heading_rad=facing, from_seat=True
-            ), None
+            return self._trajectory(before_seat.feet_m, before_seat.facing_rad, from_seat=True), None
         spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
         if self.off_radar_rad is not None and not first.moves:
@@ -247,13 +242,10 @@ class CandidateSampler:
             facing = _facing_rad(first, spot, self.floor.scene) + float(self.rng.normal(0, 0.05))
         if self.heading_rad is not None:
             facing = self.heading_rad
-        return Trajectory(
-            floor=self.floor,
-            rng=self.rng,
-            position_m=spot,
-            heading_rad=facing,
-            heading_is_given=self.heading_rad is not None,
-        ), None
+        return self._trajectory(spot, facing, heading_is_given=self.heading_rad is not None), None
+
+    def _trajectory(self, position_m: Float[Array, "2"], heading_rad: float, **more: Any) -> Trajectory:
+        return Trajectory(floor=self.floor, rng=self.rng, position_m=position_m, heading_rad=heading_rad, **more)
 
     def _sittings_known_to_fit(self, seats: list[Sitting]) -> list[Sitting]:
         """The ways to sit on these seats that are known to keep the body clear; the seats where there are none."""
@@ -352,11 +344,7 @@ class CandidateSampler:
             notes.append(stool_note(sitting, none_at_all=not self.floor.scene.seats, is_bed=lies_on_seat(self.plan)))
             cost += 3.0 * bool(near)
             cost += float(self.floor.cost_at(spot)) + 2.0 * max(0.0, 0.5 - float(self.floor.clearance_at(spot)))
-        trajectory = Trajectory(
-            floor=self.floor, rng=self.rng, position_m=sitting.feet_m, heading_rad=sitting.facing_rad, cost=cost,
-            notes=notes,
-        )  # fmt: skip
-        return trajectory, sitting
+        return self._trajectory(sitting.feet_m, sitting.facing_rad, cost=cost, notes=notes), sitting
 
     def _is_meant(self, seat: Sitting, *, named: bool) -> bool:
         """Whether who sits at the start may take the seat: near the requested start, and facing as requested.
