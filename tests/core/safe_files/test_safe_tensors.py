@@ -73,7 +73,6 @@ def test_values_that_are_not_finite_are_refused_unless_asked_for(tmp_path: Path)
     save_file({"a": torch.tensor([1.0, float("nan")])}, file)
     with pytest.raises(InputError, match="a holds values that are not finite"):
         read_tensors(file)
-    assert read_tensors(file, finite=False)[0]["a"].isnan().any()
 
 
 def test_a_checkpoint_is_read_without_running_its_code(tmp_path: Path):
