@@ -83,7 +83,7 @@ class SignalEvidence:
     @cached_property
     def is_lost(self) -> np.ndarray:
         """Mask (frame,) of frames that hold nothing but zeros: lost packets."""
-        return ~self.cube.values.any(axis=(1, 2, 3))
+        return np.logical_not(self.cube.values.any(axis=(1, 2, 3)))
 
     @cached_property
     def still(self) -> np.ndarray:

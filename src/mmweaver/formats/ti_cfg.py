@@ -103,7 +103,8 @@ def adc_buffer(lines: Lines) -> tuple[float, float]:
     if "adcbufCfg" not in lines:
         return -1.0, -1.0
     values = lines["adcbufCfg"][-1].values
-    return values[1:3] if len(values) == 4 else values[2:4]
+    swap, interleave = values[1:3] if len(values) == 4 else values[2:4]
+    return swap, interleave
 
 
 def platform_of(text: str) -> str:
