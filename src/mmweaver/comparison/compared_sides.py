@@ -49,9 +49,12 @@ def _record_signal(source: Any, name: str) -> ComparedSignal:
     adc, points, meta = (getattr(source, part, None) for part in ("adc", "points", "meta"))
     is_seen_by_cube = getattr(source, "compensate_tdm", True)
     return ComparedSignal(
-        name=name, cube=source.cube, adc=adc if isinstance(adc, AdcCube) and is_seen_by_cube else None,
-        points=points if isinstance(points, PointCloud) else None, meta=meta if isinstance(meta, dict) else {},
-    )  # fmt: skip
+        name=name,
+        cube=source.cube,
+        adc=adc if isinstance(adc, AdcCube) and is_seen_by_cube else None,
+        points=points if isinstance(points, PointCloud) else None,
+        meta=meta if isinstance(meta, dict) else {},
+    )
 
 
 def _path_signals(path: Path, reading: RawReading) -> list[ComparedSignal]:

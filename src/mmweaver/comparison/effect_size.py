@@ -73,10 +73,13 @@ def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: b
         interval = _interval(draws[1] - draws[0])
     larger = (b[:, None] > a[None, :]).mean() + 0.5 * (b[:, None] == a[None, :]).mean()
     return Difference(
-        difference=gap, interval_95=interval, effect_size=gap / scale,
+        difference=gap,
+        interval_95=interval,
+        effect_size=gap / scale,
         effect_interval_95=None if interval is None else (interval[0] / scale, interval[1] / scale),
-        separable=float(max(larger, 1 - larger)) if is_enough else None, wasserstein=float(wasserstein_distance(a, b)),
-    )  # fmt: skip
+        separable=float(max(larger, 1 - larger)) if is_enough else None,
+        wasserstein=float(wasserstein_distance(a, b)),
+    )
 
 
 def _interval(draws: np.ndarray) -> Interval:

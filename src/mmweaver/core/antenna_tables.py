@@ -50,6 +50,4 @@ def table_of_virtual_array(
     def plain(rows: np.ndarray) -> Places:
         return tuple((float(x) + 0.0, float(z) + 0.0) for x, z in rows)
 
-    return AntennaTable(
-        name=name, tx_halfwaves=plain(tx), rx_halfwaves=plain(rx), rx_inverted=inverted, source=source
-    )  # fmt: skip
+    return AntennaTable(name=name, tx_halfwaves=plain(tx), rx_halfwaves=plain(rx), rx_inverted=inverted, source=source)

@@ -58,9 +58,14 @@ def compensated(board: Board) -> Board:
     """The board without what a radar's own calibration takes away: antenna errors and range bias."""
     none = np.zeros(0)
     return replace(
-        board, channel_gain_db=none, channel_phase_deg=none, coupling_real=none, coupling_imag=none,
-        elevation_phase_deg=0.0, range_bias_m=0.0,
-    )  # fmt: skip
+        board,
+        channel_gain_db=none,
+        channel_phase_deg=none,
+        coupling_real=none,
+        coupling_imag=none,
+        elevation_phase_deg=0.0,
+        range_bias_m=0.0,
+    )
 
 
 def _number(name: str, seed: int) -> int:
@@ -91,16 +96,24 @@ def typical_board(config: RadarConfig, number: int) -> Board:
         level_db, end_m = REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M
     leakage = _leakage(config, rng, between(level_db), between(end_m))
     return Board(
-        name=f"typical:{number}", made_from="the spread of recorded boards, docs/board.md",
-        if_share=if_share, if_gain_db=if_gain_db, if_phase_deg=np.zeros(len(if_share)),
-        channel_gain_db=gain_db, channel_phase_deg=phase_deg,
-        leakage_range_m=leakage[0], leakage_level_db=leakage[1], leakage_phase_deg=leakage[2],
-        elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG), range_bias_m=between(RANGE_BIAS_M),
+        name=f"typical:{number}",
+        made_from="the spread of recorded boards, docs/board.md",
+        if_share=if_share,
+        if_gain_db=if_gain_db,
+        if_phase_deg=np.zeros(len(if_share)),
+        channel_gain_db=gain_db,
+        channel_phase_deg=phase_deg,
+        leakage_range_m=leakage[0],
+        leakage_level_db=leakage[1],
+        leakage_phase_deg=leakage[2],
+        elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG),
+        range_bias_m=between(RANGE_BIAS_M),
         first_chirp_amplitude_percent=starts * between(FIRST_CHIRP_PERCENT),
-        first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
+        first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD),
+        drift_ppm=between(DRIFT_PPM),
         gain_db=starts * float(stream(number, "typical board", "gain").uniform(*GAIN_DB)),
         element_spacing_m=_spacing_m(config),
-    )  # fmt: skip
+    )
 
 
 def _spacing_m(config: RadarConfig) -> float | None:

@@ -19,13 +19,15 @@ EXTRAS: dict[str, dict[str, str]] = {
     "pretrained": {"transformers": "transformers"},
     "rerun": {"rerun": "rerun-sdk"},
     "studio": {
-        "python_multipart": "python-multipart", "starlette": "starlette", "uvicorn": "uvicorn",
+        "python_multipart": "python-multipart",
+        "starlette": "starlette",
+        "uvicorn": "uvicorn",
         "websockets": "websockets",
     },
     "training": {"accelerate": "accelerate", "tensorboard": "tensorboard", "zarr": "zarr"},
     "weaver": {"huggingface_hub": "huggingface-hub", "zarr": "zarr"},
     "xarray": {"xarray": "xarray"},
-}  # fmt: skip
+}
 
 
 def need(extra: str, what: str, *modules: str) -> None:

@@ -56,9 +56,7 @@ class CubeGrid:
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
-        return (
-            len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m)
-        )  # fmt: skip
+        return (len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m))
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -234,9 +232,25 @@ class Seat:
 
 
 LANDMARK_KINDS = (
-    "door", "window", "table", "counter", "bed", "wall", "desk", "shelf", "fridge", "tv", "wardrobe", "sink", "plant",
-    "lamp", "stove", "cabinet", "couch", "chair",
-)  # fmt: skip
+    "door",
+    "window",
+    "table",
+    "counter",
+    "bed",
+    "wall",
+    "desk",
+    "shelf",
+    "fridge",
+    "tv",
+    "wardrobe",
+    "sink",
+    "plant",
+    "lamp",
+    "stove",
+    "cabinet",
+    "couch",
+    "chair",
+)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -109,9 +109,11 @@ def read_pcap(
     )
     data = _reassembled(packets, chosen.start * frame_bytes, chosen.stop * frame_bytes)
     return PacketCapture(
-        adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order), report=report, num_frames=total,
+        adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order),
+        report=report,
+        num_frames=total,
         frame_time_s=_frame_times(packets, total, frame_bytes, config)[chosen.start : chosen.stop],
-    )  # fmt: skip
+    )
 
 
 class SampleBytes:

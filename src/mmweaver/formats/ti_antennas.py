@@ -15,9 +15,23 @@ from mmweaver.core.presets import ANTENNAS
 NUM_RX = 4
 TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides
 # of the platform's name, without its punctuation: board
-PLATFORMS = (("68xxaop", "aop"), ("6843aop", "aop"), ("18xxaop", "aop"), ("1843aop", "aop"), ("68xxods", "ods"),
-             ("6843ods", "ods"), ("16xx", "boost1642"), ("1642", "boost1642"), ("294", "evm2944"), ("14xx", "boost"),
-             ("1443", "boost"), ("18xx", "boost"), ("1843", "boost"), ("68xx", "isk"), ("6843", "isk"))  # fmt: skip
+PLATFORMS = (
+    ("68xxaop", "aop"),
+    ("6843aop", "aop"),
+    ("18xxaop", "aop"),
+    ("1843aop", "aop"),
+    ("68xxods", "ods"),
+    ("6843ods", "ods"),
+    ("16xx", "boost1642"),
+    ("1642", "boost1642"),
+    ("294", "evm2944"),
+    ("14xx", "boost"),
+    ("1443", "boost"),
+    ("18xx", "boost"),
+    ("1843", "boost"),
+    ("68xx", "isk"),
+    ("6843", "isk"),
+)
 
 
 def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> AntennaTable | None:

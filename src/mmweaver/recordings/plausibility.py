@@ -46,9 +46,13 @@ UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen w
 
 
 def implausible(
-    adc: AdcCube, cube: RadarCube, path: Path | None = None, *, iq_order: str | None = None,
+    adc: AdcCube,
+    cube: RadarCube,
+    path: Path | None = None,
+    *,
+    iq_order: str | None = None,
     frame_time_s: PerFrame | None = None,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """What does not fit, a sentence each with the likelier reading; empty where all is plausible.
 
     `path`: the .bin that the samples come from; `iq_order`: as which they were read, of int16 words; `frame_time_s`:

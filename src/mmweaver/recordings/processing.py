@@ -49,9 +49,15 @@ class ProcessedRecording:
         title = Path(self.meta["inputs"]["recording"]["path"]).name
         view = FigureData(title=title, cube=self.cube, points=self.points)
         return save_results(
-            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures,
+            out,
+            view,
+            self.meta,
+            overwrite=overwrite,
+            stages=self.stages,
+            extra=extra,
+            pictures=pictures,
             more=partial(self._write_analysis, title, pictures),
-        )  # fmt: skip
+        )
 
     def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:
         """analysis.npz and its pages."""
@@ -66,9 +72,14 @@ class ProcessedRecording:
             signs = found.vital_signs
             rates = {} if signs is None else {"breathing": signs.breathing, "heart": signs.heart}
             draw_slow_time(
-                folder / "slow_time.png", title, self.cube, found.slow_doppler, found.slow_velocity_mps, found.cells,
+                folder / "slow_time.png",
+                title,
+                self.cube,
+                found.slow_doppler,
+                found.slow_velocity_mps,
+                found.cells,
                 rates,
-            )  # fmt: skip
+            )
         if found.micro_doppler is not None:
             draw_micro_doppler(folder / "micro_doppler.png", title, found.micro_doppler, self.cube.scale)
         if found.people:

@@ -73,9 +73,7 @@ def check_finite(path: Path | str, tensors: dict[str, "torch.Tensor"]) -> None:
 
     for name, tensor in tensors.items():
         if tensor.is_floating_point() and not bool(torch.isfinite(tensor).all()):
-            raise InputError(
-                f"{path}: {name} holds values that are not finite; train or fetch the weights again"
-            )  # fmt: skip
+            raise InputError(f"{path}: {name} holds values that are not finite; train or fetch the weights again")
 
 
 def read_checkpoint(path: Path | str, *, what: str) -> Any:
