@@ -23,7 +23,7 @@ from mmweaver.paths.background import agreeing_gain
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
-from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
+from mmweaver.training.captures import SPLIT, Capture, RecordedRoom, rooms_of
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import model_card
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples, sample_batch
