@@ -39,10 +39,10 @@ class NoRoomError(InputError):
 
     def __init__(self, message: str, *, ways_on: Mapping[str, Any] | None = None) -> None:
         self.ways_on: dict[str, Any] = dict(ways_on or {})
-        super().__init__(message + _advice(self.ways_on))
+        super().__init__(message + _in_words(self.ways_on))
 
 
-def _advice(ways_on: Mapping[str, Any]) -> str:
+def _in_words(ways_on: Mapping[str, Any]) -> str:
     if not ways_on:
         return ""
     x, y = ways_on["nearest_place_m"]

@@ -90,6 +90,11 @@ class RadarCube(ShownByFacts):
     config: RadarConfig
     scale: float
 
+    def select(self, frames: slice | np.ndarray) -> "RadarCube":
+        """Some of the frames, by slice or index."""
+        grid = CubeGrid(**{**vars(self.grid), "frame_time_s": self.grid.frame_time_s[frames]})
+        return RadarCube(values=self.values[frames], grid=grid, config=self.config, scale=self.scale)
+
     def facts(self) -> dict[str, str]:
         """Axes, type and radar."""
         return {
@@ -112,6 +117,11 @@ class PointCloud(ShownByFacts):
     z_m: PerPoint
     radial_velocity_mps: PerPoint
     snr_db: PerPoint
+
+    @property
+    def xyz_m(self) -> np.ndarray:
+        """Places (point, 3)."""
+        return np.stack([self.x_m, self.y_m, self.z_m], axis=1)
 
     @property
     def range_m(self) -> np.ndarray:

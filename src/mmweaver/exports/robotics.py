@@ -99,7 +99,7 @@ def write_mcap(result: StoredResult, out: Path) -> str:
 def packed_points(points: PointCloud, frame: int) -> Float[Array, "point 5"]:
     """The points of a frame in ROS's axes, float32: x, y, z in metres, velocity in m/s, SNR in dB."""
     own = points.select(points.frame == frame)
-    place = ros_axes(np.stack([own.x_m, own.y_m, own.z_m], axis=-1).reshape(-1, 3))
+    place = ros_axes(own.xyz_m)
     return np.concatenate([place, own.radial_velocity_mps[:, None], own.snr_db[:, None]], axis=-1).astype("<f4")
 
 

@@ -159,7 +159,7 @@ def write_mmmesh(result: StoredResult, out: Path) -> str:
     points, folder = result.points, out / "points"
     folder.mkdir(parents=True)
     frames = len(result.cube.grid.frame_time_s)
-    place = np.stack([points.x_m, points.y_m, points.z_m], axis=-1).reshape(-1, 3).astype(np.float64)
+    place = points.xyz_m.astype(np.float64)
     columns = (points.radial_velocity_mps, 10 ** (points.snr_db / 10), np.linalg.norm(place, axis=-1))
     rows = np.concatenate([place, np.stack(columns, axis=-1)], axis=-1)
     for index in range(frames):

@@ -169,12 +169,8 @@ def _stretch(found: Recording, frames: slice) -> Recording:
     """Some frames of a recording that was read whole."""
     if frames == slice(None):
         return found
-    cube, adc = found.stored_cube, found.adc
-    if cube is not None:
-        grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[frames])
-        cube = replace(cube, values=cube.values[frames], grid=grid)
-    if adc is not None:
-        adc = replace(adc, samples=adc.samples[frames])
+    cube = None if found.stored_cube is None else found.stored_cube.select(frames)
+    adc = None if found.adc is None else replace(found.adc, samples=found.adc.samples[frames])
     return replace(found, stored_cube=cube, adc=adc, first_frame=frames.start or 0)
 
 
