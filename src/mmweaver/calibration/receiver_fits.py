@@ -130,7 +130,16 @@ def _leakage(evidence: SignalEvidence) -> Finding:
 
 
 def skirt_end(power: np.ndarray, noise: float, range_m: np.ndarray) -> tuple[int, str]:
-    """How many range bins are leakage and its skirt, and what ends them: noise, an echo of the room, or the limit."""
+    """Where leakage and its skirt end.
+
+    Args:
+        power: Static power (range,).
+        noise: Noise power of a cell.
+        range_m: Ranges (range,) of the bins, m.
+
+    Returns:
+        How many range bins they fill, and what ends them: noise, an echo of the room, or the limit.
+    """
     first = int(power[range_m <= LEAKAGE_M].argmax())
     most = max(first + 2, int(np.searchsorted(range_m, SKIRT_LIMIT_M)))
     lowest = np.minimum.accumulate(power[first:])

@@ -45,7 +45,15 @@ def unknown_targets() -> list[Finding]:
 
 
 def fit_target(evidence: Sequence[SignalEvidence], target: KnownTarget) -> list[Finding]:
-    """How much too far the target appears, and how much stronger it is than it should be."""
+    """Range bias and gain from a known target.
+
+    Args:
+        evidence: Recordings, of which the first that shows the target counts.
+        target: Its distance and cross section.
+
+    Returns:
+        How much too far the target appears, and how much stronger it is than it should be.
+    """
     try:
         return measured(evidence, lambda one: _fit(one, target))[0]
     except CannotSeeError as reason:

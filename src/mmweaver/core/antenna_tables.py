@@ -36,9 +36,20 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
 def table_of_virtual_array(
     name: str, places: np.ndarray, num_rx: int, inverted: tuple[int, ...] = (), source: str = ""
 ) -> AntennaTable:
-    """The table whose virtual antennas lie at places (tx * num_rx + rx, 2), the first transmitter at 0.
+    """The table of a virtual array.
 
-    Raises InputError where no transmitters and receivers give such an array.
+    Args:
+        name: Name of the table.
+        places: Virtual antennas (tx * num_rx + rx, 2) in half wavelengths; the first transmitter is put at 0.
+        num_rx: Number of receivers.
+        inverted: Receivers that are fed from the other side.
+        source: Where the places come from.
+
+    Returns:
+        Transmitters and receivers.
+
+    Raises:
+        InputError: where no transmitters and receivers give such an array.
     """
     if len(places) % num_rx:
         raise InputError(f"{len(places)} virtual antennas are no whole number of {num_rx} receivers")

@@ -36,9 +36,18 @@ DRIFT_PPM = (0.3, 0.9)
 
 
 def find_board(name: str | Path | Board, config: RadarConfig, seed: int = 0) -> Board:
-    """The board that is meant: "ideal", "typical" (sampled by the seed), "typical:N" or a board.json.
+    """A board by its name.
 
-    Raises InputError for another name, a file that is no board, and a board that does not fit the radar.
+    Args:
+        name: "ideal", "typical" (sampled by the seed), "typical:N", a board.json, or a Board.
+        config: The radar that it belongs to.
+        seed: Seed of "typical".
+
+    Returns:
+        The board.
+
+    Raises:
+        InputError: for another name, a file that is no board, and a board that does not fit the radar.
     """
     if isinstance(name, Board):
         board = name
@@ -79,7 +88,15 @@ def _number(name: str, seed: int) -> int:
 
 @lru_cache(maxsize=16)
 def typical_board(config: RadarConfig, number: int) -> Board:
-    """The board of this number for a radar: errors as recordings of several boards show them."""
+    """A board with errors as recordings of several boards show them.
+
+    Args:
+        config: The radar.
+        number: Number of the board; equal numbers give equal boards.
+
+    Returns:
+        The board; its figures and where they come from are in docs/board.md.
+    """
     rng = stream(number, "typical board")
 
     def between(limits: tuple[float, float]) -> float:

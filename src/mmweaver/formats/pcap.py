@@ -38,10 +38,17 @@ class UdpPacket:
 
 
 def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
-    """Yields the packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
+    """The packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
 
-    One packet is held at a time. A truncated last packet (the recorder was stopped) is omitted. Raises InputError where
-    the file cannot be read, is not a .pcap, or is truncated before its first packet.
+    Args:
+        path: The file.
+        port: Destination port.
+
+    Yields:
+        One packet at a time. A truncated last packet (the recorder was stopped) is omitted.
+
+    Raises:
+        InputError: where the file cannot be read, is not a .pcap, or is truncated before its first packet.
     """
     path = Path(path)
     size = check_regular(path)

@@ -18,10 +18,17 @@ from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
-    """Loads a preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig.
+    """The radar that a name or file stands for.
 
-    Options may follow the name: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`). Raises
-    InputError where it is none of them, or the file describes no possible radar.
+    Args:
+        name_or_path: A preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig. Options may
+            follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`).
+
+    Returns:
+        The radar.
+
+    Raises:
+        InputError: where it is none of them, or the file describes no possible radar.
     """
     name_or_path, options = split_radar(name_or_path)
     if name_or_path in PRESETS:

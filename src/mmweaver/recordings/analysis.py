@@ -92,7 +92,15 @@ class RecordingAnalysis:
 
 
 def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis:
-    """All that a recording of this length, with these loops per frame, can give; micro-Doppler needs its samples."""
+    """Everything that a recording of this length, with these loops per frame, can show.
+
+    Args:
+        cube: Its cube.
+        adc: Its samples, which micro-Doppler needs; None where it has none.
+
+    Returns:
+        The analysis; parts that cannot be given are None or empty.
+    """
     is_sequence = len(cube.values) > 1
     slow = slow_time_doppler(cube) if is_sequence else None
     cells = tuple(moving_cells(cube))

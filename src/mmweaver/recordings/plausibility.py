@@ -53,10 +53,17 @@ def implausible(
     iq_order: str | None = None,
     frame_time_s: PerFrame | None = None,
 ) -> list[str]:
-    """What does not fit, a sentence each with the likelier reading; empty where all is plausible.
+    """What does not fit in a recording, with the likelier reading.
 
-    `path`: the .bin that the samples come from; `iq_order`: as which they were read, of int16 words; `frame_time_s`:
-    when packets of the frames arrived.
+    Args:
+        adc: Its samples.
+        cube: Its cube.
+        path: The .bin that the samples come from.
+        iq_order: As which they were read, of int16 words.
+        frame_time_s: When packets of the frames arrived, (frame,).
+
+    Returns:
+        A sentence each; empty where all is plausible.
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     if found := [*_number_type(path)]:

@@ -192,10 +192,19 @@ def _cropped(found: Recording, range_m: tuple[float, float] | None, range_bins: 
 
 
 def without_board(found: Recording, board: Board) -> Recording:
-    """The recording without the errors of the board that made it.
+    """Removes the errors of the board that made a recording.
 
-    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias. Raises
-    InputError for the board of another radar.
+    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias.
+
+    Args:
+        found: The recording.
+        board: Its board.
+
+    Returns:
+        The recording without them, and which were removed.
+
+    Raises:
+        InputError: for the board of another radar.
     """
     samples = found.adc
     if samples is None:
