@@ -22,6 +22,7 @@ class AntennaTable:
     rx_halfwaves: Places
     rx_inverted: tuple[int, ...] = ()  # fed from the other side: their phase is turned by 180 degrees
     source: str = ""
+    platforms: tuple[str, ...] = ()  # parts of the names that TI's files have for it
 
 
 def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
@@ -29,7 +30,12 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
     tx, rx = (tuple((float(x), float(z)) for x, z in values[key]) for key in ("tx", "rx"))
     inverted = tuple(int(one) for one in values.get("rx_inverted", []))
     return AntennaTable(
-        name=name, tx_halfwaves=tx, rx_halfwaves=rx, rx_inverted=inverted, source=source or values.get("source", "")
+        name=name,
+        tx_halfwaves=tx,
+        rx_halfwaves=rx,
+        rx_inverted=inverted,
+        source=source or values.get("source", ""),
+        platforms=tuple(values.get("platforms", [])),
     )
 
 
