@@ -252,8 +252,8 @@ def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool)
 
 def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
     if given := [name for name, value in vars(reading).items() if value is not None]:
-        option = given[0].replace("_", "-")
-        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out --{option}")
+        option = "--" + given[0].replace("_", "-")
+        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {option}")
     capture = read_radar_capture(path, frames)
     cfg = capture.folder / RADAR
     found = Recording(
