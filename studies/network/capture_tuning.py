@@ -32,9 +32,9 @@ from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights, shipped_weights
-from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.capture_training import recipe_for, tune
+from mmweaver.training.captures import read_capture
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, Case, simulated, true_cube
 from studies.result_rows import complete_rows, dataset_of

@@ -106,7 +106,6 @@ REVIEWED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "point clouds do not say which radar made them",
             "tells other labels apart than",
             "take the board of this radar (mmweaver calibrate)",
             "mmweaver calibrate makes one",

@@ -212,7 +212,7 @@ ROWS = (
         before=lambda: _written("empty.json", "[]"),
     ),
     Row("it has □ sub-frames; choose one with --subframe", "radar {sub_frames}", (add("--subframe"),)),
-    Row("it has one plain frame (frameCfg)", "radar {best_range} --subframe 0", (drop("--subframe"),)),
+    Row("it has one plain frame", "radar {best_range} --subframe 0", (drop("--subframe"),)),
     Row("has no sub-frames; leave out --subframe", "radar awr1843 --subframe 0", (drop("--subframe"),)),
     Row(
         "which cannot be read; describe its chirp in a radar.json",

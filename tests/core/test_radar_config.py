@@ -79,6 +79,18 @@ def test_a_foreign_radar_file_is_refused(text: str):
         RadarConfig.from_json(text)
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("frequency_limits_hz", [76e9]), ("tx_position_m", [[0.0, 0.0]]), ("tx_code", [[[1.0, 0.0, 0.0]]]),
+        ("num_loops", 16.0), ("complex_samples", 1), ("name", 3), ("tx_order", "012"), ("idle_time_s", "7e-6"),
+    ],
+)  # fmt: skip
+def test_a_value_of_another_type_is_refused_by_name(name: str, value: object):
+    with pytest.raises(InputError, match=f"{name} cannot be"):
+        RadarConfig.from_values({**AWR1843.to_values(), name: value})
+
+
 def test_an_unknown_preset_lists_the_known():
     with pytest.raises(InputError, match="awr1843"):
         PRESETS["nope"]

@@ -13,7 +13,7 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.exports.export import FORMATS, export_result
+from mmweaver.exports.export import export_result
 from mmweaver.exports.robotics import ros_axes
 from mmweaver.stored_result import StoredResult
 
@@ -21,11 +21,6 @@ from mmweaver.stored_result import StoredResult
 def has(package: str) -> None:
     if importlib.util.find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
-
-
-def test_every_format_has_its_writer():
-    for one in FORMATS.values():
-        assert callable(one.write)
 
 
 def test_matlab(result: StoredResult, result_folder: Path, tmp_path: Path):

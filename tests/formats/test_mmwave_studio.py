@@ -74,17 +74,11 @@ def changed(change: Callable[[Any], Any]) -> Any:
         (lambda setup: setup.update(waveformType="continuousWave"), "continuousWave"),
         (lambda setup: setup.update(rlBpmChirps=[{}]), "lacks rlBpmChirpCfg_t"),
         (lambda setup: setup.pop("rlFrameCfg_t"), "lacks rlFrameCfg_t"),
-        (lambda setup: setup.update(rlChirps=[]), "chirp 0"),
         (lambda setup: setup.update(rlChirps=7), "not an mmWave Studio"),
-        (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 0, "0x0")), "mask 0"),
         (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 10**9, "0x1")), "0 to 511"),
         (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(idleTimeVar_usec=1.0), "idleTimeVar"),
-        (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(profileId=1), "profiles"),
-        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(profileId=1), "profile 0"),
         (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples="many"), "not an mmWave Studio"),
         (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples=128.5), "whole"),
-        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(rampEndTime_usec=20.0), r"57\.20.*20\.00"),
-        (lambda setup: setup["rlFrameCfg_t"].update(numLoops=4000), r"70\.00 ms"),
     ],
 )
 def test_a_bad_file_is_refused(tmp_path: Path, change: Callable[[Any], Any], word: str):

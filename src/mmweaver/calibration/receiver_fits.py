@@ -50,7 +50,7 @@ def fit_filter(evidence: Sequence[SignalEvidence]) -> Finding:
         fields=fields,
         text=f"{last:+.1f} dB in the last 5 % of the band, {near:+.1f} dB in range bins 2 to 6 (+-{error_db:.2f} a"
         " bin); its phase is not in the noise",
-    )  # fmt: skip
+    )
 
 
 def _knot_edges(count: int) -> list[tuple[int, int]]:
@@ -82,7 +82,7 @@ def fit_noise_figure(evidence: Sequence[SignalEvidence]) -> Finding:
     return Finding(
         fields={"noise_figure_db": round(figure_db, 3)},
         text=f"{figure_db:.1f} dB, given the receiver gain of {config.rx_gain_db:g} dB and the converter's range",
-    )  # fmt: skip
+    )
 
 
 def noise_unit(evidence: SignalEvidence) -> float:
@@ -126,11 +126,20 @@ def _leakage(evidence: SignalEvidence) -> Finding:
         text=f"{decibels(peak.mean() / chirp_noise):.1f} dB over the noise of a chirp,"
         f" {decibels(peak.max() / max(peak.min(), 1e-300)):.1f} dB from the weakest to the strongest antenna pair; its"
         f" skirt to {taps_m[-1]:.2f} m, where {how}",
-    )  # fmt: skip
+    )
 
 
 def skirt_end(power: np.ndarray, noise: float, range_m: np.ndarray) -> tuple[int, str]:
-    """How many range bins are leakage and its skirt, and what ends them: noise, an echo of the room, or the limit."""
+    """Where leakage and its skirt end.
+
+    Args:
+        power: Static power (range,).
+        noise: Noise power of a cell.
+        range_m: Ranges (range,) of the bins, m.
+
+    Returns:
+        How many range bins they fill, and what ends them: noise, an echo of the room, or the limit.
+    """
     first = int(power[range_m <= LEAKAGE_M].argmax())
     most = max(first + 2, int(np.searchsorted(range_m, SKIRT_LIMIT_M)))
     lowest = np.minimum.accumulate(power[first:])

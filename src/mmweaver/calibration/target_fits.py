@@ -45,7 +45,15 @@ def unknown_targets() -> list[Finding]:
 
 
 def fit_target(evidence: Sequence[SignalEvidence], target: KnownTarget) -> list[Finding]:
-    """How much too far the target appears, and how much stronger it is than it should be."""
+    """Range bias and gain from a known target.
+
+    Args:
+        evidence: Recordings, of which the first that shows the target counts.
+        target: Its distance and cross section.
+
+    Returns:
+        How much too far the target appears, and how much stronger it is than it should be.
+    """
     try:
         return measured(evidence, lambda one: _fit(one, target))[0]
     except CannotSeeError as reason:
@@ -77,10 +85,11 @@ def _fit(evidence: SignalEvidence, target: KnownTarget) -> list[Finding]:
     gain_db = float(decibels(peak / wanted))
     scale = "" if np.isfinite(evidence.cube.scale) else ", if its noise is that of the radar's noise figure"
     gain = Finding(
-        title=GAIN_TITLE, fields={"gain_db": round(gain_db, 2)},
+        title=GAIN_TITLE,
+        fields={"gain_db": round(gain_db, 2)},
         text=f"{gain_db:+.1f} dB over what {config.tx_power_dbm:g} dBm and antennas of {config.antenna_gain_dbi:g} dBi"
         f" give{scale}; a target that is not in the middle of the view looks weaker",
-    )  # fmt: skip
+    )
     return [bias, gain]
 
 

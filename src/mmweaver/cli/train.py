@@ -215,8 +215,8 @@ def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_
 
 
 def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    from mmweaver.recordings.captures import read_capture
     from mmweaver.training.capture_training import recipe_for, tune, write_tuned
+    from mmweaver.training.captures import read_capture
 
     start, card = _start(arguments.start)
     photo = {"rgb": arguments.rgb, "depth": arguments.depth, "camera": arguments.camera}

@@ -41,9 +41,18 @@ def shown_m(signal: ComparedSignal) -> np.ndarray:
 def common_window_m(
     names: Sequence[str], ranges: Sequence[np.ndarray], wanted_m: tuple[float, float] | None = None
 ) -> tuple[float, float]:
-    """The ranges that all signals show and that are wanted, of the ranges of their bins.
+    """The ranges that all signals show.
 
-    Raises InputError for fewer than four bins.
+    Args:
+        names: Names of the signals, for errors.
+        ranges: Ranges (bin,) of the bins of each, m.
+        wanted_m: Limits (near, far) that are wanted, too.
+
+    Returns:
+        (near, far) in m.
+
+    Raises:
+        InputError: for fewer than four bins.
     """
     if wanted_m is not None:
         names, ranges = [*names, "--range"], [*ranges, np.linspace(*wanted_m, 2)]

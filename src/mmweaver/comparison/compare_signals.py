@@ -210,7 +210,20 @@ def compare_signals(
     names: tuple[str, str] = ("A", "B"),
     range_m: tuple[float, float] | None = None,
 ) -> Comparison:
-    """Compares signals in memory, one or more per side. Raises InputError where they have no common ranges."""
+    """Compares signals in memory, one or more per side.
+
+    Args:
+        a: Signals of A.
+        b: Signals of B.
+        names: Names of the sides.
+        range_m: Ranges (near, far) in metres that are compared. Default: all that both show.
+
+    Returns:
+        The comparison.
+
+    Raises:
+        InputError: where they have no common ranges, or one holds nothing but zeros.
+    """
     sides, notes = _unify_detectors(a, b)
     labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
     every = [*sides[0], *sides[1]]

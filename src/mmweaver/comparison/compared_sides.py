@@ -24,9 +24,18 @@ MAX_RECORDINGS, MAX_BYTES = 200, 4_000_000_000
 
 
 def signals_of(source: Any, reading: RawReading, name: str) -> list[ComparedSignal]:
-    """The signals of one side: of a file, a folder, a record that has a cube, samples, or a sequence of these.
+    """The signals of one side.
 
-    Raises InputError for anything else.
+    Args:
+        source: A file, a folder, a record that has a cube, samples, or a sequence of these.
+        reading: How raw samples are read.
+        name: Name of the side.
+
+    Returns:
+        One signal, or several of a folder or sequence.
+
+    Raises:
+        InputError: for anything else.
     """
     if isinstance(source, ComparedSignal):
         return [source]
@@ -49,9 +58,12 @@ def _record_signal(source: Any, name: str) -> ComparedSignal:
     adc, points, meta = (getattr(source, part, None) for part in ("adc", "points", "meta"))
     is_seen_by_cube = getattr(source, "compensate_tdm", True)
     return ComparedSignal(
-        name=name, cube=source.cube, adc=adc if isinstance(adc, AdcCube) and is_seen_by_cube else None,
-        points=points if isinstance(points, PointCloud) else None, meta=meta if isinstance(meta, dict) else {},
-    )  # fmt: skip
+        name=name,
+        cube=source.cube,
+        adc=adc if isinstance(adc, AdcCube) and is_seen_by_cube else None,
+        points=points if isinstance(points, PointCloud) else None,
+        meta=meta if isinstance(meta, dict) else {},
+    )
 
 
 def _path_signals(path: Path, reading: RawReading) -> list[ComparedSignal]:

@@ -50,7 +50,16 @@ def bootstrap_medians(values: np.ndarray, seed: int, *, in_order: bool) -> np.nd
 
 
 def spread_of(values: np.ndarray, *, in_order: bool, seed: int = 0) -> Spread:
-    """Median, its interval and the spread of values without nan."""
+    """Median, its interval and the spread of values.
+
+    Args:
+        values: Values (unit,) without nan.
+        in_order: Whether neighbours resemble each other: the bootstrap samples blocks of them.
+        seed: Seed of the bootstrap.
+
+    Returns:
+        The spread, without an interval for fewer than four values.
+    """
     low, high = (float(one) for one in np.percentile(values, (10, 90)))
     interval = None
     if len(values) >= MIN_FOR_INTERVAL:
@@ -61,7 +70,18 @@ def spread_of(values: np.ndarray, *, in_order: bool, seed: int = 0) -> Spread:
 
 
 def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: bool, seed: int = 0) -> Difference:
-    """How far B lies from A; `tolerance` keeps features that hardly vary over frames from looking infinitely apart."""
+    """How far B lies from A.
+
+    Args:
+        a: Values (unit,) of A without nan.
+        b: Values (unit,) of B.
+        tolerance: Keeps features that hardly vary over frames from looking infinitely apart; in the feature's unit.
+        in_order: Whether neighbours resemble each other.
+        seed: Seed of the bootstrap.
+
+    Returns:
+        Difference, effect size, overlap and distance.
+    """
     from scipy.stats import wasserstein_distance
 
     scale = float(np.sqrt((_variance(a) + _variance(b)) / 2 + tolerance**2))
@@ -73,10 +93,13 @@ def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: b
         interval = _interval(draws[1] - draws[0])
     larger = (b[:, None] > a[None, :]).mean() + 0.5 * (b[:, None] == a[None, :]).mean()
     return Difference(
-        difference=gap, interval_95=interval, effect_size=gap / scale,
+        difference=gap,
+        interval_95=interval,
+        effect_size=gap / scale,
         effect_interval_95=None if interval is None else (interval[0] / scale, interval[1] / scale),
-        separable=float(max(larger, 1 - larger)) if is_enough else None, wasserstein=float(wasserstein_distance(a, b)),
-    )  # fmt: skip
+        separable=float(max(larger, 1 - larger)) if is_enough else None,
+        wasserstein=float(wasserstein_distance(a, b)),
+    )
 
 
 def _interval(draws: np.ndarray) -> Interval:

@@ -1,7 +1,6 @@
 """Features of a person: energy behind the moving body, and slow time of a seated one."""
 
 import numpy as np
-from scipy.signal import detrend
 
 from mmweaver.comparison.measured_feature import FrameValues, feature
 from mmweaver.comparison.signal_evidence import NEAREST_BODY_M, CannotSeeError, SignalEvidence, decibels
@@ -51,6 +50,8 @@ def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) ->
     period_s = evidence.cube.config.frame_period_s
     if 0.5 / period_s < high_hz:
         raise CannotSeeError(f"{1 / period_s:.1f} frames per second show nothing above {0.5 / period_s:.1f} Hz")
+    from scipy.signal import detrend
+
     phase, values = _seated_phase(evidence), []
     for part in np.array_split(phase, max(1, int(len(phase) * period_s / WINDOW_S))):
         energy = np.abs(np.fft.rfft(detrend(part) * hann(len(part)))) ** 2

@@ -60,7 +60,7 @@ class SignalEvidence:
         """All range bins of the samples where there are samples, else the bins that were kept."""
         adc, cube = self.signal.adc, self.signal.cube
         if adc is None:
-            return _first_frames(cube, _frames_that_fit(cube.grid.shape))
+            return cube.select(slice(_frames_that_fit(cube.grid.shape)))
         config = replace(adc.config, first_range_bin=0, num_range_bins=adc.config.num_unambiguous_range_bins)
         grid = CubeGrid.of(config, len(adc.samples))
         few = adc.samples[: _frames_that_fit(grid.shape)]
@@ -83,7 +83,7 @@ class SignalEvidence:
     @cached_property
     def is_lost(self) -> np.ndarray:
         """Mask (frame,) of frames that hold nothing but zeros: lost packets."""
-        return ~self.cube.values.any(axis=(1, 2, 3))
+        return np.logical_not(self.cube.values.any(axis=(1, 2, 3)))
 
     @cached_property
     def still(self) -> np.ndarray:
@@ -201,10 +201,3 @@ def _median_over_mean(num_antennas: int) -> float:
 
 def _frames_that_fit(shape: tuple[int, ...]) -> int:
     return max(1, MAX_CUBE_BYTES // (8 * int(np.prod(shape[1:]))))
-
-
-def _first_frames(cube: RadarCube, frames: int) -> RadarCube:
-    if len(cube.values) <= frames:
-        return cube
-    grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[:frames])
-    return replace(cube, values=cube.values[:frames], grid=grid)

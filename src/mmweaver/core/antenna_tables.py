@@ -22,6 +22,7 @@ class AntennaTable:
     rx_halfwaves: Places
     rx_inverted: tuple[int, ...] = ()  # fed from the other side: their phase is turned by 180 degrees
     source: str = ""
+    platforms: tuple[str, ...] = ()  # parts of the names that TI's files have for it
 
 
 def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
@@ -29,16 +30,32 @@ def antenna_table(name: str, values: Any, source: str = "") -> AntennaTable:
     tx, rx = (tuple((float(x), float(z)) for x, z in values[key]) for key in ("tx", "rx"))
     inverted = tuple(int(one) for one in values.get("rx_inverted", []))
     return AntennaTable(
-        name=name, tx_halfwaves=tx, rx_halfwaves=rx, rx_inverted=inverted, source=source or values.get("source", "")
+        name=name,
+        tx_halfwaves=tx,
+        rx_halfwaves=rx,
+        rx_inverted=inverted,
+        source=source or values.get("source", ""),
+        platforms=tuple(values.get("platforms", [])),
     )
 
 
 def table_of_virtual_array(
     name: str, places: np.ndarray, num_rx: int, inverted: tuple[int, ...] = (), source: str = ""
 ) -> AntennaTable:
-    """The table whose virtual antennas lie at places (tx * num_rx + rx, 2), the first transmitter at 0.
+    """The table of a virtual array.
 
-    Raises InputError where no transmitters and receivers give such an array.
+    Args:
+        name: Name of the table.
+        places: Virtual antennas (tx * num_rx + rx, 2) in half wavelengths; the first transmitter is put at 0.
+        num_rx: Number of receivers.
+        inverted: Receivers that are fed from the other side.
+        source: Where the places come from.
+
+    Returns:
+        Transmitters and receivers.
+
+    Raises:
+        InputError: where no transmitters and receivers give such an array.
     """
     if len(places) % num_rx:
         raise InputError(f"{len(places)} virtual antennas are no whole number of {num_rx} receivers")
@@ -50,6 +67,4 @@ def table_of_virtual_array(
     def plain(rows: np.ndarray) -> Places:
         return tuple((float(x) + 0.0, float(z) + 0.0) for x, z in rows)
 
-    return AntennaTable(
-        name=name, tx_halfwaves=plain(tx), rx_halfwaves=plain(rx), rx_inverted=inverted, source=source
-    )  # fmt: skip
+    return AntennaTable(name=name, tx_halfwaves=plain(tx), rx_halfwaves=plain(rx), rx_inverted=inverted, source=source)

@@ -20,16 +20,33 @@ _written: list[Path] = []
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """Yields a temporary path in the same folder; on success it is renamed to `path`, on any error it is removed."""
+    """A file that is written completely or not at all.
+
+    Args:
+        path: The file; missing folders are made.
+
+    Yields:
+        A temporary path in the same folder; on success it is renamed to `path`, on any error it is removed.
+
+    Raises:
+        InputError: where it cannot be written.
+    """
     with atomic_files(path) as (temporary,):
         yield temporary
 
 
 @contextmanager
 def atomic_files(*paths: Path) -> Iterator[list[Path]]:
-    """As `atomic_file` for several files that belong together: all are on the disk before the first is renamed.
+    """Several files that belong together: all are on the disk before the first is renamed.
 
-    Missing folders are made, and removed again on an error. Raises InputError where something cannot be written.
+    Args:
+        *paths: The files; missing folders are made, and removed again on an error.
+
+    Yields:
+        A temporary path of each, as `atomic_file` yields one.
+
+    Raises:
+        InputError: where one of them cannot be written.
     """
     targets = [resolved(path) for path in paths]
     made: list[Path] = []
@@ -91,13 +108,21 @@ def _rename_all(staged: list[Path], targets: list[Path]) -> None:
 
 @contextmanager
 def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = False) -> Iterator[Path]:
-    """Yields a temporary folder; on success it becomes `out`, with the sha256 of its files; on any error it is removed.
+    """A folder that is written completely or not at all, with the sha256 of its files.
 
-    An `out` that exists is filled, so that it may be a mount point or somebody's working directory: the complete files
-    are moved into it, and if that is interrupted, the next to write there moves the rest. With `overwrite` files are
-    replaced, and those of other names stay; with `keep_existing` a folder that is there by then is kept, for content
-    that is the same whoever writes it. Raises InputError where `check_output_folder` does, and where nothing can be
-    written.
+    An `out` that exists is filled, so that it may be a mount point or a working directory: the complete files are moved
+    into it, and if that is interrupted, the next to write there moves the rest.
+
+    Args:
+        out: The folder.
+        overwrite: Whether files may be replaced; those of other names stay.
+        keep_existing: Whether a folder that is there by then is kept, for content that is the same whoever writes it.
+
+    Yields:
+        A temporary folder; on success it becomes `out`, on any error it is removed.
+
+    Raises:
+        InputError: where `check_output_folder` does, and where nothing can be written.
     """
     target = resolved(out)
     if not keep_existing:
@@ -173,7 +198,18 @@ def _move_into(stage: Path, folder: Path) -> None:
 
 
 def create_once(path: Path, text: str) -> str:
-    """Writes a file unless there is one, and returns what it holds then: of several processes the first decides."""
+    """Writes a file unless there is one: of several processes the first decides.
+
+    Args:
+        path: The file.
+        text: Its content, if it is new.
+
+    Returns:
+        What the file holds afterwards.
+
+    Raises:
+        InputError: where it cannot be written or read.
+    """
     with_others = path.parent
     try:
         made = _make_folders(with_others)

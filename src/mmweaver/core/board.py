@@ -25,12 +25,25 @@ MAX_BYTES = 4 * MEGABYTE
 MAX_TAPS, MAX_ANTENNAS, MAX_SHARES = 256, 256, 4096
 # the largest size of each number: a board beyond it is a mistake
 LIMITS = {
-    "if_gain_db": 120.0, "if_phase_deg": 36e3, "channel_gain_db": 60.0, "channel_phase_deg": 720.0,
-    "coupling_real": 10.0, "coupling_imag": 10.0, "leakage_range_m": 20.0, "leakage_level_db": 300.0,
-    "leakage_phase_deg": 720.0, "elevation_phase_deg": 360.0, "range_bias_m": 2.0, "gain_db": 100.0,
-    "first_chirp_amplitude_percent": 50.0, "first_chirp_phase_mrad": 3200.0, "drift_ppm": 100.0,
-    "noise_figure_db": 100.0, "element_spacing_m": 1.0, "cfar_threshold": 65535.0,
-}  # fmt: skip
+    "if_gain_db": 120.0,
+    "if_phase_deg": 36e3,
+    "channel_gain_db": 60.0,
+    "channel_phase_deg": 720.0,
+    "coupling_real": 10.0,
+    "coupling_imag": 10.0,
+    "leakage_range_m": 20.0,
+    "leakage_level_db": 300.0,
+    "leakage_phase_deg": 720.0,
+    "elevation_phase_deg": 360.0,
+    "range_bias_m": 2.0,
+    "gain_db": 100.0,
+    "first_chirp_amplitude_percent": 50.0,
+    "first_chirp_phase_mrad": 3200.0,
+    "drift_ppm": 100.0,
+    "noise_figure_db": 100.0,
+    "element_spacing_m": 1.0,
+    "cfar_threshold": 65535.0,
+}
 SAME_SHAPE = (
     ("if_share", "if_gain_db", "if_phase_deg"),
     ("channel_gain_db", "channel_phase_deg"),

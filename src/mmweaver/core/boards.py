@@ -36,9 +36,18 @@ DRIFT_PPM = (0.3, 0.9)
 
 
 def find_board(name: str | Path | Board, config: RadarConfig, seed: int = 0) -> Board:
-    """The board that is meant: "ideal", "typical" (sampled by the seed), "typical:N" or a board.json.
+    """A board by its name.
 
-    Raises InputError for another name, a file that is no board, and a board that does not fit the radar.
+    Args:
+        name: "ideal", "typical" (sampled by the seed), "typical:N", a board.json, or a Board.
+        config: The radar that it belongs to.
+        seed: Seed of "typical".
+
+    Returns:
+        The board.
+
+    Raises:
+        InputError: for another name, a file that is no board, and a board that does not fit the radar.
     """
     if isinstance(name, Board):
         board = name
@@ -58,9 +67,14 @@ def compensated(board: Board) -> Board:
     """The board without what a radar's own calibration takes away: antenna errors and range bias."""
     none = np.zeros(0)
     return replace(
-        board, channel_gain_db=none, channel_phase_deg=none, coupling_real=none, coupling_imag=none,
-        elevation_phase_deg=0.0, range_bias_m=0.0,
-    )  # fmt: skip
+        board,
+        channel_gain_db=none,
+        channel_phase_deg=none,
+        coupling_real=none,
+        coupling_imag=none,
+        elevation_phase_deg=0.0,
+        range_bias_m=0.0,
+    )
 
 
 def _number(name: str, seed: int) -> int:
@@ -74,7 +88,15 @@ def _number(name: str, seed: int) -> int:
 
 @lru_cache(maxsize=16)
 def typical_board(config: RadarConfig, number: int) -> Board:
-    """The board of this number for a radar: errors as recordings of several boards show them."""
+    """A board with errors as recordings of several boards show them.
+
+    Args:
+        config: The radar.
+        number: Number of the board; equal numbers give equal boards.
+
+    Returns:
+        The board; its figures and where they come from are in docs/board.md.
+    """
     rng = stream(number, "typical board")
 
     def between(limits: tuple[float, float]) -> float:
@@ -91,16 +113,24 @@ def typical_board(config: RadarConfig, number: int) -> Board:
         level_db, end_m = REAL_LEAKAGE_OVER_NOISE_DB, REAL_SKIRT_END_M
     leakage = _leakage(config, rng, between(level_db), between(end_m))
     return Board(
-        name=f"typical:{number}", made_from="the spread of recorded boards, docs/board.md",
-        if_share=if_share, if_gain_db=if_gain_db, if_phase_deg=np.zeros(len(if_share)),
-        channel_gain_db=gain_db, channel_phase_deg=phase_deg,
-        leakage_range_m=leakage[0], leakage_level_db=leakage[1], leakage_phase_deg=leakage[2],
-        elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG), range_bias_m=between(RANGE_BIAS_M),
+        name=f"typical:{number}",
+        made_from="the spread of recorded boards, docs/board.md",
+        if_share=if_share,
+        if_gain_db=if_gain_db,
+        if_phase_deg=np.zeros(len(if_share)),
+        channel_gain_db=gain_db,
+        channel_phase_deg=phase_deg,
+        leakage_range_m=leakage[0],
+        leakage_level_db=leakage[1],
+        leakage_phase_deg=leakage[2],
+        elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG),
+        range_bias_m=between(RANGE_BIAS_M),
         first_chirp_amplitude_percent=starts * between(FIRST_CHIRP_PERCENT),
-        first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
+        first_chirp_phase_mrad=starts * between(FIRST_CHIRP_MRAD),
+        drift_ppm=between(DRIFT_PPM),
         gain_db=starts * float(stream(number, "typical board", "gain").uniform(*GAIN_DB)),
         element_spacing_m=_spacing_m(config),
-    )  # fmt: skip
+    )
 
 
 def _spacing_m(config: RadarConfig) -> float | None:

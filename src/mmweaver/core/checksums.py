@@ -39,7 +39,13 @@ def sha256_of_file(path: Path) -> str:
 
 
 def write_sums(folder: Path, *, names: tuple[str, ...] | None = None, target: Path | None = None) -> None:
-    """Writes SHA256SUMS (or `target`) of all files below a folder, or of some of its entries."""
+    """Writes SHA256SUMS of a folder.
+
+    Args:
+        folder: The folder.
+        names: Entries that are listed, with all files below them. Default: all.
+        target: File that is written. Default: SHA256SUMS of the folder.
+    """
     roots = [folder / name for name in names] if names is not None else [folder]
     files = [root for root in roots if root.is_file()]
     files += [file for root in roots if root.is_dir() for file in root.rglob("*") if file.is_file()]
@@ -54,7 +60,17 @@ def sums_text(sums: dict[str, str]) -> str:
 
 
 def read_sums(folder: Path) -> dict[str, str] | None:
-    """{name: sha256} of a folder, None where it has none of ours. Raises InputError where SHA256SUMS is damaged."""
+    """The checksums of a folder.
+
+    Args:
+        folder: The folder.
+
+    Returns:
+        {name: sha256}; None where it has none of ours.
+
+    Raises:
+        InputError: where SHA256SUMS is damaged.
+    """
     file = folder / SUMS_FILE
     try:
         if not file.is_file():
@@ -88,7 +104,15 @@ def _damaged(file: Path) -> dict[str, str]:
 
 
 def check_file(path: Path, *, folder: Path | None = None) -> None:
-    """Raises InputError where a file is not what the SHA256SUMS of its folder (or of `folder` above it) says."""
+    """Checks a file against the SHA256SUMS of its folder; files that are not listed pass.
+
+    Args:
+        path: The file.
+        folder: Folder above it that has the checksums. Default: its own.
+
+    Raises:
+        InputError: where the file has changed or is missing.
+    """
     folder = path.parent if folder is None else folder
     sums = read_sums(folder)
     name = path.relative_to(folder).as_posix()
@@ -103,7 +127,17 @@ def check_file(path: Path, *, folder: Path | None = None) -> None:
 
 
 def damage_of_file(folder: Path, name: str, expected: str, *, use_cache: bool = True) -> Damage | None:
-    """What is wrong with a file that should have the sha256 `expected`."""
+    """Compares a file with its checksum.
+
+    Args:
+        folder: Folder of the checksums.
+        name: The file's name there.
+        expected: Its sha256, hexadecimal.
+        use_cache: Whether a file is not read again that was right before and has not changed since.
+
+    Returns:
+        What is wrong with it; None where nothing is.
+    """
     file = folder / name
     try:
         if not file.exists():

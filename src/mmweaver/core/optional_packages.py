@@ -19,19 +19,27 @@ EXTRAS: dict[str, dict[str, str]] = {
     "pretrained": {"transformers": "transformers"},
     "rerun": {"rerun": "rerun-sdk"},
     "studio": {
-        "python_multipart": "python-multipart", "starlette": "starlette", "uvicorn": "uvicorn",
+        "python_multipart": "python-multipart",
+        "starlette": "starlette",
+        "uvicorn": "uvicorn",
         "websockets": "websockets",
     },
     "training": {"accelerate": "accelerate", "tensorboard": "tensorboard", "zarr": "zarr"},
     "weaver": {"huggingface_hub": "huggingface-hub", "zarr": "zarr"},
     "xarray": {"xarray": "xarray"},
-}  # fmt: skip
+}
 
 
 def need(extra: str, what: str, *modules: str) -> None:
-    """Checks that modules of an extra are installed, by default all; `what` needs them.
+    """Checks that packages of an extra are installed.
 
-    Raises InputError with the package that is missing and how to install it.
+    Args:
+        extra: Name of the extra.
+        what: What needs them, the subject of the error.
+        *modules: Modules that are needed. Default: all of the extra.
+
+    Raises:
+        InputError: with the package that is missing and how to install it.
     """
     for module in modules or EXTRAS[extra]:
         if not is_installed(module):

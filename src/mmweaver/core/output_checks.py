@@ -43,7 +43,16 @@ def _mode(target: Path, out: Path) -> int | None:
 
 
 def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | None] = ()) -> None:
-    """Raises InputError where a file cannot be written, or is one of `inputs` (files, or folders with recordings)."""
+    """Refuses an output file before any work.
+
+    Args:
+        out: The file.
+        overwrite: Whether it may exist.
+        inputs: Files, or folders with recordings, that it must not replace; None is skipped.
+
+    Raises:
+        InputError: where it cannot be written, exists, or belongs to an input.
+    """
     target = resolved(out)
     mode = _mode(target, out)
     if mode is not None:
@@ -62,9 +71,16 @@ def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | Non
 def check_output_folder(
     out: Path, *, overwrite: bool, files: Iterable[str] = (), inputs: Iterable[Path | None] = ()
 ) -> None:
-    """Raises InputError where a folder cannot be written, or is not empty and `overwrite` is not set.
+    """Refuses an output folder before any work.
 
-    `files`: what will be written into it; none of them may be a folder, or one of `inputs`.
+    Args:
+        out: The folder.
+        overwrite: Whether it may hold files.
+        files: Names that will be written into it; none of them may be a folder, or one of `inputs`.
+        inputs: Files that must not be replaced; None is skipped.
+
+    Raises:
+        InputError: where it cannot be written, or is not empty and `overwrite` is not set.
     """
     target = resolved(out)
     mode = _mode(target, out)

@@ -20,9 +20,15 @@ from mmweaver.core.transmit_code import TxCode, decoder, separates_transmitters,
 SCHEMA_VERSION = 1
 # fields that radar files have only where they differ from the default
 RARE_FIELDS = (
-    "loop_gap_s", "tx_code", "lvds_lanes", "lvds_iq_order", "rx_channels", "rx_inverted", "frame_words_before",
+    "loop_gap_s",
+    "tx_code",
+    "lvds_lanes",
+    "lvds_iq_order",
+    "rx_channels",
+    "rx_inverted",
+    "frame_words_before",
     "frame_words_after",
-)  # fmt: skip
+)
 Position = tuple[float, float, float]
 
 

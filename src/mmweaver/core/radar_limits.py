@@ -8,13 +8,25 @@ if TYPE_CHECKING:
     from mmweaver.core.radar_config import RadarConfig
 
 LIMITS: dict[str, tuple[float, float]] = {
-    "start_frequency_hz": (1e9, 1e12), "chirp_slope_hz_per_s": (1e6, 1e17), "idle_time_s": (0.0, 1e3),
-    "adc_start_time_s": (0.0, 1.0), "ramp_end_time_s": (1e-9, 1.0), "num_samples": (1, 65536),
-    "sample_rate_hz": (1e3, 1e11), "num_loops": (1, 65536), "frame_period_s": (1e-6, 1e4),
-    "first_range_bin": (0, 65536), "num_range_bins": (1, 65536), "tx_power_dbm": (-60.0, 100.0),
-    "antenna_gain_dbi": (-30.0, 60.0), "noise_figure_db": (0.0, 100.0), "rx_gain_db": (-60.0, 120.0),
-    "azimuth_beamwidth_deg": (0.1, 360.0), "elevation_beamwidth_deg": (0.1, 360.0), "adc_full_scale_v": (1e-6, 1e3),
-}  # fmt: skip
+    "start_frequency_hz": (1e9, 1e12),
+    "chirp_slope_hz_per_s": (1e6, 1e17),
+    "idle_time_s": (0.0, 1e3),
+    "adc_start_time_s": (0.0, 1.0),
+    "ramp_end_time_s": (1e-9, 1.0),
+    "num_samples": (1, 65536),
+    "sample_rate_hz": (1e3, 1e11),
+    "num_loops": (1, 65536),
+    "frame_period_s": (1e-6, 1e4),
+    "first_range_bin": (0, 65536),
+    "num_range_bins": (1, 65536),
+    "tx_power_dbm": (-60.0, 100.0),
+    "antenna_gain_dbi": (-30.0, 60.0),
+    "noise_figure_db": (0.0, 100.0),
+    "rx_gain_db": (-60.0, 120.0),
+    "azimuth_beamwidth_deg": (0.1, 360.0),
+    "elevation_beamwidth_deg": (0.1, 360.0),
+    "adc_full_scale_v": (1e-6, 1e3),
+}
 MAX_POSITION_M = 10.0
 MAX_ANTENNAS = 1024
 MAX_FRAME_NUMBERS = 2**25  # complex numbers of one frame: 256 MB

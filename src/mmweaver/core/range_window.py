@@ -11,9 +11,18 @@ BYTES_A_CELL = 8  # complex64
 
 
 def with_range(config: RadarConfig, near_m: float, far_m: float) -> RadarConfig:
-    """The radar with the range bins nearest to `near_m` and `far_m`, and all between.
+    """A range window in metres.
 
-    Raises InputError where nothing lies between them, or they are beyond the unambiguous range.
+    Args:
+        config: The radar.
+        near_m: Near end, m.
+        far_m: Far end, m.
+
+    Returns:
+        The radar with the range bins nearest to both ends, and all between.
+
+    Raises:
+        InputError: where nothing lies between them, or they are beyond the unambiguous range.
     """
     if not (math.isfinite(near_m) and math.isfinite(far_m) and 0 <= near_m < far_m):
         raise InputError(f"a range of {near_m:g} to {far_m:g} m is none; give near before far, for example 0.3,8")
@@ -35,9 +44,14 @@ def with_range_bins(config: RadarConfig, first: int, last: int) -> RadarConfig:
 
 
 def default_range_bins(num_bins: int, cells_a_bin: int) -> int:
-    """How many of the nearest bins are kept by default: all, or as many as a cube of 4 MiB per frame holds.
+    """How many of the nearest range bins are kept by default.
 
-    `cells_a_bin`: Doppler bins times antennas.
+    Args:
+        num_bins: Range bins of the radar.
+        cells_a_bin: Doppler bins times antennas.
+
+    Returns:
+        All of them, or as many as a cube of 4 MiB per frame holds.
 
     >>> default_range_bins(256, 128 * 12), default_range_bins(512, 85 * 12)
     (256, 512)
@@ -50,7 +64,19 @@ def default_range_bins(num_bins: int, cells_a_bin: int) -> int:
 def chosen_range(
     config: RadarConfig, range_m: tuple[float, float] | None = None, range_bins: tuple[int, int] | None = None
 ) -> RadarConfig:
-    """The radar with a window in metres or in bins, or as it is. Raises InputError for both, or one that it lacks."""
+    """A range window in metres or in bins, or the radar's own.
+
+    Args:
+        config: The radar.
+        range_m: (near, far) in m.
+        range_bins: (first, last), both kept.
+
+    Returns:
+        The radar with that window.
+
+    Raises:
+        InputError: for both, or for one that the radar lacks.
+    """
     if range_m is not None and range_bins is not None:
         raise InputError("give the range in metres or in bins, not both")
     if range_m is not None:

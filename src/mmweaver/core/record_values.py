@@ -9,7 +9,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 
 
-def record_fields(cls: type, values: dict[str, Any], place: str, *, partial: bool = False) -> dict[str, Any]:
+def record_fields(cls: Any, values: dict[str, Any], place: str, *, partial: bool = False) -> dict[str, Any]:
     """The arguments of a dataclass, from the content of a JSON.
 
     Args:

@@ -57,9 +57,7 @@ class CubeGrid:
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
-        return (
-            len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m)
-        )  # fmt: skip
+        return (len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m))
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -93,6 +91,11 @@ class RadarCube(ShownByFacts):
     config: RadarConfig
     scale: float
 
+    def select(self, frames: slice | np.ndarray) -> "RadarCube":
+        """Some of the frames, by slice or index."""
+        grid = CubeGrid(**{**vars(self.grid), "frame_time_s": self.grid.frame_time_s[frames]})
+        return RadarCube(values=self.values[frames], grid=grid, config=self.config, scale=self.scale)
+
     def facts(self) -> dict[str, str]:
         """Axes, type and radar."""
         return {
@@ -115,6 +118,11 @@ class PointCloud(ShownByFacts):
     z_m: PerPoint
     radial_velocity_mps: PerPoint
     snr_db: PerPoint
+
+    @property
+    def xyz_m(self) -> np.ndarray:
+        """Places (point, 3)."""
+        return np.stack([self.x_m, self.y_m, self.z_m], axis=1)
 
     @property
     def range_m(self) -> np.ndarray:
@@ -258,9 +266,25 @@ class Seat:
 
 
 LANDMARK_KINDS = (
-    "door", "window", "table", "counter", "bed", "wall", "desk", "shelf", "fridge", "tv", "wardrobe", "sink", "plant",
-    "lamp", "stove", "cabinet", "couch", "chair",
-)  # fmt: skip
+    "door",
+    "window",
+    "table",
+    "counter",
+    "bed",
+    "wall",
+    "desk",
+    "shelf",
+    "fridge",
+    "tv",
+    "wardrobe",
+    "sink",
+    "plant",
+    "lamp",
+    "stove",
+    "cabinet",
+    "couch",
+    "chair",
+)
 
 
 @dataclass(frozen=True, kw_only=True)

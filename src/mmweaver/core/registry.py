@@ -29,7 +29,15 @@ class Registry(Mapping[str, Entry]):
             self._entries[name] = entry
 
     def register(self, name: str, entry: Entry) -> None:
-        """Adds an entry; the same entry again changes nothing. Raises InputError for a name that is taken."""
+        """Adds an entry; the same entry again changes nothing.
+
+        Args:
+            name: Its name.
+            entry: The entry.
+
+        Raises:
+            InputError: for a name that is taken.
+        """
         if self._entries.get(name, entry) is not entry:
             raise InputError(f"there is a {self.kind} {name!r} already; choose another name")
         self._entries[name] = entry

@@ -10,6 +10,13 @@ def stream(seed: int, *purpose: str | int) -> np.random.Generator:
 
     Purposes never share random numbers, so sampling more for one leaves the others unchanged.
 
+    Args:
+        seed: The seed of a run.
+        *purpose: What the numbers are for: words, and indices where there are several.
+
+    Returns:
+        The generator.
+
     >>> bool(stream(0, "noise").random() == stream(0, "noise").random())
     True
     >>> bool(stream(0, "noise").random() == stream(0, "motion").random())

@@ -20,7 +20,16 @@ SHA256 = "sha256"  # in the header
 
 
 def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, str] | None = None) -> None:
-    """Writes tensors and their sha256, whole or not at all. Raises InputError where they cannot be written."""
+    """Writes tensors and their sha256, whole or not at all.
+
+    Args:
+        file: The safetensors file.
+        tensors: Tensors by name.
+        header: Further metadata.
+
+    Raises:
+        InputError: where they cannot be written.
+    """
     from safetensors.torch import save
 
     own = {name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}
@@ -30,8 +39,17 @@ def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, st
 
 
 def read_tensors(file: Path) -> "tuple[dict[str, Tensor], dict[str, str]]":
-    """Reads tensors and header of what `write_tensors` wrote. Raises InputError for a damaged or missing file, or
-    values that are not finite."""
+    """Reads what `write_tensors` wrote.
+
+    Args:
+        file: The safetensors file.
+
+    Returns:
+        The tensors by name, and the metadata.
+
+    Raises:
+        InputError: for a damaged or missing file, or values that are not finite.
+    """
     tensors, header = safe_tensors.read_tensors(file)
     if header.get(SHA256, "") not in ("", sha256_of(tensors)):
         raise InputError(f"{file} is damaged: its values are not those that were written; write it again")

@@ -36,9 +36,16 @@ def separates_transmitters(weights: np.ndarray) -> bool:
 
 
 def decoder(weights: np.ndarray) -> np.ndarray:
-    """Matrix (virtual tx, slot) that turns slots into transmitters, or into beams of phase 0 at their centre.
+    """The matrix that turns slots into transmitters, or into beams of phase 0 at their centre.
 
-    Raises InputError where transmitters can be neither separated nor assigned to one beam each.
+    Args:
+        weights: Complex weights (slot, tx).
+
+    Returns:
+        Matrix (virtual tx, slot).
+
+    Raises:
+        InputError: where transmitters can be neither separated nor assigned to one beam each.
 
     >>> decoder(np.array([[1, 1], [1, -1]])).real
     array([[ 0.5,  0.5],

@@ -21,7 +21,14 @@ class RowPair:
 
 
 def azimuth_row(position_m: AntennaPositions, wavelength_m: float) -> PerIndex:
-    """Antennas, left to right, of the horizontal row that spans the most; the lowest of equals.
+    """The row of antennas that measures azimuth.
+
+    Args:
+        position_m: Virtual antennas (antenna, 3), m.
+        wavelength_m: Wavelength, m.
+
+    Returns:
+        Antennas, left to right, of the horizontal row that spans the most; the lowest of equals.
 
     >>> from mmweaver.core.presets import AWR1843
     >>> azimuth_row(AWR1843.antenna_position_m, AWR1843.wavelength_m).tolist()
@@ -32,7 +39,15 @@ def azimuth_row(position_m: AntennaPositions, wavelength_m: float) -> PerIndex:
 
 
 def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair | None:
-    """The two rows that share the most columns (the closest of equals), or None where no column has two antennas."""
+    """The two rows of antennas whose phase difference measures elevation.
+
+    Args:
+        position_m: Virtual antennas (antenna, 3), m.
+        wavelength_m: Wavelength, m.
+
+    Returns:
+        The rows that share the most columns (the closest of equals); None where no column has two antennas.
+    """
     rows = _rows(position_m, wavelength_m)
     pairs = [_pair(position_m, wavelength_m, low, high) for at, low in enumerate(rows) for high in rows[at + 1 :]]
     found = [pair for pair in pairs if pair is not None]
@@ -40,7 +55,14 @@ def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair
 
 
 def elevation_columns(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
-    """Antennas of each of the tallest columns, from below; empty where no two antennas stand above one another.
+    """The columns of antennas that resolve elevation.
+
+    Args:
+        position_m: Virtual antennas (antenna, 3), m.
+        wavelength_m: Wavelength, m.
+
+    Returns:
+        Antennas of each of the tallest columns, from below; empty where no two antennas stand above one another.
 
     >>> from mmweaver.core.presets import AWR1843
     >>> [column.tolist() for column in elevation_columns(AWR1843.antenna_position_m, AWR1843.wavelength_m)]

@@ -13,14 +13,32 @@ from mmweaver.stored_result import StoredResult
 
 START_S = 1_500_000_000  # of the stamps: a result has no date
 KINECT_JOINTS = {
-    "SpineBase": "pelvis", "SpineMid": "spine2", "Neck": "neck", "Head": "head", "ShoulderLeft": "left_shoulder",
-    "ElbowLeft": "left_elbow", "WristLeft": "left_wrist", "HandLeft": "left_wrist", "ShoulderRight": "right_shoulder",
-    "ElbowRight": "right_elbow", "WristRight": "right_wrist", "HandRight": "right_wrist", "HipLeft": "left_hip",
-    "KneeLeft": "left_knee", "AnkleLeft": "left_ankle", "FootLeft": "left_foot", "HipRight": "right_hip",
-    "KneeRight": "right_knee", "AnkleRight": "right_ankle", "FootRight": "right_foot", "SpineShoulder": "spine3",
-    "HandTipLeft": "left_wrist", "ThumbLeft": "left_wrist", "HandTipRight": "right_wrist",
+    "SpineBase": "pelvis",
+    "SpineMid": "spine2",
+    "Neck": "neck",
+    "Head": "head",
+    "ShoulderLeft": "left_shoulder",
+    "ElbowLeft": "left_elbow",
+    "WristLeft": "left_wrist",
+    "HandLeft": "left_wrist",
+    "ShoulderRight": "right_shoulder",
+    "ElbowRight": "right_elbow",
+    "WristRight": "right_wrist",
+    "HandRight": "right_wrist",
+    "HipLeft": "left_hip",
+    "KneeLeft": "left_knee",
+    "AnkleLeft": "left_ankle",
+    "FootLeft": "left_foot",
+    "HipRight": "right_hip",
+    "KneeRight": "right_knee",
+    "AnkleRight": "right_ankle",
+    "FootRight": "right_foot",
+    "SpineShoulder": "spine3",
+    "HandTipLeft": "left_wrist",
+    "ThumbLeft": "left_wrist",
+    "HandTipRight": "right_wrist",
     "ThumbRight": "right_wrist",
-}  # fmt: skip
+}
 
 
 @export_format("radhar", "RadHAR's text of points")
@@ -41,13 +59,23 @@ def write_radhar(result: StoredResult, out: Path) -> str:
             ahead, left, up = float(points.y_m[row]), -float(points.x_m[row]), float(points.z_m[row])
             velocity = float(points.radial_velocity_mps[row])
             lines += [
-                "header: ", f"  seq: {index}", "  stamp: ", f"    secs: {int(stamp_s)}",
-                f"    nsecs: {round(stamp_s % 1 * 1e9)}", '  frame_id: "base_radar_link"', f"point_id: {number}",
-                f"x: {ahead!r}", f"y: {left!r}", f"z: {up!r}", f"range: {float(np.hypot(np.hypot(ahead, left), up))!r}",
-                f"velocity: {velocity!r}", f"doppler_bin: {round(velocity / config.velocity_resolution_mps)}",
-                f"bearing: {float(np.degrees(np.arctan2(left, ahead)))!r}", f"intensity: {float(points.snr_db[row])!r}",
+                "header: ",
+                f"  seq: {index}",
+                "  stamp: ",
+                f"    secs: {int(stamp_s)}",
+                f"    nsecs: {round(stamp_s % 1 * 1e9)}",
+                '  frame_id: "base_radar_link"',
+                f"point_id: {number}",
+                f"x: {ahead!r}",
+                f"y: {left!r}",
+                f"z: {up!r}",
+                f"range: {float(np.hypot(np.hypot(ahead, left), up))!r}",
+                f"velocity: {velocity!r}",
+                f"doppler_bin: {round(velocity / config.velocity_resolution_mps)}",
+                f"bearing: {float(np.degrees(np.arctan2(left, ahead)))!r}",
+                f"intensity: {float(points.snr_db[row])!r}",
                 "---",
-            ]  # fmt: skip
+            ]
     (out / "radhar.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     return f"{len(points.frame)} points as RadHAR's text"
 

@@ -28,11 +28,16 @@ def write_mat(result: StoredResult, out: Path) -> str:
     grid, points = result.cube.grid, result.points
     columns = [points.frame + 1, *(getattr(points, name) for name in POINT_COLUMNS)]
     values: dict[str, Any] = {
-        "cube": result.cube.values, "range_m": grid.range_m, "radial_velocity_mps": grid.radial_velocity_mps,
-        "frame_time_s": grid.frame_time_s, "antenna_position_m": grid.antenna_position_m,
-        "wavelength_m": grid.wavelength_m, "scale_sqrt_mw": result.cube.scale,
-        "points": np.stack(columns, axis=-1).astype(np.float64), "text": result.text,
-    }  # fmt: skip
+        "cube": result.cube.values,
+        "range_m": grid.range_m,
+        "radial_velocity_mps": grid.radial_velocity_mps,
+        "frame_time_s": grid.frame_time_s,
+        "antenna_position_m": grid.antenna_position_m,
+        "wavelength_m": grid.wavelength_m,
+        "scale_sqrt_mw": result.cube.scale,
+        "points": np.stack(columns, axis=-1).astype(np.float64),
+        "text": result.text,
+    }
     if result.poses:
         values["joints_m"] = np.stack([pose.joints_m for pose in result.poses]).astype(np.float32)
         values["joint_names"] = np.array(JOINT_NAMES, dtype=object)

@@ -17,10 +17,19 @@ from mmweaver.stored_result import StoredResult, read_result
 
 
 def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
-    """Writes a result folder in another format into the folder `out`, or nothing; reports what was written.
+    """Writes a result folder in another format, or nothing.
 
-    `kind` is a name in FORMATS; for some of them `folder` may hold two radars of one scene. Raises InputError for
-    another name, for a folder that is no result, and for a result that the format cannot hold.
+    Args:
+        folder: The result; for some formats a folder of two radars of one scene.
+        kind: Name in FORMATS.
+        out: Folder that is written, or the one file of a format that has one.
+        overwrite: Whether files may be replaced.
+
+    Returns:
+        What was written, in words.
+
+    Raises:
+        InputError: for another name, for a folder that is no result, and for a result that the format cannot hold.
     """
     if kind not in FORMATS:
         raise InputError(f"unknown format {kind!r}; known: {', '.join(FORMATS)}")
@@ -51,10 +60,19 @@ def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite
 def export_set(
     folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False
 ) -> Iterator[tuple[Path, str]]:
-    """Writes every sequence of a set, labelled or of rooms, into a folder of its own below `out`; gives each with what
-    it holds.
+    """Writes every sequence of a set, labelled or of rooms, into a folder of its own below `out`.
 
-    Raises InputError for a format that needs raw samples, which a set does not keep, and for what is no set.
+    Args:
+        folder: The set.
+        kind: Name in FORMATS.
+        out: Folder of the folders.
+        overwrite: Whether files may be replaced.
+
+    Yields:
+        Each folder with what it holds.
+
+    Raises:
+        InputError: for a format that needs raw samples, which a set does not keep, and for what is no set.
     """
     if FORMATS[kind].needs_samples:
         raise InputError(f"{kind} needs raw samples, which a set does not keep; generate results with --bin")

@@ -26,7 +26,7 @@ def write_rerun(result: StoredResult, out: Path) -> str:
     recording.log("radar", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     power = range_doppler_power(result.cube)
     points = result.points
-    place = np.stack([points.x_m, points.y_m, points.z_m], axis=-1).reshape(-1, 3)
+    place = points.xyz_m
     for index, time_s in enumerate(result.cube.grid.frame_time_s):
         recording.set_time("time", duration=float(time_s))
         own = points.frame == index

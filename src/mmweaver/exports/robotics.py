@@ -84,9 +84,12 @@ def write_mcap(result: StoredResult, out: Path) -> str:
             stamp = round(float(time_s) * 1e9)
             when = schema.Timestamp(sec=stamp // 10**9, nsec=stamp % 10**9)
             cloud = schema.PointCloud(
-                timestamp=when, frame_id=FRAME, point_stride=4 * len(POINT_FIELDS), fields=fields,
+                timestamp=when,
+                frame_id=FRAME,
+                point_stride=4 * len(POINT_FIELDS),
+                fields=fields,
                 data=packed_points(result.points, index).tobytes(),
-            )  # fmt: skip
+            )
             points.log(cloud.encode(), log_time=stamp)
             if result.poses:
                 scene.log(_skeletons(schema, result, index, when).encode(), log_time=stamp)
@@ -96,7 +99,7 @@ def write_mcap(result: StoredResult, out: Path) -> str:
 def packed_points(points: PointCloud, frame: int) -> Float[Array, "point 5"]:
     """The points of a frame in ROS's axes, float32: x, y, z in metres, velocity in m/s, SNR in dB."""
     own = points.select(points.frame == frame)
-    place = ros_axes(np.stack([own.x_m, own.y_m, own.z_m], axis=-1).reshape(-1, 3))
+    place = ros_axes(own.xyz_m)
     return np.concatenate([place, own.radial_velocity_mps[:, None], own.snr_db[:, None]], axis=-1).astype("<f4")
 
 
@@ -113,9 +116,16 @@ def _cloud(make: dict[str, Any], header: Any, rows: Float[Array, "point 5"]) -> 
     ]
     data: UInt8[Array, " byte"] = np.frombuffer(rows.tobytes(), np.uint8)
     return make["PointCloud2"](
-        header=header, height=1, width=len(rows), fields=fields, is_bigendian=False, point_step=4 * len(POINT_FIELDS),
-        row_step=len(data), data=data, is_dense=True,
-    )  # fmt: skip
+        header=header,
+        height=1,
+        width=len(rows),
+        fields=fields,
+        is_bigendian=False,
+        point_step=4 * len(POINT_FIELDS),
+        row_step=len(data),
+        data=data,
+        is_dense=True,
+    )
 
 
 def _array(make: dict[str, Any], values: np.ndarray, names: tuple[str, ...]) -> Any:
@@ -142,8 +152,10 @@ def _skeletons(schema: Any, result: StoredResult, index: int, when: Any) -> Any:
         joints_m = ros_axes(pose.joints_m[index])
         ends = [schema.Point3(x=float(x), y=float(y), z=float(z)) for bone in BONES for x, y, z in joints_m[list(bone)]]
         lines = schema.LinePrimitive(
-            type=schema.LinePrimitiveLineType.LineList, thickness=0.03, points=ends,
+            type=schema.LinePrimitiveLineType.LineList,
+            thickness=0.03,
+            points=ends,
             color=schema.Color(r=0.9, g=0.6, b=0.2, a=1.0),
-        )  # fmt: skip
+        )
         entities.append(schema.SceneEntity(timestamp=when, frame_id=FRAME, id=f"person {person}", lines=[lines]))
     return schema.SceneUpdate(entities=entities)

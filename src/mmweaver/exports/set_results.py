@@ -26,23 +26,30 @@ def results_of_set(folder: Path) -> Iterator[tuple[str, StoredResult]]:
     for index in range(len(stored)):
         cube = stored.cube(index)
         pose = PoseSequence(
-            time_s=cube.grid.frame_time_s, joints_m=stored.joints_m[index], height_m=float(columns["height"][index]),
+            time_s=cube.grid.frame_time_s,
+            joints_m=stored.joints_m[index],
+            height_m=float(columns["height"][index]),
             subject=int(columns["subject"][index]),
-        )  # fmt: skip
+        )
         meta: dict[str, Any] = {
-            "schema_version": META_VERSION, "made_by": "mmweaver export", "version": __version__,
-            "text": str(columns["text"][index]), "frames": len(cube.values), "fps": 1 / cube.config.frame_period_s,
+            "schema_version": META_VERSION,
+            "made_by": "mmweaver export",
+            "version": __version__,
+            "text": str(columns["text"][index]),
+            "frames": len(cube.values),
+            "fps": 1 / cube.config.frame_period_s,
             "placed": {
                 "heading_rad": float(columns["heading"][index]) if "heading" in columns else None,
                 "subject": int(columns["subject"][index]),
             },
             "sequence": {"index": index, **{name: columns[name][index] for name in OF_SEQUENCE if name in columns}},
             **radar_meta(cube.config),
-        }  # fmt: skip
+        }
         name = f"{index:06d}"
-        yield name, StoredResult(
-            folder=folder / name, cube=cube, points=stored.cloud(index), poses=(pose,), meta=plain(meta)
-        )  # fmt: skip
+        yield (
+            name,
+            StoredResult(folder=folder / name, cube=cube, points=stored.cloud(index), poses=(pose,), meta=plain(meta)),
+        )
 
 
 @export_format("results", "a result folder, of each sequence of a set")

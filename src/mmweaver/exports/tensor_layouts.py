@@ -17,9 +17,21 @@ from mmweaver.formats.peer_arrays import BOTH_ROWS, HUPR_FIRST_CHANNEL, HUPR_SHA
 from mmweaver.stored_result import StoredResult
 
 HUPR_JOINTS = (
-    "right_hip", "right_knee", "right_ankle", "left_hip", "left_knee", "left_ankle", "neck", "head", "left_shoulder",
-    "left_elbow", "left_wrist", "right_shoulder", "right_elbow", "right_wrist",
-)  # fmt: skip
+    "right_hip",
+    "right_knee",
+    "right_ankle",
+    "left_hip",
+    "left_knee",
+    "left_ankle",
+    "neck",
+    "head",
+    "left_shoulder",
+    "left_elbow",
+    "left_wrist",
+    "right_shoulder",
+    "right_elbow",
+    "right_wrist",
+)
 
 
 def write_hupr_pair(horizontal: StoredResult, vertical: StoredResult, out: Path) -> str:
@@ -115,14 +127,24 @@ def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
         )
     }
     return {
-        "c0": 299792458, "num_tx": config.num_tx, "num_rx": config.num_rx, "fc": config.start_frequency_hz,
-        "slope": config.chirp_slope_hz_per_s / 1e12, "adc_samples": config.num_samples,
-        "adc_start_time": config.adc_start_time_s * 1e6, "sample_rate": config.sample_rate_hz / 1e3,
-        "idle_time": config.idle_time_s * 1e6, "ramp_end_time": config.ramp_end_time_s * 1e6,
-        "chirp_per_frame": config.num_loops, "frame_per_second": 1 / config.frame_period_s,
-        "num_doppler_bins": config.num_loops, "num_range_bins": config.num_samples, "num_angle_bins": 64,
-        "power": config.tx_power_dbm, **places,
-    }  # fmt: skip
+        "c0": 299792458,
+        "num_tx": config.num_tx,
+        "num_rx": config.num_rx,
+        "fc": config.start_frequency_hz,
+        "slope": config.chirp_slope_hz_per_s / 1e12,
+        "adc_samples": config.num_samples,
+        "adc_start_time": config.adc_start_time_s * 1e6,
+        "sample_rate": config.sample_rate_hz / 1e3,
+        "idle_time": config.idle_time_s * 1e6,
+        "ramp_end_time": config.ramp_end_time_s * 1e6,
+        "chirp_per_frame": config.num_loops,
+        "frame_per_second": 1 / config.frame_period_s,
+        "num_doppler_bins": config.num_loops,
+        "num_range_bins": config.num_samples,
+        "num_angle_bins": 64,
+        "power": config.tx_power_dbm,
+        **places,
+    }
 
 
 @export_format("mmmesh", "mmMesh's point frames")
@@ -137,7 +159,7 @@ def write_mmmesh(result: StoredResult, out: Path) -> str:
     points, folder = result.points, out / "points"
     folder.mkdir(parents=True)
     frames = len(result.cube.grid.frame_time_s)
-    place = np.stack([points.x_m, points.y_m, points.z_m], axis=-1).reshape(-1, 3).astype(np.float64)
+    place = points.xyz_m.astype(np.float64)
     columns = (points.radial_velocity_mps, 10 ** (points.snr_db / 10), np.linalg.norm(place, axis=-1))
     rows = np.concatenate([place, np.stack(columns, axis=-1)], axis=-1)
     for index in range(frames):

@@ -78,11 +78,23 @@ def read_pcap(
     num_frames: int | None = None,
     frames: slice = slice(None),
 ) -> PacketCapture:
-    """Reads a dca.pcap, or a stretch of its frames; samples in counts of the converter.
+    """Reads a dca.pcap, or a stretch of its frames.
 
-    `num_frames` is the number that the radar was configured to send: an incomplete last frame is then kept, with its
-    missing end zero-filled. Memory is that of the frames read and of a list of packets, 3 % of the file. Raises
-    InputError where the file has no packets, less than one frame, or two recordings.
+    Memory is that of the frames read and of a list of packets, 3 % of the file.
+
+    Args:
+        path: The file.
+        config: The radar.
+        iq_order: One of `dca1000.IQ_ORDERS`. Default: the radar's.
+        num_frames: Number that the radar was configured to send: an incomplete last frame is then kept, with its
+            missing end zero-filled.
+        frames: Stretch of frames; all by default.
+
+    Returns:
+        Samples in counts of the converter, start times of the frames, and packet statistics of the whole file.
+
+    Raises:
+        InputError: where the file has no packets, less than one frame, or two recordings.
     """
     packets, num_bytes = _sent(path)
     frame_bytes = bytes_of_frame(config)
@@ -109,9 +121,11 @@ def read_pcap(
     )
     data = _reassembled(packets, chosen.start * frame_bytes, chosen.stop * frame_bytes)
     return PacketCapture(
-        adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order), report=report, num_frames=total,
+        adc=adc_of_words(data.view("<i2"), config, iq_order=iq_order),
+        report=report,
+        num_frames=total,
         frame_time_s=_frame_times(packets, total, frame_bytes, config)[chosen.start : chosen.stop],
-    )  # fmt: skip
+    )
 
 
 class SampleBytes:

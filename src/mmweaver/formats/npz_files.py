@@ -50,9 +50,18 @@ def write_radar_npz(path: Path, cube: RadarCube) -> None:
 
 
 def read_radar_npz(path: str | Path, config: RadarConfig | None = None, *, mapped: bool = False) -> RadarCube:
-    """Reads a radar.npz. `config` defaults to the radar.json in the same folder; `mapped` leaves the cube on the disk.
+    """Reads a radar.npz.
 
-    Raises InputError where the file is not such an archive, or its shape does not match the radar.
+    Args:
+        path: The file.
+        config: Its radar. Default: the radar.json in the same folder.
+        mapped: Whether the cube is left on the disk, read-only.
+
+    Returns:
+        The cube, complex64 (frame, range, doppler, antenna).
+
+    Raises:
+        InputError: where the file is not such an archive, or its shape does not match the radar.
     """
     path = Path(path)
     if config is None:
@@ -109,9 +118,16 @@ def write_pose_npz(path: Path, *poses: PoseSequence, time_s: PerFrame | None = N
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
-    """Reads all people of a pose.npz, as subjects 0, 1, 2 ...; none of an empty place.
+    """Reads all people of a pose.npz.
 
-    Raises InputError for anything else.
+    Args:
+        path: The file.
+
+    Returns:
+        People, as subjects 0, 1, 2 ...; none of an empty place.
+
+    Raises:
+        InputError: for anything else.
     """
     path = Path(path)
     held = _read(path)

@@ -15,9 +15,11 @@ from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 
 # magic number in the file: (byte order, ticks per second)
 MAGIC = {
-    b"\xd4\xc3\xb2\xa1": ("<", 1e6), b"\xa1\xb2\xc3\xd4": (">", 1e6),
-    b"\x4d\x3c\xb2\xa1": ("<", 1e9), b"\xa1\xb2\x3c\x4d": (">", 1e9),
-}  # fmt: skip
+    b"\xd4\xc3\xb2\xa1": ("<", 1e6),
+    b"\xa1\xb2\xc3\xd4": (">", 1e6),
+    b"\x4d\x3c\xb2\xa1": ("<", 1e9),
+    b"\xa1\xb2\x3c\x4d": (">", 1e9),
+}
 PCAPNG = b"\x0a\x0d\x0d\x0a"
 SECTION, INTERFACE, PACKET, RESOLUTION = 0x0A0D0D0A, 1, 6, 9  # blocks of pcapng, and an option of an interface
 # link type: bytes before the network layer, and the offset of the protocol number in them (None: always IP)
@@ -36,10 +38,17 @@ class UdpPacket:
 
 
 def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
-    """Yields the packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
+    """The packets of a .pcap or .pcapng that were sent to a UDP port, in the order of the file.
 
-    One packet is held at a time. A truncated last packet (the recorder was stopped) is omitted. Raises InputError where
-    the file cannot be read, is not a .pcap, or is truncated before its first packet.
+    Args:
+        path: The file.
+        port: Destination port.
+
+    Yields:
+        One packet at a time. A truncated last packet (the recorder was stopped) is omitted.
+
+    Raises:
+        InputError: where the file cannot be read, is not a .pcap, or is truncated before its first packet.
     """
     path = Path(path)
     size = check_regular(path)

@@ -18,10 +18,17 @@ from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
-    """Loads a preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig.
+    """The radar that a name or file stands for.
 
-    Options may follow the name: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`). Raises
-    InputError where it is none of them, or the file describes no possible radar.
+    Args:
+        name_or_path: A preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig. Options may
+            follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`).
+
+    Returns:
+        The radar.
+
+    Raises:
+        InputError: where it is none of them, or the file describes no possible radar.
     """
     name_or_path, options = split_radar(name_or_path)
     if name_or_path in PRESETS:
@@ -72,17 +79,20 @@ def describe_radar(config: RadarConfig) -> str:
 def _chirp_rows(config: RadarConfig) -> list[tuple[str, str]]:
     end_hz = config.start_frequency_hz + config.chirp_slope_hz_per_s * config.ramp_end_time_s
     kind = "complex" if config.complex_samples else "real"
+    times_s = (config.idle_time_s, config.adc_start_time_s, config.ramp_end_time_s)
     return [
         ("sweep", f"{config.start_frequency_hz / 1e9:.3f} to {end_hz / 1e9:.3f} GHz"),
         ("slope", f"{config.chirp_slope_hz_per_s / 1e12:.3f} MHz/us"),
-        ("idle, ADC start, ramp end",
-         f"{config.idle_time_s * 1e6:.2f}, {config.adc_start_time_s * 1e6:.2f}, {config.ramp_end_time_s * 1e6:.2f} us"),
+        ("idle, ADC start, ramp end", ", ".join(f"{time_s * 1e6:.2f}" for time_s in times_s) + " us"),
         ("samples per chirp", f"{config.num_samples} {kind} at {config.sample_rate_hz / 1e6:.3f} Msps"),
         ("sampled bandwidth", f"{config.bandwidth_hz / 1e9:.3f} GHz around {config.centre_frequency_hz / 1e9:.3f} GHz"),
         ("loops per frame", f"{config.num_loops}, each {config.loop_period_s * 1e6:.1f} us"),
-        ("frames", f"every {config.frame_period_s * 1e3:.1f} ms, {1 / config.frame_period_s:.2f} per second,"
-         f" {100 * config.active_time_s / config.frame_period_s:.1f} % of the time chirping"),
-    ]  # fmt: skip
+        (
+            "frames",
+            f"every {config.frame_period_s * 1e3:.1f} ms, {1 / config.frame_period_s:.2f} per second,"
+            f" {100 * config.active_time_s / config.frame_period_s:.1f} % of the time chirping",
+        ),
+    ]
 
 
 def _array_rows(config: RadarConfig) -> list[tuple[str, str]]:

@@ -36,10 +36,11 @@ class RadarOptions:
                 f" receivers, radar {config.name!r} has {config.num_tx} and {config.num_rx}"
             )
         return replace(
-            config, rx_inverted=table.rx_inverted,
+            config,
+            rx_inverted=table.rx_inverted,
             tx_position_m=halfwave_positions(table.tx_halfwaves, config.centre_frequency_hz),
             rx_position_m=halfwave_positions(table.rx_halfwaves, config.centre_frequency_hz),
-        )  # fmt: skip
+        )
 
 
 def split_radar(name: str) -> tuple[str, RadarOptions]:

@@ -27,15 +27,22 @@ ORDER = ("frame", "loop", "tx", "rx", "sample")
 
 
 def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: slice = slice(None)) -> AdcCube:
-    """Reads an array whose axes are named in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
+    """Reads samples of an array whose axes are named.
 
-    `frames`: a stretch of them; where "frame" is the first axis, nothing else is read.
+    Args:
+        path: The file. Real samples must be real numbers; their mean over each chirp is removed, and int16 stored as
+            uint16 (values above 32767) is converted back.
+        config: The radar.
+        axes: Names in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample". `tx` is in firing order
+            (`config.tx_order`; of a coded radar its chirps), `antenna` (or `vrx`) = tx * num_rx + rx and
+            `chirp` = loop * num_tx + tx, with that same tx. An axis that is not named has size 1.
+        frames: Stretch of frames; where "frame" is the first axis, nothing else is read.
 
-    `tx` is in firing order (`config.tx_order`; of a coded radar its chirps); `antenna` (or `vrx`) = tx * num_rx + rx
-    and `chirp` = loop * num_tx + tx, with that same tx. An axis that is not named has size 1. Real samples must be real
-    numbers; their mean over each chirp is removed, and int16 stored as uint16 (values above 32767) is converted back.
-    Samples stay in the
-    file's unit, so their scale is unknown (nan). Raises InputError where the file is not such an array.
+    Returns:
+        Samples in the file's unit, so their scale is unknown (nan).
+
+    Raises:
+        InputError: where the file is not such an array.
     """
     return adc_of_array(Path(path), read_npy(path, mapped=frames != slice(None)), config, axes, frames)
 

@@ -25,9 +25,13 @@ ASSIGNMENT = re.compile(
 # call: how many arguments are used
 NEEDED = {"ChanNAdcConfig": 10, "ProfileConfig": 15, "ChirpConfig": 10, "FrameConfig": 5}
 OPTIONAL = {"LVDSLaneConfig": 5, "LvdsLaneConfig": 5}
-REFUSED = {"AdvanceFrameConfig": "an advanced frame", "AdvanceChirpConfig": "advanced chirps",
-           "ContStrConfig": "continuous mode", "ChanNAdcConfig_mult": "a cascade of several chips",
-           "SetPerChirpPhaseShifterConfig": "phase shifters of each chirp"}  # fmt: skip
+REFUSED = {
+    "AdvanceFrameConfig": "an advanced frame",
+    "AdvanceChirpConfig": "advanced chirps",
+    "ContStrConfig": "continuous mode",
+    "ChanNAdcConfig_mult": "a cascade of several chips",
+    "SetPerChirpPhaseShifterConfig": "phase shifters of each chirp",
+}
 TX, FIRST_RX, NUM_RX = 3, 3, 4
 
 

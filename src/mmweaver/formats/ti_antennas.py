@@ -14,10 +14,6 @@ from mmweaver.core.presets import ANTENNAS
 
 NUM_RX = 4
 TURNED = tuple(ANTENNAS[board] for board in ("aop", "ods"))  # boards that feed receivers from both sides
-# of the platform's name, without its punctuation: board
-PLATFORMS = (("68xxaop", "aop"), ("6843aop", "aop"), ("18xxaop", "aop"), ("1843aop", "aop"), ("68xxods", "ods"),
-             ("6843ods", "ods"), ("16xx", "boost1642"), ("1642", "boost1642"), ("294", "evm2944"), ("14xx", "boost"),
-             ("1443", "boost"), ("18xx", "boost"), ("1843", "boost"), ("68xx", "isk"), ("6843", "isk"))  # fmt: skip
 
 
 def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> AntennaTable | None:
@@ -48,7 +44,8 @@ def antennas_of_cfg(values: dict[str, tuple[float, ...]], platform: str) -> Ante
         turned := _turned_receivers(values.get("compRangeBiasAndRxChanPhase", ()))
     ):
         return next((board for board in TURNED if board.rx_inverted == turned), None)
-    return next((ANTENNAS[board] for part, board in PLATFORMS if part in platform), None)
+    named = [(len(part), name) for name in ANTENNAS for part in ANTENNAS[name].platforms if part in platform]
+    return ANTENNAS[max(named)[1]] if named else None
 
 
 def _turned_receivers(compensation: tuple[float, ...]) -> tuple[int, ...]:

@@ -19,13 +19,24 @@ MAX_CFG_BYTES = 2**20
 # command: minimum count of numbers that follow it (later SDKs append more)
 NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8}
 OPTIONAL = {
-    "frameCfg": 6, "advFrameCfg": 5, "subFrameCfg": 10, "adcbufCfg": 4, "bpmCfg": 4, "ddmPhaseShiftAntOrder": 2,
-    "lvdsStreamCfg": 4, "antGeometry0": 0, "antGeometry1": 0, "antPhaseRot": 0, "antGeometryCfg": 2,
+    "frameCfg": 6,
+    "advFrameCfg": 5,
+    "subFrameCfg": 10,
+    "adcbufCfg": 4,
+    "bpmCfg": 4,
+    "ddmPhaseShiftAntOrder": 2,
+    "lvdsStreamCfg": 4,
+    "antGeometry0": 0,
+    "antGeometry1": 0,
+    "antPhaseRot": 0,
+    "antGeometryCfg": 2,
     "compRangeBiasAndRxChanPhase": 0,
-}  # fmt: skip
+}
 REFUSED = {
-    "contModeCfg": "continuous mode", "advChirpCfg": "advanced chirps", "LUTDataCfg": "advanced chirps",
-}  # fmt: skip
+    "contModeCfg": "continuous mode",
+    "advChirpCfg": "advanced chirps",
+    "LUTDataCfg": "advanced chirps",
+}
 OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
 MCU_FRAME_NUMBERS = 8  # of frameCfg in the MCU+ SDK, which has the number of samples before the period
@@ -103,7 +114,8 @@ def adc_buffer(lines: Lines) -> tuple[float, float]:
     if "adcbufCfg" not in lines:
         return -1.0, -1.0
     values = lines["adcbufCfg"][-1].values
-    return values[1:3] if len(values) == 4 else values[2:4]
+    swap, interleave = values[1:3] if len(values) == 4 else values[2:4]
+    return swap, interleave
 
 
 def platform_of(text: str) -> str:

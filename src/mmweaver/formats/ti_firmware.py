@@ -6,6 +6,7 @@ multiObjBeamForming.
 
 import math
 from pathlib import Path
+from typing import Any
 
 from mmweaver.core.errors import InputError, file_named
 from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MAX_OBJECTS, FirmwareCfar, FirmwareSettings
@@ -38,7 +39,7 @@ def read_ti_firmware(path: Path | str) -> FirmwareSettings:
         cfars = {line.values[0]: line for line in map(_drop_sub_frame, lines["cfarCfg"])}
         if unknown := sorted(set(cfars) - {0.0, 1.0}):
             raise InputError(f"cfarCfg is for direction {unknown[0]:g}; known are 0 (range) and 1 (Doppler)")
-        values: dict[str, bool | int] = {}
+        values: dict[str, Any] = {}
         if "peakGrouping" in own:
             _, in_range, in_doppler, first, last = own["peakGrouping"].wholes(5)
             values = {"group_range": in_range == 1, "group_doppler": in_doppler == 1}

@@ -1,1 +1,1 @@
-"""Recordings by real radars: read, processed, and used as examples."""
+"""Recordings by real radars: read and processed."""

@@ -46,8 +46,10 @@ class RecordingAnalysis:
             "static_share": round(self.static_share, 4),
             "moving_cells": [
                 {
-                    "range_m": cell.range_m, "moving_power": cell.moving_power,
-                    "displacement_peak_to_peak_m": float(np.ptp(cell.displacement_m)), "has_centre": cell.has_centre,
+                    "range_m": cell.range_m,
+                    "moving_power": cell.moving_power,
+                    "displacement_peak_to_peak_m": float(np.ptp(cell.displacement_m)),
+                    "has_centre": cell.has_centre,
                 }
                 for cell in self.cells
             ],
@@ -55,13 +57,17 @@ class RecordingAnalysis:
             "fastest_mps": None if self.micro_doppler is None else _fastest(self.micro_doppler),
             "people": [
                 {
-                    "first_s": float(one.time_s[0]), "last_s": float(one.time_s[-1]),
-                    "from_m": one.place_m[0], "to_m": one.place_m[-1], "mean_speed_mps": one.mean_speed_mps,
-                    "height_m": one.height_m, "points": one.num_points,
+                    "first_s": float(one.time_s[0]),
+                    "last_s": float(one.time_s[-1]),
+                    "from_m": one.place_m[0],
+                    "to_m": one.place_m[-1],
+                    "mean_speed_mps": one.mean_speed_mps,
+                    "height_m": one.height_m,
+                    "points": one.num_points,
                 }
                 for one in self.people
             ],
-        }  # fmt: skip
+        }
 
     def arrays(self) -> dict[str, np.ndarray]:
         """The content of analysis.npz, in SI units."""
@@ -86,15 +92,27 @@ class RecordingAnalysis:
 
 
 def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis:
-    """All that a recording of this length, with these loops per frame, can give; micro-Doppler needs its samples."""
+    """Everything that a recording of this length, with these loops per frame, can show.
+
+    Args:
+        cube: Its cube.
+        adc: Its samples, which micro-Doppler needs; None where it has none.
+
+    Returns:
+        The analysis; parts that cannot be given are None or empty.
+    """
     is_sequence = len(cube.values) > 1
     slow = slow_time_doppler(cube) if is_sequence else None
     cells = tuple(moving_cells(cube))
     return RecordingAnalysis(
-        slow_doppler=None if slow is None else slow[0], slow_velocity_mps=None if slow is None else slow[1],
-        cells=cells, vital_signs=_vital_signs(cells, cube.config.frame_period_s),
-        micro_doppler=_micro_doppler(adc), people=_people(cube), static_share=_static_share(cube),
-    )  # fmt: skip
+        slow_doppler=None if slow is None else slow[0],
+        slow_velocity_mps=None if slow is None else slow[1],
+        cells=cells,
+        vital_signs=_vital_signs(cells, cube.config.frame_period_s),
+        micro_doppler=_micro_doppler(adc),
+        people=_people(cube),
+        static_share=_static_share(cube),
+    )
 
 
 def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns | None:

@@ -46,13 +46,24 @@ UNFOLDED = 0.6  # of the unambiguous velocity: what travels faster may be seen w
 
 
 def implausible(
-    adc: AdcCube, cube: RadarCube, path: Path | None = None, *, iq_order: str | None = None,
+    adc: AdcCube,
+    cube: RadarCube,
+    path: Path | None = None,
+    *,
+    iq_order: str | None = None,
     frame_time_s: PerFrame | None = None,
-) -> list[str]:  # fmt: skip
-    """What does not fit, a sentence each with the likelier reading; empty where all is plausible.
+) -> list[str]:
+    """What does not fit in a recording, with the likelier reading.
 
-    `path`: the .bin that the samples come from; `iq_order`: as which they were read, of int16 words; `frame_time_s`:
-    when packets of the frames arrived.
+    Args:
+        adc: Its samples.
+        cube: Its cube.
+        path: The .bin that the samples come from.
+        iq_order: As which they were read, of int16 words.
+        frame_time_s: When packets of the frames arrived, (frame,).
+
+    Returns:
+        A sentence each; empty where all is plausible.
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     if found := [*_number_type(path)]:
@@ -130,49 +141,45 @@ def _layout(adc: AdcCube) -> Iterator[str]:
     flat = upright(stream, config).reshape(len(stream), -1)  # as the converter gave them
     loop = config.num_slots * config.num_rx * config.num_samples
     kinds = (flat, flat.mean(axis=0)[None])  # in the mean over frames moving echoes count less
-
-    def alike(lag: int) -> float:
-        return max(_likeness(kind, lag) for kind in kinds)
-
-    def gain(lag: int) -> float:
-        return max(_likeness(kind, lag) - _likeness(kind, loop) for kind in kinds)
-
-    own = alike(loop)
     layouts: dict[int, list[tuple[int, int, int]]] = {}
     for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*COMMON_SAMPLES, config.num_samples})):
         if (lag := slots * rx * samples) * 4 <= flat.shape[1]:
             layouts.setdefault(lag, []).append((slots, rx, samples))
-    every = {lag: alike(lag) for lag in layouts}
-    if max([own, *every.values()]) < NO_LIKENESS:
+    likeness = {lag: np.array([_likeness(kind, lag) for kind in kinds]) for lag in {*layouts, loop}}
+    alike = {lag: float(values.max()) for lag, values in likeness.items()}
+    gain = {lag: float((values - likeness[loop]).max()) for lag, values in likeness.items()}
+    own, best = alike[loop], max((alike[lag] for lag in layouts), default=0.0)
+    if max(own, best) < NO_LIKENESS:
         yield (
             f"chirps one loop ({loop} samples) apart are alike to {own:.2f}, and no other layout has more: noise"
             " alone, no samples, or samples packed in another way"
         )
         return
-    if own >= MIN_LIKENESS and max(map(gain, layouts), default=0.0) <= BETTER_LIKENESS:
-        kinds = (flat[:2],)
-        others = {lag: alike(lag) for lag in layouts if lag < loop and loop % lag == 0}
-        likely = [lag for lag, likeness in others.items() if likeness > own - SAME_LIKENESS]
+    if own >= MIN_LIKENESS and max((gain[lag] for lag in layouts), default=0.0) <= BETTER_LIKENESS:
+        kinds, few = (flat[:2],), flat[:2]
+        alike = {lag: _likeness(few, lag) for lag in layouts if lag < loop and loop % lag == 0}
+        likely = [lag for lag, found in alike.items() if found > own - SAME_LIKENESS]
         if not likely:
             return
         lag = min(likely)
         chirps = [config.num_samples * number for number in range(1, config.num_slots * config.num_rx)]
-        beyond = float(np.median([alike(one) for one in chirps if one % lag] or [1.0]))
+        beyond = float(np.median([_likeness(few, one) for one in chirps if one % lag] or [1.0]))
+        is_likelier = alike[lag] > beyond + BETTER_LIKENESS
     else:
-        others = every
-        lag = min((one for one in others if others[one] > max(others.values()) - SAME_LIKENESS), default=loop)
-        beyond = own
-    if others.get(lag, 0.0) > beyond + BETTER_LIKENESS or (others is every and gain(lag) > BETTER_LIKENESS):
+        lag = min((one for one in layouts if alike[one] > best - SAME_LIKENESS), default=loop)
+        is_likelier = alike[lag] > own + BETTER_LIKENESS or gain[lag] > BETTER_LIKENESS
+    if is_likelier:
         own_layout = (config.num_slots, config.num_rx, config.num_samples)
 
         def merit(layout: tuple[int, int, int]) -> tuple[int, bool, bool, float, int]:
             same = [one == own for one, own in zip(layout, own_layout, strict=True)]
-            return sum(same), _presets(*layout) != "", same[2], round(alike(layout[2]), 1), -layout[0]
+            chirp = max(_likeness(kind, layout[2]) for kind in kinds)
+            return sum(same), _presets(*layout) != "", same[2], round(chirp, 1), -layout[0]
 
         slots, rx, samples = max(layouts[lag], key=merit)
         yield (
             f"chirps one loop ({loop} samples) apart are alike to {own:.2f}, but {lag} samples apart to"
-            f" {others[lag]:.2f}, as with {slots} TX x {rx} RX x {samples} samples{_presets(slots, rx, samples)};"
+            f" {alike[lag]:.2f}, as with {slots} TX x {rx} RX x {samples} samples{_presets(slots, rx, samples)};"
             " --radar is probably not the radar that recorded it"
         )
 

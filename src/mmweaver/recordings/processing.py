@@ -49,9 +49,15 @@ class ProcessedRecording:
         title = Path(self.meta["inputs"]["recording"]["path"]).name
         view = FigureData(title=title, cube=self.cube, points=self.points)
         return save_results(
-            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures,
+            out,
+            view,
+            self.meta,
+            overwrite=overwrite,
+            stages=self.stages,
+            extra=extra,
+            pictures=pictures,
             more=partial(self._write_analysis, title, pictures),
-        )  # fmt: skip
+        )
 
     def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:
         """analysis.npz and its pages."""

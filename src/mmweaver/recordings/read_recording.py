@@ -169,12 +169,8 @@ def _stretch(found: Recording, frames: slice) -> Recording:
     """Some frames of a recording that was read whole."""
     if frames == slice(None):
         return found
-    cube, adc = found.stored_cube, found.adc
-    if cube is not None:
-        grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[frames])
-        cube = replace(cube, values=cube.values[frames], grid=grid)
-    if adc is not None:
-        adc = replace(adc, samples=adc.samples[frames])
+    cube = None if found.stored_cube is None else found.stored_cube.select(frames)
+    adc = None if found.adc is None else replace(found.adc, samples=found.adc.samples[frames])
     return replace(found, stored_cube=cube, adc=adc, first_frame=frames.start or 0)
 
 
@@ -196,10 +192,19 @@ def _cropped(found: Recording, range_m: tuple[float, float] | None, range_bins: 
 
 
 def without_board(found: Recording, board: Board) -> Recording:
-    """The recording without the errors of the board that made it.
+    """Removes the errors of the board that made a recording.
 
-    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias. Raises
-    InputError for the board of another radar.
+    A cube is taken back to samples, so what lies outside its range bins does not move in with a range bias.
+
+    Args:
+        found: The recording.
+        board: Its board.
+
+    Returns:
+        The recording without them, and which were removed.
+
+    Raises:
+        InputError: for the board of another radar.
     """
     samples = found.adc
     if samples is None:
@@ -247,8 +252,8 @@ def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool)
 
 def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
     if given := [name for name, value in vars(reading).items() if value is not None]:
-        option = given[0].replace("_", "-")
-        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out --{option}")
+        option = "--" + given[0].replace("_", "-")
+        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {option}")
     capture = read_radar_capture(path, frames)
     cfg = capture.folder / RADAR
     found = Recording(

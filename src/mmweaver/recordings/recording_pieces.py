@@ -1,6 +1,5 @@
 """A recording of any length, read in pieces where its file allows."""
 
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -51,9 +50,7 @@ class RecordingPieces:
         stretch = slice(frames.start, frames.stop)
         if self._in_part:
             return self._recording(stretch).cube
-        whole = self._whole
-        grid = replace(whole.grid, frame_time_s=whole.grid.frame_time_s[stretch])
-        return replace(whole, values=whole.values[stretch], grid=grid)
+        return self._whole.select(stretch)
 
     def _recording(self, frames: slice) -> Recording:
         return read_recording(self.path, self._radar, frames=frames, **self._how)

@@ -20,9 +20,13 @@ Baseline = tuple[float, float]  # across and up, in half wavelengths
 
 
 def agreements(cube: RadarCube) -> dict[tuple[int, ...], float]:
-    """How well the transmitters fit the receivers, 0 to 1, in each possible firing order.
+    """How well the transmitters fit the receivers in each possible firing order.
 
-    Empty without evidence: one transmitter, decoded ones, or too few static cells.
+    Args:
+        cube: The cube, read in the order of its radar.
+
+    Returns:
+        {order: agreement from 0 to 1}; empty without evidence: one transmitter, decoded ones, or too few static cells.
     """
     config = cube.config
     still = _static_cells(cube)

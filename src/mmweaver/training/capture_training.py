@@ -22,7 +22,7 @@ from mmweaver.paths.background import agreeing_gain
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.mean_scatterers import MeanEchoes
 from mmweaver.paths.radar_equation import points_of
-from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
+from mmweaver.training.captures import SPLIT, Capture, RecordedRoom, rooms_of
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import WEAVER
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples, sample_batch

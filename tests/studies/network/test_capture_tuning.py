@@ -9,7 +9,7 @@ import pytest
 
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.datasets.dataset_store import read_rooms
-from mmweaver.recordings.captures import read_capture
+from mmweaver.training.captures import read_capture
 from studies.network import capture_tuning
 from studies.network.capture_tuning import COLUMNS, rows_of, scores_of, write_capture, write_photo
 

@@ -32,10 +32,22 @@ class ArrayChecks:
         high: int | float = np.inf,
         nan: bool = False,
     ) -> np.ndarray:
-        """`values`, if it holds numbers of one of `kinds` (numpy's letters) of `shape`, finite, from `low` to `high`.
+        """Checks type, shape and range of an array of numbers.
 
-        An axis of `shape` is a length or a name; a name has the same length in all arrays. `nan` allows NaN. Complex
-        numbers are limited by their larger part. Raises InputError otherwise.
+        Args:
+            name: What it is called in errors.
+            values: The array.
+            shape: A length or a name per axis; a name has one length in all arrays of the file. Default: any.
+            kinds: Letters of numpy for the types that are allowed.
+            low: Smallest value; of complex numbers of either part.
+            high: Largest value.
+            nan: Whether NaN is allowed.
+
+        Returns:
+            `values`.
+
+        Raises:
+            InputError: where it is of another type or shape, not finite, or out of range.
         """
         if values.dtype.kind not in kinds:
             raise InputError(

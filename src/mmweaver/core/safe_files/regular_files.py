@@ -47,7 +47,18 @@ def open_regular(path: Path | str) -> BufferedReader:
 
 
 def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
-    """The whole of a regular file of at most `max_bytes`. Raises InputError for anything else."""
+    """The whole of a regular file.
+
+    Args:
+        path: The file.
+        max_bytes: Largest size that is read.
+
+    Returns:
+        Its bytes.
+
+    Raises:
+        InputError: for a larger file, and for anything that is no regular file.
+    """
     pieces, held = [], 0
     with open_regular(path) as file:
         try:
@@ -63,10 +74,17 @@ def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
 
 @contextlib.contextmanager
 def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
-    """Turns whatever a library raises while it decodes `path` into an InputError "PATH is `what` (reason)".
+    """Turns whatever a library raises while it decodes a file into an InputError "PATH is `what`".
 
-    `what` says what is wrong and what to do with "{reason}" where the library's own words go, for example
-    "no .npy array ({reason}); save it with numpy.save". Only calls of libraries belong inside.
+    Only calls of libraries belong inside.
+
+    Args:
+        path: The file, or the words that name it.
+        what: What is wrong and what to do, with "{reason}" where the library's own words go, for example "no .npy array
+            ({reason}); save it with numpy.save".
+
+    Raises:
+        InputError: in place of any other exception.
     """
     try:
         with warnings.catch_warnings():

@@ -28,7 +28,18 @@ _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.r
 
 
 def read_npy(path: Path | str, *, mapped: bool = False) -> np.ndarray:
-    """The array of a .npy file; `mapped` leaves it on the disk, read-only. Raises InputError for anything else."""
+    """The array of a .npy file.
+
+    Args:
+        path: The file.
+        mapped: Whether it is left on the disk, read-only.
+
+    Returns:
+        The array: numbers, truth values or texts.
+
+    Raises:
+        InputError: for anything else, pickled objects and records included.
+    """
     with open_regular(path) as file, foreign_errors(path, NO_NPY):
         if zipfile.is_zipfile(file):
             raise InputError(f"{path} is an archive, not a .npy array; save the array alone with numpy.save")
@@ -80,11 +91,21 @@ class NpzArrays(Mapping[str, np.ndarray]):
 def read_npz(
     path: Path | str, only: Iterable[str] | None = None, *, skip_unreadable: bool = False, mapped: Iterable[str] = ()
 ) -> NpzArrays:
-    """The arrays of an .npz archive, or those named in `only`.
+    """The arrays of an .npz archive.
 
-    `skip_unreadable` omits arrays of Python objects and other types that are not read, instead of refusing the archive.
-    Arrays of `mapped` that are not compressed are left on the disk, read-only, once their CRC-32 has been checked.
-    Raises InputError where the file is no such archive, is damaged, or would grow out of proportion.
+    Args:
+        path: The file.
+        only: Names of arrays that are read. Default: all.
+        skip_unreadable: Whether arrays of Python objects and other types that are not read are omitted, instead of
+            refusing the archive.
+        mapped: Names of arrays that are left on the disk, read-only, where they are not compressed, once their CRC-32
+            has been checked.
+
+    Returns:
+        The arrays by name, with checks of them.
+
+    Raises:
+        InputError: where the file is no such archive, is damaged, or would grow out of proportion.
     """
     held = check_regular(path)
     found: dict[str, np.ndarray] = {}
@@ -119,7 +140,20 @@ def is_sound_zip(path: Path | str) -> bool:
 
 
 def read_words(path: Path | str, dtype: str, *, count: int, first: int = 0) -> np.ndarray:
-    """`count` numbers of a raw file, (count,), from number `first` on. Raises InputError where it has fewer."""
+    """Numbers of a raw file.
+
+    Args:
+        path: The file.
+        dtype: Their type, such as "<i2".
+        count: How many are read.
+        first: Number of the first.
+
+    Returns:
+        The numbers, (count,).
+
+    Raises:
+        InputError: where the file has fewer.
+    """
     size = np.dtype(dtype).itemsize
     needed = (first + count) * size
     if check_regular(path) < needed:

@@ -21,9 +21,17 @@ NO_TENSORS = "damaged or no safetensors file ({reason}); fetch or write it again
 def read_tensors(
     path: Path | str, *, only: Iterable[str] | None = None
 ) -> tuple[dict[str, "torch.Tensor"], dict[str, str]]:
-    """The tensors of a safetensors file, or those named in `only`, and its metadata.
+    """The tensors of a safetensors file.
 
-    Raises InputError where it is another file or damaged, lacks one of `only`, or has NaN or infinity.
+    Args:
+        path: The file.
+        only: Names of tensors that are read. Default: all.
+
+    Returns:
+        The tensors by name, and the metadata.
+
+    Raises:
+        InputError: where it is another file or damaged, lacks one of `only`, or has NaN or infinity.
     """
     from safetensors import safe_open
 
@@ -73,15 +81,21 @@ def check_finite(path: Path | str, tensors: dict[str, "torch.Tensor"]) -> None:
 
     for name, tensor in tensors.items():
         if tensor.is_floating_point() and not bool(torch.isfinite(tensor).all()):
-            raise InputError(
-                f"{path}: {name} holds values that are not finite; train or fetch the weights again"
-            )  # fmt: skip
+            raise InputError(f"{path}: {name} holds values that are not finite; train or fetch the weights again")
 
 
 def read_checkpoint(path: Path | str, *, what: str) -> Any:
-    """The content of a checkpoint of torch.save: tensors and plain values alone, on the CPU; code in it is refused.
+    """The content of a checkpoint of torch.save, on the CPU; code in it is refused.
 
-    `what` names it and the remedy in errors, as in `foreign_errors`.
+    Args:
+        path: The file.
+        what: What is wrong with it and the remedy, as in `foreign_errors`.
+
+    Returns:
+        Tensors and plain values.
+
+    Raises:
+        InputError: for anything else.
     """
     import torch
 

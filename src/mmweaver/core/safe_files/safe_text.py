@@ -15,9 +15,18 @@ MAX_DIGITS = 64  # of a whole number; a float holds every such number
 
 
 def read_text(path: Path | str, *, max_bytes: int = MAX_TEXT_BYTES, errors: str = "strict") -> str:
-    """A UTF-8 text, without a byte order mark. Raises InputError where it is none or larger than `max_bytes`.
+    """A UTF-8 text, without a byte order mark.
 
-    `errors`: "replace" accepts bytes that are no UTF-8, in comments for example.
+    Args:
+        path: The file.
+        max_bytes: Largest size that is read.
+        errors: "replace" accepts bytes that are no UTF-8, in comments for example.
+
+    Returns:
+        The text.
+
+    Raises:
+        InputError: where it is no UTF-8 text or larger.
     """
     try:
         return read_bytes(path, max_bytes=max_bytes).decode("utf-8-sig", errors=errors)
@@ -31,10 +40,18 @@ def read_json(path: Path | str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
 
 
 def parse_json(text: str | bytes, place: str) -> Any:
-    """The content of JSON text; `place` names it in errors.
+    """The content of JSON text.
 
-    Raises InputError for what is no JSON, for NaN, infinity, numbers too long for a float, lists and objects nested
-    too deeply, and text that cannot be written again.
+    Args:
+        text: The JSON.
+        place: What it is called in errors.
+
+    Returns:
+        Lists, dicts, texts and numbers.
+
+    Raises:
+        InputError: for what is no JSON, for NaN, infinity, numbers too long for a float, lists and objects nested too
+            deeply, and text that cannot be written again.
     """
     with foreign_errors(place, "no JSON ({reason}); write it again"):
         text = text.decode("utf-8-sig") if isinstance(text, bytes) else text

@@ -23,9 +23,19 @@ MAX_FRAME = 2**31
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
 # columns of a CSV, in letters and digits alone: name here
 COLUMNS = {
-    "frame": "frame", "framenumber": "frame", "framenum": "frame", "x": "x", "y": "y", "z": "z", "doppler": "velocity",
-    "velocity": "velocity", "v": "velocity", "intensity": "intensity", "snr": "snr", "snrdb": "snr",
-}  # fmt: skip
+    "frame": "frame",
+    "framenumber": "frame",
+    "framenum": "frame",
+    "x": "x",
+    "y": "y",
+    "z": "z",
+    "doppler": "velocity",
+    "velocity": "velocity",
+    "v": "velocity",
+    "intensity": "intensity",
+    "snr": "snr",
+    "snrdb": "snr",
+}
 RADHAR_LINE = re.compile(rb"^(point_id|x|y|z|velocity|intensity): *(\S+)", re.MULTILINE)
 NUMBERED = re.compile(r"(\d+)")
 

@@ -5,8 +5,6 @@ x to the right, y away from the radar, z up, in metres; radial velocity in m/s, 
 
 from pathlib import Path
 
-import numpy as np
-
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.regular_files import check_exists, open_regular
@@ -29,8 +27,7 @@ MAX_PLACE_M = 1e5  # what is beyond is damage
 def read_own_points(path: Path) -> LoggedCloud:
     """A points.npz, without intensities. Raises InputError."""
     points = read_points_npz(path)
-    xyz_m = np.stack([points.x_m, points.y_m, points.z_m], axis=1)
-    return logged_cloud(points.frame, xyz_m, points.radial_velocity_mps, snr_db=points.snr_db)
+    return logged_cloud(points.frame, points.xyz_m, points.radial_velocity_mps, snr_db=points.snr_db)
 
 
 def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:

@@ -192,9 +192,13 @@ def _compressed(raw: bytes) -> np.ndarray | None:
     kind = np.dtype([("place", "<i2", 3), ("doppler", "<i2"), ("snr", "u1"), ("noise", "u1")])
     table: Any = np.frombuffer(raw, kind, offset=20)
     return np.column_stack(
-        [table["place"] * place_unit, table["doppler"] * velocity_unit, table["snr"] * snr_unit,
-         np.full(len(table), np.nan)]
-    )  # fmt: skip
+        [
+            table["place"] * place_unit,
+            table["doppler"] * velocity_unit,
+            table["snr"] * snr_unit,
+            np.full(len(table), np.nan),
+        ]
+    )
 
 
 def _spherical(raw: bytes) -> np.ndarray | None:
@@ -209,6 +213,12 @@ def _spherical(raw: bytes) -> np.ndarray | None:
     flat_m = range_m * np.cos(elevation)
     snr_db = 10 * np.log10(np.maximum(snr, 1e-6))
     return np.column_stack(
-        [flat_m * np.sin(azimuth), flat_m * np.cos(azimuth), range_m * np.sin(elevation),
-         table["doppler"] * velocity_unit, snr_db, snr]
-    )  # fmt: skip
+        [
+            flat_m * np.sin(azimuth),
+            flat_m * np.cos(azimuth),
+            range_m * np.sin(elevation),
+            table["doppler"] * velocity_unit,
+            snr_db,
+            snr,
+        ]
+    )

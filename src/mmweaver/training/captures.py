@@ -124,13 +124,24 @@ def _room(capture: Capture, config: RadarConfig, frames: int) -> RecordedRoom:
         times_s = cube.grid.frame_time_s[: count * frames] + config.active_time_s / 2
         joints, velocity = (part.reshape(shape) for part in joints_and_velocities(capture.pose, times_s))
     return RecordedRoom(
-        files=CheckedFolder(folder=capture.folder, sums=None, made_by=""), kind=SPLIT, layout=0, lighting="",
+        files=CheckedFolder(folder=capture.folder, sums=None, made_by=""),
+        kind=SPLIT,
+        layout=0,
+        lighting="",
         photo=capture.photo,
         static=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
-        joints_m=joints, joint_velocity_mps=velocity, person=np.zeros(count, int), activity=("",) * count,
-        text=("",) * count, split=(SPLIT,) * count, seed=np.zeros(count, int), config=config, values=values,
-        is_calibrated=is_calibrated, sha256=hashlib.sha256(np.ascontiguousarray(cube.values).tobytes()).hexdigest(),
-    )  # fmt: skip
+        joints_m=joints,
+        joint_velocity_mps=velocity,
+        person=np.zeros(count, int),
+        activity=("",) * count,
+        text=("",) * count,
+        split=(SPLIT,) * count,
+        seed=np.zeros(count, int),
+        config=config,
+        values=values,
+        is_calibrated=is_calibrated,
+        sha256=hashlib.sha256(np.ascontiguousarray(cube.values).tobytes()).hexdigest(),
+    )
 
 
 def _check_times(folder: Path, pose: PoseSequence, cube: RadarCube) -> None:
