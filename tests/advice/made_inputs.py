@@ -25,10 +25,10 @@ from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
-from mmweaver.recordings.captures import read_capture
 from mmweaver.request import Request
 from mmweaver.scene.photo.estimated_depth import PROMPTED
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.training.captures import read_capture
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES

@@ -10,9 +10,6 @@ from mmweaver.motion.animation.habits import NO_HABITS, habits_of
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Shape, Step
 from mmweaver.motion.language.step_names import add_shown_text, in_turn
-from mmweaver.motion.people import Person, person_of, subject_of, with_habits
-from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan, Step
-from mmweaver.motion.language.step_names import in_turn, with_what_is_shown
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap, PulledChair

@@ -1,7 +1,5 @@
 import numpy as np
 import pytest
-
-from mmweaver.core.errors import InputError
 from studies.fields.unusual_signals import (
     CLIPPED_SHARE,
     UNUSUAL,
@@ -12,6 +10,8 @@ from studies.fields.unusual_signals import (
     saturated,
     with_bursts,
 )
+
+from mmweaver.core.errors import InputError
 from studies.scores.cube_scores import cells_of
 
 
