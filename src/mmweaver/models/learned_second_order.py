@@ -42,7 +42,7 @@ def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], cloc
 
 def _seen(room: RayTracedRoom, motion: FrameMotion, others: list[FrameMotion], clock: FrameClock) -> VisibleBody:
     body = _body(motion.subject, motion.height_m, motion.girth)
-    one = VisibleBody(room, body, BodyAtFrames.of(body, clock, motion.at_nodes(clock), None, []))
+    one = VisibleBody(room, body, BodyAtFrames.of(body, clock, motion.node_joints_m(clock), None, []))
     clear = room.is_clear(np.zeros(3), one.posed.place_m[:: SAMPLING.every], ROOM_MARGIN_M)
     one.visible &= np.repeat(clear, SAMPLING.every, axis=0)[: one.num_frames]
     for other in others:
