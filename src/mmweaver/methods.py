@@ -11,7 +11,6 @@ import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.board import Board
-from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
@@ -138,25 +137,6 @@ class Physics:
             scene, config, micro_seed=seed_of_room(scene), background=background, board=board,
             propagation=self.propagation, room=room,
         )  # fmt: skip
-
-
-def with_propagation(method: Method, bounces: int | None, clutter: str | None) -> Method:
-    """Physics or the network with so many bounces, and clutter "all" or "resolved"; None leaves it as it is.
-
-    Raises InputError for another method or value.
-    """
-    if not isinstance(method, Physics | Learned):
-        raise InputError("bounces and clutter are options of the methods physics and weaver; leave them out")
-    if bounces not in (None, 1, 2):
-        raise InputError(f"bounces must be 1 or 2, not {bounces}")
-    if clutter not in (None, "all", "resolved"):
-        raise InputError(f"clutter must be 'all' or 'resolved', not {clutter!r}")
-    own = method.propagation
-    propagation = replace(
-        own, bounces=own.bounces if bounces is None else bounces,
-        clutter=own.clutter if clutter is None else clutter == "all",
-    )  # fmt: skip
-    return Physics(propagation) if isinstance(method, Physics) else Learned(method.weights, propagation)
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:

@@ -1,300 +1,106 @@
-"""What is asked of `Weaver.generate`: checked, parsed and scheduled once, then handed on as one record."""
+"""What is asked of `Weaver.generate`, as one typed record.
 
-import itertools
+It is the source of the keywords of `Weaver.generate`, of the options of `mmweaver generate`, of request.toml and of the
+studio's form. Nothing heavy is imported here.
+"""
+
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from mmweaver.core.board import Board
-from mmweaver.core.boards import find_board
-from mmweaver.core.errors import InputError
-from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.radar_pose import RadarPose, check_poses
-from mmweaver.motion.empty_place import NOBODY, says_nobody
-from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
-from mmweaver.motion.language.sentence_parser import parse_sentence
-from mmweaver.motion.language.step_names import with_what_is_shown
-from mmweaver.motion.language.timing import natural_s, repeated, schedule
-from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import check_lasts
-from mmweaver.motion.multi_person import MOST_PEOPLE, Place
-from mmweaver.motion.people import check_subject
-from mmweaver.motion.planning.targets import SHORTEST_PATH_M
-from mmweaver.motion.register_activity import load_activity_plugins
+from mmweaver.core.options import Place, Source, option, options
 
-MAX_FRAMES = 2000
-NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
-FPS_LIMITS = (0.1, 1000.0)
-MAX_SECONDS = 600.0
-LEAST_SECONDS = 2.0  # of a sequence whose length the sentence decides
-MAX_BYTES = 2_000_000_000  # of the largest array
+if TYPE_CHECKING:
+    from mmweaver.core.board import Board
+    from mmweaver.core.radar_pose import RadarPose
+    from mmweaver.motion.mocap.clip import MotionClip
 
 
-@dataclass(frozen=True, kw_only=True)
-class PersonRequest:
-    """One person of a request. None means chosen: the start by the motion planner, the height by the seed."""
+class Heading(float):
+    """A direction in radians from +x towards +y, on the command line in degrees: 0 towards the radar."""
 
-    text: str  # what the person does; for a recorded motion only its name
-    plan: MotionPlan | None  # the parsed and scheduled text; None for a recorded motion
-    start_m: Place | None = None  # (x, y) on the floor, in the radar's frame
-    height_m: float | None = None
-    subject: int | None = None  # who it is
+    @classmethod
+    def of_words(cls, word: str) -> "Heading":
+        """'90' -> 0.0, to the picture's right."""
+        degrees = float(word)
+        if not math.isfinite(degrees):
+            raise ValueError
+        return cls(math.radians(degrees) - math.pi / 2)
+
+    @property
+    def words(self) -> str:
+        """As `of_words` reads it."""
+        return repr(round(math.degrees(self) + 90, 10))
 
 
-@dataclass(frozen=True, kw_only=True)
+def radar_pose(word: str) -> "RadarPose":
+    """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees. Raises InputError."""
+    from mmweaver.core.radar_pose import RadarPose
+
+    return RadarPose.of_words(word)
+
+
+@options
 class Request:
-    """A valid request for one sequence; made by `parse_request`."""
+    """What is asked for. A value is that of the only person, or a list with one for each person (None: chosen)."""
 
-    people: tuple[PersonRequest, ...]  # none: an empty room
-    config: RadarConfig  # at the requested frame rate
-    frames: int = 20
-    seed: int = 0
-    motion: MotionClip | None = None  # the first person's recorded motion
-    heading_rad: float | None = None  # where the first person's body faces first, from +x towards +y
-    as_recorded: bool = False  # the recorded positions are kept
-    keep_adc: bool = False
-    board: Board | None = None  # None: a typical one of this seed, or that of a background recording
-    radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
-
-    @property
-    def duration_s(self) -> float:
-        return self.frames * self.config.frame_period_s
-
-    @property
-    def range_window_m(self) -> tuple[float, float]:
-        """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
-        near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
-        return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
-
-    @property
-    def board_without_background(self) -> Board:
-        """The board that makes the signal in a room without a background recording."""
-        return find_board("typical", self.config, self.seed) if self.board is None else self.board
-
-    @property
-    def text(self) -> str | list[str]:
-        """The text of one person, or a list of several people's; NOBODY of an empty room."""
-        return NOBODY if not self.people else _one_or_all([person.text for person in self.people])
-
-    @property
-    def at(self) -> Place | list[Place | None] | None:
-        """The start of one person, or a list of several people's; None where all are chosen."""
-        return _one_or_all([person.start_m for person in self.people])
-
-    @property
-    def subject(self) -> int | list[int | None] | None:
-        """The number of one person, or a list of several people's; None where all are drawn by the seed."""
-        return _one_or_all([person.subject for person in self.people])
-
-    @property
-    def height_m(self) -> float | list[float | None] | None:
-        """The height of one person, or a list of several people's; None where all are chosen."""
-        return _one_or_all([person.height_m for person in self.people])
-
-
-def parse_request(
-    radar: RadarConfig,
-    text: str | Sequence[str] | None = None,
-    *,
-    motion: MotionClip | None = None,
-    frames: int | None = None,
-    seconds: float | None = None,
-    fps: float | None = None,
-    seed: int = 0,
-    at: Place | Sequence[Place | None] | None = None,
-    heading_rad: float | None = None,
-    path_m: Sequence[Place] | None = None,
-    height_m: float | Sequence[float | None] | None = None,
-    subject: int | Sequence[int | None] | None = None,
-    as_recorded: bool = False,
-    keep_adc: bool = False,
-    radar_poses: Sequence[RadarPose] = (),
-    needs_adc: bool = False,
-    board: str | Path | Board | None = None,
-) -> Request:
-    """Checks a request and parses its sentences; takes milliseconds, so it is called before any long work.
-
-    The arguments are those of `Weaver.generate`; `needs_adc` says that ADC samples are held in memory although they
-    are not returned. Raises InputError for texts, frames, seconds, fps or places outside their limits, for a frame rate
-    that the chirps do not fit into, for more samples than memory holds, for a text that is not understood or of which
-    nothing fits the time, and for a recorded motion that is shorter than what is asked for.
-    """
-    if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
-        raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
-    if seed < 0:
-        raise InputError(f"the seed must be 0 or above, not {seed}")
-    texts = [text or ""] if text is None or isinstance(text, str) else list(text)
-    if not 1 <= len(texts) <= MOST_PEOPLE:
-        raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
-    is_empty = _asks_for_nobody(texts, motion, at, heading_rad, path_m, height_m, subject)
-    starts = _starts(at, len(texts))
-    check_poses(tuple(radar_poses))
-    config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
-    has_adc = keep_adc or needs_adc
-    asked = _frames_asked_for(frames, seconds, config)
-    if asked is not None:
-        _check_size(config, asked, has_adc)
-    parsed: list[MotionPlan | None] = [
-        None if is_empty or (motion is not None and index == 0) else parsed_text(one) for index, one in enumerate(texts)
-    ]
-    if path_m is not None:
-        parsed[0] = _along(parsed[0], path_m)
-    count = asked or min(_frames_needed(parsed, motion, config), _most_frames(config, has_adc))
-    if motion is not None:
-        check_lasts(motion, count * config.frame_period_s)
-    heights, subjects = _one_each(height_m, len(texts), "height"), _one_each(subject, len(texts), "subject")
-    people = (
-        ()
-        if is_empty
-        else tuple(
-            PersonRequest(
-                text=text,
-                plan=_scheduled(plan, count * config.frame_period_s),
-                start_m=start,
-                height_m=None if height is None else float(height),
-                subject=None if who is None else check_subject(who),
-            )
-            for text, plan, start, height, who in zip(texts, parsed, starts, heights, subjects, strict=True)
-        )
-    )
-    return Request(
-        people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
-        as_recorded=as_recorded, keep_adc=keep_adc, board=None if board is None else find_board(board, config, seed),
-        radar_poses=tuple(radar_poses),
+    text: str | Sequence[str] | None = option(
+        "what the person does; once more for each further person; 'nobody' is an empty room",
+        "TEXT", kind=str, many=True, group="motion",
+    )  # fmt: skip
+    motion: "MotionClip | None" = None  # the first person's recorded motion, which its text then only names
+    at: Place | Sequence[Place | None] | None = option(
+        "where the person starts: metres right of and ahead of the radar (default: chosen); of several people the first"
+        " --at is the first one's",
+        "X,Y", kind=Place, many=True,
+    )  # fmt: skip
+    heading_rad: float | None = option(
+        "the direction that the person faces first: 0 towards the radar, 90 to the picture's right, 180 away (default:"
+        " as the text says, else by seed)",
+        "DEG", kind=Heading, name="heading", rare=True,
+    )  # fmt: skip
+    path_m: Sequence[Place] | None = option(
+        "where the person walks: corners in metres right of and ahead of the radar",
+        "'X,Y X,Y ...'", kind=tuple[Place, ...], name="path", rare=True,
+    )  # fmt: skip
+    height_m: float | Sequence[float | None] | None = option(
+        "the person's height (default: as the text says, else by seed, or recorded); of several people once for each",
+        "M", kind=float, many=True, name="height",
+    )  # fmt: skip
+    subject: int | Sequence[int | None] | None = option(
+        "the person, 0 to 9999: skin, build, habits and usual height (default: by seed); of several people once for"
+        " each",
+        "N", kind=int, many=True,
+    )  # fmt: skip
+    as_recorded: bool = option(
+        "the motion's positions are the radar's own (x right, y away, z up); nothing is moved or checked",
+        default=False, rare=True,
+    )  # fmt: skip
+    frames: int | None = option(
+        "number of frames (default: as long as the sentence needs, at least 2 s, or as the recorded motion lasts)", "N",
+        group="radar",
+    )  # fmt: skip
+    seconds: float | None = option("instead of --frames: how long", "S")
+    fps: float | None = option("frames per second (default: the radar's own, 10 for awr1843)", "N")
+    radar_poses: "Sequence[RadarPose]" = option(
+        "where the radar stands, in metres right of, ahead of and above the camera, and degrees to which it is turned"
+        " to the right, up, and about its boresight (default: at the camera, level); once more for each further radar,"
+        " which records the same scene at the same time (docs/several_radars.md)",
+        "X,Y,Z,YAW,PITCH[,ROLL]", default=(), kind=radar_pose, many=True, name="radar-pose",
+    )  # fmt: skip
+    board: "str | Path | Board | None" = option(
+        "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
+        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
+        " default is the recording's own",
+        "typical|ideal|FILE", kind=Source,
+    )  # fmt: skip
+    seed: int = option("the same seed gives the same bits", "N", default=0, group="output")
+    keep_adc: bool = option(
+        "also write adc_data.bin, raw samples as a DCA1000 does", default=False, name="bin"
     )  # fmt: skip
 
-
-def _asks_for_nobody(texts: Sequence[str], motion: MotionClip | None, *placing: Any) -> bool:
-    """Whether an empty room is asked for. Raises InputError where somebody is to be in it all the same."""
-    if motion is not None or not any(says_nobody(one) for one in texts):
-        return False
-    if len(texts) > 1:
-        raise InputError(f"{NOBODY!r} is an empty room; leave it out where others are in it, or give it alone")
-    if any(one is not None for one in placing):
-        raise InputError(
-            f"{NOBODY!r} is an empty room: leave out place, heading, path, height and subject, or say what is done"
-        )
-    return True
-
-
-def _frames_asked_for(frames: int | None, seconds: float | None, config: RadarConfig) -> int | None:
-    """The number of frames where frames or seconds are given. Raises InputError for both, or outside the limits."""
-    if frames is not None and seconds is not None:
-        raise InputError("frames and seconds both say how long it lasts; give one of them")
-    if seconds is not None:
-        if not (math.isfinite(seconds) and 0 < seconds <= MAX_SECONDS):
-            raise InputError(f"seconds must be above 0 and up to {MAX_SECONDS:g}, not {seconds:g}")
-        frames = max(1, math.ceil(seconds / config.frame_period_s - 1e-6))
-        if frames > MAX_FRAMES:
-            raise InputError(
-                f"{seconds:g} s are {frames} frames at {1 / config.frame_period_s:.3g} a second; at most {MAX_FRAMES}"
-                f" ({MAX_FRAMES * config.frame_period_s:.4g} s) are made"
-            )
-    if frames is not None and not 1 <= frames <= MAX_FRAMES:
-        raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
-    return frames
-
-
-def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None, config: RadarConfig) -> int:
-    """As many frames as the recorded motion has time for, or as the longest sentence needs and two seconds have."""
-    if motion is not None:
-        return max(1, math.floor(motion.duration_s / config.frame_period_s + 1e-6))
-    needed_s = max([LEAST_SECONDS, *(natural_s(plan) for plan in plans if plan is not None)])
-    return max(1, math.ceil(needed_s / config.frame_period_s - 1e-6))
-
-
-def parsed_text(text: str) -> MotionPlan:
-    """The parsed sentence; activities of plug-ins are looked up where it is not understood without.
-
-    Raises InputError where less than half of it is understood, and for an empty place.
-    """
-    if says_nobody(text):
-        raise InputError(f"{text[:60]!r} is an empty place, a sequence of its own: generate --text {NOBODY}, alone")
-    try:
-        return parse_sentence(text)
-    except InputError:
-        load_activity_plugins()
-        return parse_sentence(text, in_part=True)
-
-
-def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
-    """The plan with its first walk along a path. Raises InputError where nobody walks, or for what is no path."""
-    points = tuple((float(x), float(y)) for x, y in path_m)
-    if len(points) < 2 or not all(math.isfinite(value) for point in points for value in point):
-        raise InputError("a path has at least two points, x and y in metres, such as '0,3 0,1.5 0.8,1.5'")
-    walks = [] if plan is None else [k for k, step in enumerate(plan.steps) if step.lower in ("walk", "jog")]
-    if plan is None or not walks:
-        raise InputError("the path is for a sentence in which the person walks or runs; say so, or leave out --path")
-    length_m = sum(math.dist(one, other) for one, other in itertools.pairwise(points))
-    if length_m < SHORTEST_PATH_M:
-        raise InputError(f"the path is {length_m:.2f} m long; a walk takes {SHORTEST_PATH_M:g} m at least")
-    steps = list(plan.steps)
-    walk = steps[walks[0]]
-    steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=round(length_m, 2), direction="", target="", place=None, arc_deg=0.0, count=0,
-    )  # fmt: skip
-    notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
-    if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:
-        notes.append(f"{walk.clause!r} is shown along the path given, whatever way it names")
-        for number in walk.clauses:
-            clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
-    return replace(
-        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=with_what_is_shown(clauses, steps)
-    )  # fmt: skip
-
-
-def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
-    if plan is None:
-        return None
-    has_path = any(step.route_m for step in plan.steps)  # which is gone along once
-    return schedule(plan if has_path else repeated(plan, duration_s), duration_s)
-
-
-def _most_frames(config: RadarConfig, has_adc: bool) -> int:
-    """The most frames that limits and memory allow."""
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    return max(1, min(MAX_FRAMES, MAX_BYTES // (8 * numbers), int(MAX_SECONDS / config.frame_period_s)))
-
-
-def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
-    if frames * config.frame_period_s > MAX_SECONDS:
-        raise InputError(
-            f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
-        )
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    most = MAX_BYTES // (8 * numbers)
-    if frames > most:
-        raise InputError(
-            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
-            f" {most} are made at a time"
-        )
-
-
-def _starts(at: Place | Sequence[Place | None] | None, people: int) -> list[Place | None]:
-    """Where each person starts, None = chosen. Raises InputError for what is no place, or for too many places."""
-    is_one = at is not None and all(isinstance(value, int | float) for value in at)
-    given: list[Any] = [] if at is None else [at] if is_one else list(at)
-    if len(given) > people or (is_one and people > 1):
-        raise InputError(f"{people} people need a list of at most {people} places to start, not {at}")
-    for place in given:
-        if place is not None and not (len(place) == 2 and all(math.isfinite(value) for value in place)):
-            raise InputError(f"the place to start must be two numbers, x and y in metres, not {place}")
-    return [(float(place[0]), float(place[1])) if place else None for place in given] + [None] * (people - len(given))
-
-
-def _one_each(given: Any, people: int, name: str) -> list[Any]:
-    """Each person's own value, None = chosen. Raises InputError for more values than people."""
-    values = [given] if given is None or isinstance(given, int | float) else list(given)
-    if len(values) > people:
-        raise InputError(f"{people} people need at most {people} {name}s, not {len(values)}")
-    if people > 1 and given is not None and values == [given]:
-        raise InputError(f"{people} people need a list of {name}s, one for each (--{name} for each)")
-    return values + [None] * (people - len(values))
-
-
-def _one_or_all(values: list[Any]) -> Any:
-    if len(values) == 1:
-        return values[0]
-    return None if all(value is None for value in values) else values
+    @property
+    def sentences(self) -> list[str]:
+        """One text for each person; that of a recorded motion may be empty."""
+        return [self.text or ""] if self.text is None or isinstance(self.text, str) else list(self.text)

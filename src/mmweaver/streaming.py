@@ -24,7 +24,7 @@ from mmweaver.generation import Room
 from mmweaver.methods import Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
-from mmweaver.request import parsed_text
+from mmweaver.parsed_request import parsed_text
 
 BLOCK_FRAMES = 10
 CHUNK_FRAMES = 10

@@ -22,7 +22,7 @@ from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
-from mmweaver.request import Request
+from mmweaver.parsed_request import ParsedRequest
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES
@@ -143,7 +143,7 @@ def _sample_room(weaver: Weaver, arguments: argparse.Namespace) -> Room:
     return _made["room"]
 
 
-def _signal(weaver: Weaver, request: Request, of_room: Room, people: Any = None) -> Generation:
+def _signal(weaver: Weaver, request: ParsedRequest, of_room: Room, people: Any = None) -> Generation:
     people = compose_request(request, of_room.scene) if people is None else people
     if "signal" not in _made:
         _made["signal"] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)

@@ -51,28 +51,28 @@ ROWS = (
         f"generate --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
         (add("--rgb", "{rgb}"),),
     ),
-    Row("--mesh brings the whole room", f"{OWN} --mesh {{mesh}}", (drop("--rgb", "--depth", "--camera"),)),
+    Row("--room brings the whole room", f"{OWN} --room {{mesh}}", (drop("--rgb", "--depth", "--camera"),)),
     Row(
-        "options of a mesh need --mesh FILE",
-        f"generate --mesh-up z --text 'a person waves' {SHORT}",
-        (add("--mesh", "{mesh}"),),
+        "options of a mesh need --room FILE",
+        f"generate --mesh-set up=z --text 'a person waves' {SHORT}",
+        (add("--room", "{mesh}"),),
     ),
-    Row("--further-photos are those of a scan", f"{OWN} --further-photos auto", (drop("--further-photos"),)),
-    Row("--views names its own photos", f"{OWN} --views {{views}}", (drop("--rgb", "--depth", "--camera"),)),
+    Row("--extra-views are those of a scan", f"{OWN} --extra-views auto", (drop("--extra-views"),)),
+    Row("--room names its own photos", f"{OWN} --room {{views}}", (drop("--rgb", "--depth", "--camera"),)),
     Row(
-        "--capture brings its own depth and camera",
-        f"generate --capture {{capture}} --depth {{depth}} --camera {{camera}} --depth-model auto"
+        "--room brings its own depth and camera",
+        f"generate --room {{capture}} --depth {{depth}} --camera {{camera}} --depth-model auto"
         f" --text 'a person waves' {SHORT}",
         (drop("--depth", "--camera", "--depth-model"),),
     ),
     Row(
-        "--further-photos are those of a scan",
-        f"generate --further-photos auto --text 'a person waves' {SHORT}",
-        (add("--capture", "{scan}"),),
+        "--extra-views are those of a scan",
+        f"generate --extra-views auto --text 'a person waves' {SHORT}",
+        (add("--room", "{scan}"),),
     ),
     Row(
         "are no numbers of photos",
-        f"generate --capture {{scan}} --further-photos many --text 'a person waves' {SHORT}",
+        f"generate --room {{scan}} --extra-views many --text 'a person waves' {SHORT}",
         (
             instead("write 60,120,180", "many", "60,120,180"),
             instead("or auto", "many", "auto"),
@@ -83,7 +83,7 @@ ROWS = (
         f"generate {PHOTO} {SHORT}",
         (
             add("--text"),
-            add("--motion", "{motion}", "--motion-fps", "30"),
+            add("--motion", "{motion}", "--motion-set", "fps=30"),
         ),
     ),
     Row(
@@ -142,12 +142,12 @@ ROWS = (
     ),
     Row(
         "is about a recorded motion; give --motion too",
-        f"{DEMO} --motion-unit cm --motion-fps 30",
+        f"{DEMO} --motion-set unit=cm --motion-set fps=30",
         (add("--motion", "{motion}"),),
     ),
     Row(
-        "--subframe, --antennas and --lanes belong to a radar",
-        "process {iq} --antennas boost --no-pictures --out out",
+        "--radar-set subframe=, --radar-set antennas=and --radar-set lanes=belong to a radar",
+        "process {iq} --radar-set antennas=boost --no-pictures --out out",
         (add("--radar", "{radar}"),),
     ),
     Row(

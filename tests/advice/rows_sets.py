@@ -9,7 +9,7 @@ ROOMS = "dataset out --layouts 1 --sequences 1 --dry-run"
 ROWS = (
     Row(
         "is for labelled sets; give --activities, too",
-        f"{ROOMS} --each 2",
+        f"{ROOMS} --per-class 2",
         (
             instead(
                 "give --activities",
@@ -24,7 +24,9 @@ ROWS = (
         (instead("leave it out", "--layouts 3"),),
     ),
     Row(
-        "--from-results takes sequences as they are", "dataset out --from-results {results} --each 2", (drop("--each"),)
+        "--from-results takes sequences as they are",
+        "dataset out --from-results {results} --per-class 2",
+        (drop("--per-class"),),
     ),
     Row(
         "give --room folders or --rgb and --depth, not both",
@@ -61,7 +63,7 @@ ROWS = (
     Row(
         "--captures fine-tunes existing weights",
         "train weaver --captures {walk} --out out",
-        (add("--from", "builtin"),),
+        (add("--weights", "builtin"),),
     ),
     Row(
         "--encoder is for recipe weaver on --data",

@@ -10,7 +10,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "mmweaver"
 ONLY_A_NAME = re.compile(r"-?-[a-z-]+=?|mmweaver [a-z ]+")
 # Declarations of options, whose texts are shown by --help alone; examples of the help are run by tests of the README.
-DECLARES = {"add_argument", "add_parser", "add_argument_group", "Parser", "Rare", "shown", "help_of", "add_command"}
+DECLARES = {"add_argument", "add_parser", "add_argument_group", "Parser", "Rare", "shown", "option"}
 HELP = {"EXAMPLES", "USAGE", "DESCRIPTION", "COMMANDS"}
 GAP = "\N{WHITE SQUARE}"  # stands for a value in a text
 NAMES = re.compile(rf"(?<![\w-])--[a-z{GAP}]|\bmmweaver (?:[a-z]|--)")

@@ -26,24 +26,8 @@ def test_functions_and_names():
         assert path.stem not in VAGUE, f"say what is in {path}"
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.FunctionDef):
-                length = (node.end_lineno or node.lineno) - node.lineno + 1
-                assert length <= 80, f"{path}: {node.name} has {length} lines"
                 names = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
                 assert "range" not in names, f"{path}: {node.name} shadows range"
-
-
-def test_no_public_class_and_no_file_has_a_name_twice():
-    """But for the command line, whose files are named after their commands."""
-    classes: dict[str, Path] = {}
-    files: dict[str, Path] = {}
-    for path in SOURCES:
-        if path.stem not in ("__init__", "__main__") and path.parent.name != "cli":
-            assert path.stem not in files, f"{path} and {files.get(path.stem)}"
-            files[path.stem] = path
-        for node in ast.parse(path.read_text()).body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                assert node.name not in classes, f"{node.name} in {path} and {classes.get(node.name)}"
-                classes[node.name] = path
 
 
 def test_shapes_are_checked_in_tests():

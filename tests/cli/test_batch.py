@@ -35,7 +35,7 @@ def test_a_folder_for_each_and_more_of_them_later(texts: Path, tmp_path: Path, c
     assert json.loads((out / "sequences.json").read_text()) == summary
     assert not (out / "0000" / "preview.png").exists()
     first = (out / "0000" / "radar.npz").stat()
-    assert main([*words, "--repeat", "2"]) == 0
+    assert main([*words, "--per-class", "2"]) == 0
     more = json.loads(capsys.readouterr().out)
     assert [one["seed"] for one in more["sequences"]] == [5, 5, 6, 6]
     assert "leaks" in more
@@ -65,35 +65,28 @@ def test_what_an_earlier_run_made_otherwise_is_not_touched(
     assert json.loads((tmp_path / "set" / "0001" / "meta.json").read_text())["method"] == "physics"
 
 
-def test_place_person_and_heading_may_be_given(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_place_person_and_heading_may_be_given(texts: Path, tmp_path: Path):
     given = ["--at", "0.1,2", "--heading", "40", "--subject", "7", "--height", "1.8"]
-    for draws in ("matched", "free"):
-        out = tmp_path / draws
-        assert main([*SHORT, "--texts", str(texts), "--draws", draws, *given, "--out", str(out)]) == 0
-        capsys.readouterr()
-        for name in ("0000", "0001"):
-            meta = json.loads((out / name / "meta.json").read_text())
-            assert (meta["at"], meta["placed"]["subject"], meta["placed"]["height_m"]) == ([0.1, 2.0], 7, 1.8)
-            assert meta["placed"]["heading_rad"] == pytest.approx(np.radians(40 - 90))
-    seeds = [json.loads((tmp_path / "free" / name / "meta.json").read_text())["seed"] for name in ("0000", "0001")]
-    assert seeds == [0, 1]
+    assert main([*SHORT, "--texts", str(texts), *given, "--out", str(tmp_path / "set")]) == 0
+    for name in ("0000", "0001"):
+        meta = json.loads((tmp_path / "set" / name / "meta.json").read_text())
+        assert (meta["at"], meta["placed"]["subject"], meta["placed"]["height_m"]) == ([0.1, 2.0], 7, 1.8)
+        assert meta["placed"]["heading_rad"] == pytest.approx(np.radians(40 - 90))
 
 
-def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path):
     file = tmp_path / "sentences.txt"
     file.write_text("a person stands\na person sits down, then stands up\n")
-    words = ["generate", "--demo", "--no-pictures", "--json", "--texts", str(file)]
-    for draws, lengths in (("matched", 1), ("free", 2)):
-        assert main([*words, "--draws", draws, "--out", str(tmp_path / draws)]) == 0
-        capsys.readouterr()
-        frames = {len(read_radar_npz(tmp_path / draws / name / "radar.npz").values) for name in ("0000", "0001")}
-        assert len(frames) == lengths
+    words = ["generate", "--demo", "--no-pictures", "--json", "--texts", str(file), "--out", str(tmp_path)]
+    assert main(words) == 0
+    frames = {len(read_radar_npz(tmp_path / name / "radar.npz").values) for name in ("0000", "0001")}
+    assert len(frames) == 1
 
 
 def test_a_store_in_place_of_folders(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     pytest.importorskip("zarr")
     out = tmp_path / "set"
-    words = ["generate", "--demo", "--frames", "4", "--texts", str(texts), "--repeat", "3", "--store", "--json"]
+    words = ["generate", "--demo", "--frames", "4", "--texts", str(texts), "--per-class", "3", "--store", "--json"]
     assert main([*words, "--out", str(out)]) == 0
     assert json.loads(capsys.readouterr().out)["leaks"]["verdict"].startswith("leaks: ")
     stored = read_activity_set(out)
@@ -136,7 +129,7 @@ def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys
     [
         ("a person stands\na person photosynthesises\n", [], "photosynthesises"),
         ("# nothing\n", [], "no sentence"),
-        ("a person stands\n", ["--repeat", "0"], "--repeat must be"),
+        ("a person stands\n", ["--per-class", "0"], "--per-class must be"),
         ("a person stands\n", ["--text", "a person waves"], "leave out --text"),
         ("a person stands\n", ["--at", "0,2", "--at", "1,2"], "give --at once"),
         ("a person stands\n", ["--at", "0,20"], "0,20"),

@@ -59,7 +59,7 @@ def test_a_demo_too_short_for_its_sentence_says_how_long_it_takes(tmp_path: Path
 def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     photo, _ = sample_photo()
     write_camera(tmp_path / "realsense", photo.intrinsics, [photo.depth_m] * 2, [photo.rgb] * 2)
-    argv = ["generate", "--capture", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
+    argv = ["generate", "--room", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
     assert main([*argv, "--frames", "2", "--no-pictures"]) == 0
     capsys.readouterr()
     meta = json.loads((tmp_path / "out" / "meta.json").read_text())
@@ -207,7 +207,7 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--frames", "1000000"], "2000"),
         ([*PICTURES, "--fps", "-1"], "fps"),
         ([*PICTURES, "--seed", "-1"], "seed"),
-        ([*PICTURES, "--at", "1"], "x,y"),
+        ([*PICTURES, "--at", "1"], "X,Y"),
         ([*PICTURES, "--at", "-50,2"], "-50"),
         ([*PICTURES, "--radar", "nope"], "awr1843"),
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),

@@ -9,7 +9,7 @@ from mmweaver.cli.main import main
 
 def test_a_sentence_is_read_and_acted_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out, picture = tmp_path / "m.npz", tmp_path / "m.png"
-    assert main(["motion", "a person bows, then waves", "--out", str(out), "--picture", str(picture), "--json"]) == 0
+    assert main(["motion", "a person bows, then waves", "--out", str(out), "--out", str(picture), "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert [step["name"] for step in facts["steps"]] == ["bowing", "waving"]
     assert [step["shown"] for step in facts["steps"]] == ["bowing once", "waving with one hand repeatedly"]
@@ -26,8 +26,8 @@ def test_a_sentence_is_read_and_acted_out(tmp_path: Path, capsys: pytest.Capture
     [
         (["a person flies"], "did you mean"),
         (["a person bows", "--out", "m.txt"], ".npz"),
-        (["a person bows", "--picture", "m.txt"], ".png"),
-        (["nobody", "--picture", "m.png"], "nobody is there"),
+        (["a person bows", "--out", "m.txt"], ".png"),
+        (["nobody", "--out", "m.png"], "nobody is there"),
         (["nobody", "--height", "1.8"], "nobody is there"),
         (["nobody", "--seconds", "0"], "not possible"),
         (["a person bows, then waves", "--seconds", "0.5"], "at least 0.7 s"),

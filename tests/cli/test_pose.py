@@ -57,7 +57,7 @@ def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: py
     write_points_npz(tmp_path / "nobody.npz", cloud.select(np.zeros(len(cloud.frame), bool)))
     assert main(["pose", str(model), "--points", str(tmp_path / "nobody.npz"), "--out", str(tmp_path / "none")]) == 2
     assert "nobody to give poses of" in capsys.readouterr().err
-    words = ["evaluate", "zero-shot-pose", "--recordings", str(tmp_path), "--model", str(model)]
+    words = ["evaluate", "zero-shot-pose", "--recordings", str(tmp_path), "--weights", str(model)]
     assert main([*words, "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)
     assert set(scores["mean"]) == {"network", "generated_mean_pose", "real_mean_pose", "network_calibrated"}

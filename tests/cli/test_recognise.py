@@ -41,7 +41,7 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
     assert main(["recognise", "score", str(model), "--recordings", folder, "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)
     assert {"window", "three_windows", "recording", "classes", "chance", "distance", "warning"} <= set(scores)
-    assert main(["evaluate", "zero-shot-activity", "--model", str(model), "--recordings", folder, "--json"]) == 0
+    assert main(["evaluate", "zero-shot-activity", "--weights", str(model), "--recordings", folder, "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert {name: again[name] for name in scores} == scores
     assert again["generated_windows"] > 0
@@ -62,7 +62,7 @@ def test_confusions_are_drawn_from_the_sequences_that_trained(model: Path, capsy
     moved = next(label for label in settings.labels if label != "rest")
     people = [one for one in drawn_sequences(settings, 2, first=30) if one.label == moved]
     write_recordings(model.parent / "people", [replace(one, label="rest") for one in people])
-    words = ["recognise", "score", str(model), "--recordings", str(model.parent / "people"), "--picture"]
+    words = ["recognise", "score", str(model), "--recordings", str(model.parent / "people"), "--out"]
     assert main([*words, str(model.parent / "seen.png")]) == 2
     assert "sequences that the recogniser learned from" in capsys.readouterr().err
     for index, one in enumerate(drawn_sequences(settings, 2)):
@@ -71,7 +71,7 @@ def test_confusions_are_drawn_from_the_sequences_that_trained(model: Path, capsy
     assert "balanced accuracy" in capsys.readouterr().out
     assert (model.parent / "seen.png").read_bytes()[:4] == b"\x89PNG"
     assert main([*words, str(model.parent / "seen.jpg")]) == 2
-    assert main(["recognise", "run", str(model), "--points", "x.npz", "--picture", "seen.png"]) == 2
+    assert main(["recognise", "run", str(model), "--points", "x.npz", "--out", "seen.png"]) == 2
 
 
 def test_the_largest_confusions_of_generated_people_are_named():
@@ -111,7 +111,7 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
         "recognise",
         "train",
         str(model.parent / "task.toml"),
-        "--labelled",
+        "--recordings",
         str(logs),
         "--sequences",
         "4",
@@ -127,7 +127,6 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
         (["train", "task.toml"], "needs --out"),
         (["score", "model", "--points", "a"], "needs --recordings"),
         (["run", "model", "--points", "a", "--out", "b"], "--out is no option of recognise run"),
-        (["score", "model", "--recordings", "a", "--labelled", "b"], "--labelled is no option of recognise score"),
         (["run", "nowhere", "--points", "a"], "nowhere does not exist; give a folder of mmweaver recognise train"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
     ],

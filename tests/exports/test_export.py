@@ -134,9 +134,9 @@ def test_the_command_exports_many(result_folder: Path, tmp_path: Path, capsys: p
     assert main(["export", str(result_folder.parent), "--to", "radhar", "--out", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / result_folder.name / "radhar.txt").is_file()
     assert "points as RadHAR's text" in capsys.readouterr().out
-    assert main(["export", "--list"]) == 0
+    assert main(["export"]) == 0
     assert "hupr" in capsys.readouterr().out
-    assert main(["export", "--list", "--json"]) == 0
+    assert main(["export", "--json"]) == 0
     assert {one["format"]: one["needs_samples"] for one in json.loads(capsys.readouterr().out)}["hupr"] is True
 
 

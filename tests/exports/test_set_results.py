@@ -60,7 +60,9 @@ def test_a_set_in_other_formats(activity_set: Path, tmp_path: Path, capsys: pyte
     assert not (tmp_path / "hupr").exists()
 
 
-@pytest.mark.parametrize(("words", "says"), [(["--each", "3"], "leave out --each"), ([], "holds no result folders")])
+@pytest.mark.parametrize(
+    ("words", "says"), [(["--per-class", "3"], "leave out --per-class"), ([], "holds no result folders")]
+)
 def test_bad_sources_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "source").mkdir()
     source, out = str(tmp_path / "source"), tmp_path / "set"

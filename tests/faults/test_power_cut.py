@@ -61,7 +61,7 @@ def files(folder: Path, recording: Path) -> None:
 
 def appended(folder: Path, recording: Path) -> None:
     """To a file that begins so, and once more."""
-    words = ["compress", str(recording / "radar.npz"), "-o", str(folder / "a.mmw"), "--append", "--effort", "fast"]
+    words = ["compress", str(recording / "radar.npz"), "-o", str(folder / "a.mmw"), "--append", "--preset", "fast"]
     for _ in range(2):
         assert main([*words, "--bytes", "3000", "--quiet"]) == 0
 

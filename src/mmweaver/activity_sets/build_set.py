@@ -53,7 +53,7 @@ from mmweaver.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
 from mmweaver.generate import Weaver, compose_request
 from mmweaver.generation import Room
-from mmweaver.request import Request
+from mmweaver.parsed_request import ParsedRequest
 
 PARTS = "parts"
 SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test
@@ -97,8 +97,8 @@ class SetBuilder:
         self._board = find_board(options.board, weaver.radar, options.seed)
         if options.iq == "none" and not weaver.is_standard:
             raise InputError(
-                "signals are made on demand by the methods as they are installed; leave out weights, bounces and"
-                " clutter of your own, or store signals (--iq float16)"
+                "signals are made on demand by the methods as they are installed; leave out weights and"
+                " propagation of your own, or store signals (--iq float16)"
             )
         if options.iq == "none" and any(room.background is not None for room in self.rooms):
             raise InputError("signals on demand have no background recording; leave it out, or store signals")
@@ -131,7 +131,7 @@ class SetBuilder:
     def _placed(self, draw: Draw) -> Draw:
         return draw if self.given is None else self.given.applied(draw)
 
-    def request_of(self, one: PlannedSequence) -> Request:
+    def request_of(self, one: PlannedSequence) -> ParsedRequest:
         """The request of one sequence."""
         draw = one.draw
         height_m = None if self.given is None else self.given.height_m

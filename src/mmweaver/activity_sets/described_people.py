@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mmweaver.motion.language.described_person import DescribedPerson
-from mmweaver.request import Request
+from mmweaver.parsed_request import ParsedRequest
 
 
-def differing_descriptions(requests: Iterable[Request]) -> list[str]:
+def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
     """The words of the sentences that describe their person; none where all describe the same kind of person."""
     people = [_described(request) for request in requests]
     if len({replace(one, words="") for one in people}) < 2:
@@ -15,7 +15,7 @@ def differing_descriptions(requests: Iterable[Request]) -> list[str]:
     return list(dict.fromkeys(one.words for one in people if one.is_described))
 
 
-def done_by_anybody(request: Request) -> Request:
+def done_by_anybody(request: ParsedRequest) -> ParsedRequest:
     """The request without what its sentence says of the person: the subject alone decides who does it."""
     first, *others = request.people
     if first.plan is None:
@@ -24,6 +24,6 @@ def done_by_anybody(request: Request) -> Request:
     return replace(request, people=(replace(first, plan=plan), *others))
 
 
-def _described(request: Request) -> DescribedPerson:
+def _described(request: ParsedRequest) -> DescribedPerson:
     plan = request.people[0].plan
     return DescribedPerson() if plan is None else plan.person

@@ -16,7 +16,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.formats.npz_files import read_poses_npz
 from mmweaver.generate import compose_request
-from mmweaver.request import Request
+from mmweaver.parsed_request import ParsedRequest
 
 PLACES, SUBJECTS = 12, 10
 TRIES = 3  # seeds with which a sentence is tried wherever the planner likes
@@ -50,6 +50,11 @@ def heading_rad(degrees: float) -> float:
     return math.radians(degrees) - math.pi / 2
 
 
+def heading_deg_of(radians: float) -> float:
+    """The inverse of `heading_rad`."""
+    return round(math.degrees(radians) + 90, 10)
+
+
 def heading_deg(draw: Draw) -> float:
     """The heading of a draw as the command line takes it.
 
@@ -60,14 +65,14 @@ def heading_deg(draw: Draw) -> float:
     return round(math.degrees(draw.heading_rad) + 90, 1)
 
 
-def placed(request: Request, draw: Draw, height_m: float | None = None) -> Request:
+def placed(request: ParsedRequest, draw: Draw, height_m: float | None = None) -> ParsedRequest:
     """The request of one person with the place, heading, person and seed of a draw."""
     person = replace(request.people[0], start_m=draw.start_m, subject=draw.subject, height_m=height_m)
     return replace(request, people=(person,), heading_rad=draw.heading_rad, seed=draw.seed)
 
 
 def sentence_draws(
-    requests: dict[str, Request], scene: Scene, number: int, seed: int, given: GivenPlacing
+    requests: dict[str, ParsedRequest], scene: Scene, number: int, seed: int, given: GivenPlacing
 ) -> tuple[list[dict[str, Draw]], dict[str, str]]:
     """`number` times the draw of each sentence, and why each sentence that the room has no place for is left out.
 
@@ -93,12 +98,12 @@ def sentence_draws(
     ], refused
 
 
-def without_place(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
+def without_place(requests: dict[str, ParsedRequest], scene: Scene, seed: int) -> dict[str, str]:
     """Why each sentence that the room has no place for wherever the planner tries cannot be made, by sentence."""
     return {text: why for text, request in requests.items() if (why := _impossible(request, scene, seed))}
 
 
-def _impossible(request: Request, scene: Scene, seed: int) -> str:
+def _impossible(request: ParsedRequest, scene: Scene, seed: int) -> str:
     """Why a sentence has no place wherever the planner tries; "" where it has one."""
     why = ""
     for number in range(TRIES):
@@ -116,7 +121,7 @@ def order_of(texts: Sequence[str], draw: int, seed: int) -> list[str]:
 
 
 def folder_leaks(
-    folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[Request]
+    folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[ParsedRequest]
 ) -> dict[str, Any]:
     """The leak report of result folders: what predicts their sentences without a look at the radar signal."""
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]

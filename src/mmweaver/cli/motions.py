@@ -1,8 +1,9 @@
 """mmweaver motions: what a sentence may ask for, with an example of each."""
 
-import argparse
 import json
-from typing import Any
+
+from mmweaver.cli.arguments import General
+from mmweaver.core.options import option, options
 
 EXAMPLES = """examples:
   mmweaver motions
@@ -10,25 +11,21 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "motions", help="list what a person can do, with example sentences", epilog=EXAMPLES,
-        description="Lists every activity that a sentence may name, with an example and its natural time.",
-    )  # fmt: skip
-    parser.add_argument("--json", action="store_true", help="print them for machines")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(General):
+    """Lists every activity that a sentence may name, with an example and its natural time."""
+
+    json: bool = option("print them for machines", default=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the table of activities on stdout."""
     from mmweaver.motion.language.activities import BY_KEY
     from mmweaver.motion.register_activity import load_activity_plugins
 
     load_activity_plugins()
     body, hands = ([one for one in BY_KEY.values() if one.hands == is_hands] for is_hands in (False, True))
-    if arguments.json:
+    if asked.json:
         rows = [
             {
                 "activity": activity.key,

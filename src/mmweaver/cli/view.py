@@ -1,14 +1,15 @@
 """mmweaver view: a result folder as one HTML file that plays in any browser."""
 
-import argparse
 import subprocess
 import sys
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.cli.arguments import General
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
+from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
@@ -22,51 +23,48 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "view", help="play a result folder in the browser", epilog=EXAMPLES,
-        description="Writes one HTML file with the result inside: people, points and maps over time. It needs no"
-        " server and no network connection, so it can be sent to others.",
+@options
+class Options(General):
+    """Writes one HTML file with the result inside: people, points and maps over time. It needs no server and no network
+    connection, so it can be sent to others.
+    """
+
+    folder: Path = option(
+        "a folder of mmweaver generate or mmweaver process, or a Rerun recording of mmweaver export", "DIR|RRD",
+        default=MISSING, positional=True,
     )  # fmt: skip
-    parser.add_argument(
-        "folder", type=Path, metavar="DIR|RRD",
-        help="a folder of mmweaver generate or mmweaver process, or a Rerun recording of mmweaver export",
-    )  # fmt: skip
-    parser.add_argument("-o", "--out", type=Path, metavar="HTML", help="the file (default: view.html in the folder)")
-    parser.add_argument("--overwrite", action="store_true", help="replace the file where it exists")
-    parser.add_argument("--no-browser", action="store_true", help="do not open it")
-    parser.set_defaults(run=run)
-    return parser
+    out: Path | None = option("the file (default: view.html in the folder)", "HTML", short="-o")
+    overwrite: bool = option("replace the file where it exists", default=False)
+    no_browser: bool = option("do not open it", default=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Writes the page, or opens Rerun's viewer. Raises InputError for a folder that holds no result."""
-    if arguments.folder.suffix == ".rrd" and not arguments.folder.is_dir():
-        return _open_rerun(arguments)
-    out = arguments.out or arguments.folder / "view.html"
-    check_output_file(out, overwrite=arguments.overwrite)
+    if asked.folder.suffix == ".rrd" and not asked.folder.is_dir():
+        return _open_rerun(asked)
+    out = asked.out or asked.folder / "view.html"
+    check_output_file(out, overwrite=asked.overwrite)
     from mmweaver.playback.html_page import write_page
     from mmweaver.playback.sequence import make_playback
     from mmweaver.stored_result import read_result
 
-    stored = read_result(arguments.folder)
+    stored = read_result(asked.folder)
     sequence = make_playback(stored.cube, stored.points, stored.poses, stored.meta)
     write_page(out, sequence, _room(stored), stored.title)
     print(out)
-    if not arguments.no_browser:
+    if not asked.no_browser:
         webbrowser.open(out.resolve().as_uri())
     return 0
 
 
-def _open_rerun(arguments: argparse.Namespace) -> int:
+def _open_rerun(asked: Options) -> int:
     """Rerun's own viewer, of the installed package; nothing is fetched."""
-    if arguments.out is not None or arguments.no_browser:
-        raise InputError(f"{arguments.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
-    if not arguments.folder.is_file():
-        raise InputError(f"{arguments.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
+    if asked.out is not None or asked.no_browser:
+        raise InputError(f"{asked.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
+    if not asked.folder.is_file():
+        raise InputError(f"{asked.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
     need("rerun", "Rerun's viewer", "rerun")
-    return subprocess.run([sys.executable, "-m", "rerun", str(arguments.folder)], check=False).returncode
+    return subprocess.run([sys.executable, "-m", "rerun", str(asked.folder)], check=False).returncode
 
 
 def _room(stored: "StoredResult") -> "Playback | None":

@@ -74,7 +74,9 @@ def _chirps(name: str, setup: Any, sub_frame: int | None) -> TiChirps:
         raise InputError("it is a cascade of several chips, which cannot be read; use one chip")
     frames = _frames(setup)
     if sub_frame is None and len(frames) > 1:
-        raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")
+        raise InputError(
+            f"it has {len(frames)} sub-frames; choose one of 0 to {len(frames) - 1}: --radar-set subframe=N"
+        )
     chosen = sub_frame or 0
     if not 0 <= chosen < len(frames):
         raise InputError(f"it has sub-frames 0 to {len(frames) - 1}, not {chosen}")

@@ -71,7 +71,7 @@ def read_antennas(name_or_path: str) -> AntennaTable:
 def with_options(config: RadarConfig, options: RadarOptions) -> RadarConfig:
     """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
     if options.sub_frame is not None:
-        raise InputError(f"radar {config.name!r} has no sub-frames; leave out --subframe")
+        raise InputError(f"radar {config.name!r} has no sub-frames; leave out --radar-set subframe=N")
     if options.lanes is not None:
         config = replace(config, lvds_lanes=options.lanes)
     table = options.antennas

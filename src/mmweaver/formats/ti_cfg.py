@@ -203,14 +203,16 @@ class Frame:
 def _frame(lines: dict[str, list[Line]], sub_frame: int | None) -> Frame:
     if "advFrameCfg" not in lines:
         if sub_frame is not None:
-            raise InputError("it has one plain frame (frameCfg) and no sub-frames; leave out --subframe")
+            raise InputError("it has one plain frame (frameCfg) and no sub-frames; leave out --radar-set subframe=N")
         line = lines["frameCfg"][-1]
         first, last, loops = (whole(line, "frameCfg", at) for at in range(3))
         period_ms = line.values[5 if len(line.values) >= MCU_FRAME_NUMBERS else 4]
         return Frame(index=None, first=first, last=last, num_loops=loops, period_ms=period_ms)
     frames = _sub_frames(lines)
     if sub_frame is None and len(frames) > 1:
-        raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")
+        raise InputError(
+            f"it has {len(frames)} sub-frames; choose one of 0 to {len(frames) - 1}: --radar-set subframe=N"
+        )
     chosen = sub_frame or 0
     if not 0 <= chosen < len(frames):
         raise InputError(f"it has sub-frames 0 to {len(frames) - 1}, not {chosen}")

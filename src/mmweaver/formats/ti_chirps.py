@@ -153,7 +153,7 @@ def _weights(chirps: TiChirps, board: AntennaTable) -> tuple[Chirp, ...]:
         if mask == 0 or mask >> num_tx:
             raise InputError(
                 f"a chirp with transmitter mask {mask} must fire some of the {num_tx} transmitters of board"
-                f" {board.name!r}; another board: --antennas"
+                f" {board.name!r}; another board: --radar-set antennas=NAME"
             )
         if mask & ~chirps.tx_mask:
             raise InputError(

@@ -177,7 +177,7 @@ def _warnings(recording: Recording, strict: bool) -> list[str]:
     times_s = None if recording.packets is None else recording.packets.frame_time_s
     found = implausible(recording.adc, recording.cube, file, iq_order=recording.iq_order, frame_time_s=times_s)
     if found and strict:
-        raise InputError(f"{recording.path}: {'; '.join(found)} (--strict)")
+        raise InputError(f"{recording.path}: {'; '.join(found)} (strict)")
     return found
 
 

@@ -126,7 +126,7 @@ def _read(
         raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
     check_exists(path, "a recording or a capture folder")
     if path.is_dir() and layout is None:
-        given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
+        given = {"--radar": radar, "--layout": axes, "--tx-order": tx_order, "--iq-order": iq_order}
         found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames, mapped)
         if found is not None:
             return found

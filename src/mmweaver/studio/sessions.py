@@ -5,7 +5,8 @@ import shutil
 import tempfile
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from time import monotonic
@@ -13,7 +14,7 @@ from time import monotonic
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.playback.points_playback import point_log_playback
@@ -35,10 +36,8 @@ class Result:
     meta: dict
     frame_period_s: float = 0.1
     radar: str = ""
-    scene: Scene | None = None
     generation: Generation | None = None
     with_samples: Callable[[], Generation] | None = None  # generates the same again, keeping its ADC samples
-    asked: dict = field(default_factory=dict)  # the request, with `command` and `python`
 
     @property
     def num_bytes(self) -> int:
@@ -60,14 +59,19 @@ class Result:
         return make_playback(self.cube, self.points, self.poses, self.meta)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True, eq=False)
 class BroughtRoom:
-    """A room that a session brought: its options of `mmweaver generate`, and the call of `Weaver` that reads it."""
+    """A room, its options of `mmweaver generate`, and the call of `Weaver` that reads it."""
 
     label: str
-    room: Room
     options: tuple[str, ...]
     call: str
+    read: Callable[[], Room]
+
+    @cached_property
+    def room(self) -> Room:
+        """The room, read at its first use. Raises InputError."""
+        return self.read()
 
 
 class Session:
@@ -138,11 +142,6 @@ class Sessions:
             raise InputError("this session has ended; load the page again")
         session.used_s = monotonic()
         return session
-
-    def all(self) -> list[Session]:
-        """Those that are open."""
-        with self._lock:
-            return list(self._open.values())
 
     def end(self, session: Session) -> None:
         """Ends a session."""

@@ -77,4 +77,4 @@ def points_kind(path: Path) -> str:
     if suffix == ".bin" and len(head) % 40 == 0:
         return "mmfi"
     known = "; ".join(KINDS.values())
-    raise InputError(f"{path} is no point cloud that is known: {known}; name its kind with --kind")
+    raise InputError(f"{path} is no point cloud that is known: {known}; name its kind with --layout")
