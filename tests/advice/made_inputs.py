@@ -69,7 +69,7 @@ def make(folder: Path) -> dict[str, Any]:
     made = {path.stem: path for path in folder.iterdir()} | {"walk": _result(folder / "walk")}
     for name, words in (
         ("processed", "process {iq} --radar {radar} --no-pictures --no-analysis --out {folder}/processed"),
-        ("packed.mmwl", "compress {iq} --radar {radar} --lossless -o {folder}/packed.mmwl"),
+        ("packed.mmwl", "compress {iq} --radar {radar} --quality lossless -o {folder}/packed.mmwl"),
     ):
         assert main([word.format(folder=folder, **made) for word in (words + " --quiet").split()]) == 0
         made[Path(name).stem] = folder / name

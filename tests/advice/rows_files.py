@@ -53,7 +53,7 @@ ROWS = (
         "the echoes of a chirp gather at fewer ranges",
         f"{PROCESS} --overwrite --radar-set lanes=4",
         (
-            add("--radar-set lanes="),
+            plus("--radar-set lanes=2", "--radar-set", "lanes=2"),
             instead("another --radar", "--radar-set lanes=4"),
         ),
     ),
@@ -107,19 +107,19 @@ ROWS = (
         before=lambda: _written("empty.json", "[]"),
     ),
     Row(
-        "it has □ sub-frames; choose one with --radar-set subframe=",
+        "it has □ sub-frames; choose one of 0 to □: --radar-set subframe=",
         "radar {sub_frames}",
-        (add("--radar-set subframe="),),
+        (plus("--radar-set subframe=N", "--radar-set", "subframe=0"),),
     ),
     Row(
         "it has one plain frame (frameCfg)",
         "radar {best_range} --radar-set subframe=0",
-        (drop("--radar-set subframe="),),
+        (drop("--radar-set"),),
     ),
     Row(
         "has no sub-frames; leave out --radar-set subframe=",
         "radar awr1843 --radar-set subframe=0",
-        (drop("--radar-set subframe="),),
+        (drop("--radar-set"),),
     ),
     Row(
         "which cannot be read; describe its chirp in a radar.json",
@@ -134,7 +134,7 @@ ROWS = (
     Row(
         "another board: --radar-set antennas=",
         "radar {made} --radar-set antennas=boost1642",
-        (add("--radar-set", "antennas=ods"),),
+        (plus("--radar-set antennas=", "--radar-set", "antennas=ods"),),
     ),
     Row(
         "has no cfarCfg",
@@ -224,7 +224,7 @@ ROWS = (
     Row(
         "give a result folder, --to FORMAT and --out DIR",
         "export {walk}",
-        (first("mmweaver export --list", plus("--to FORMAT and --out DIR", "--to", "mat", "--out", "out")),),
+        (first("mmweaver export", plus("--to FORMAT and --out DIR", "--to", "mat", "--out", "out")),),
     ),
     Row(
         "holds no result; give a folder of mmweaver generate",
@@ -245,7 +245,6 @@ ROWS = (
         (instead("give a folder of mmweaver generate", "{nothing}", "{walk}"),),
     ),
     Row("--sequence is of a labelled set", "plot {walk} --sequence 1 -o out.png", (drop("--sequence"),)),
-    Row("--frames are numbers such as", "plot {walk} --frames first -o out.png", (instead("such as 0", "first", "0"),)),
     Row(
         "is opened in Rerun's viewer",
         "view absent.rrd --no-browser",

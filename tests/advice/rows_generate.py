@@ -41,34 +41,22 @@ ROWS = (
     Row(
         "--rgb needs --depth too",
         f"generate --rgb {{rgb}} --camera {{camera}} --text 'a person waves' {SHORT}",
-        (
-            add("--depth", "{depth}"),
-            add("--depth-model"),
-        ),
+        (add("--depth", "{depth}"),),
     ),
     Row(
         "--depth needs --rgb too",
         f"generate --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
         (add("--rgb", "{rgb}"),),
     ),
-    Row("--room brings the whole room", f"{OWN} --room {{mesh}}", (drop("--rgb", "--depth", "--camera"),)),
     Row(
-        "options of a mesh need --room FILE",
-        f"generate --mesh-set up=z --text 'a person waves' {SHORT}",
-        (add("--room", "{mesh}"),),
-    ),
-    Row("--extra-views are those of a scan", f"{OWN} --extra-views auto", (drop("--extra-views"),)),
-    Row("--room names its own photos", f"{OWN} --room {{views}}", (drop("--rgb", "--depth", "--camera"),)),
-    Row(
-        "--room brings its own depth and camera",
-        f"generate --room {{capture}} --depth {{depth}} --camera {{camera}} --depth-model auto"
-        f" --text 'a person waves' {SHORT}",
-        (drop("--depth", "--camera", "--depth-model"),),
+        "--room brings the whole room",
+        f"generate --room {{views}} --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
+        (drop("--depth", "--camera"),),
     ),
     Row(
-        "--extra-views are those of a scan",
-        f"generate --extra-views auto --text 'a person waves' {SHORT}",
-        (add("--room", "{scan}"),),
+        "--photo, --extra-views and --mesh-set are of a scan or mesh",
+        f"generate --rgb {{rgb}} --depth {{depth}} --extra-views auto --text 'a person waves' {SHORT}",
+        (instead("give --room", "--rgb {rgb} --depth {depth}", "--room {scan}"),),
     ),
     Row(
         "are no numbers of photos",
@@ -90,14 +78,6 @@ ROWS = (
         "where to? give --out",
         f"generate {PHOTO} --text 'a person waves' --frames 1 --no-pictures",
         (add("--out", "out"),),
-    ),
-    Row(
-        "--html shows a radar at the camera",
-        f"{DEMO} --radar-pose 0,0,0,0,0 --html page.html",
-        (
-            drop("--radar-pose"),
-            drop("--html"),
-        ),
     ),
     Row("holds a stream already", STREAM, (instead("choose another --out", "out", "other"),), before=_a_stream),
     Row(
@@ -141,14 +121,19 @@ ROWS = (
         ),
     ),
     Row(
-        "is about a recorded motion; give --motion too",
+        "--motion-set is about a recorded motion; give --motion too",
         f"{DEMO} --motion-set unit=cm --motion-set fps=30",
         (add("--motion", "{motion}"),),
     ),
     Row(
-        "--radar-set subframe=, --radar-set antennas=and --radar-set lanes=belong to a radar",
+        "--radar-set belongs to a radar",
         "process {iq} --radar-set antennas=boost --no-pictures --out out",
         (add("--radar", "{radar}"),),
+    ),
+    Row(
+        "--as-recorded is about a recorded motion; give --motion too",
+        f"{DEMO} --as-recorded --text 'a person waves'",
+        (drop("--as-recorded"),),
     ),
     Row(
         "holds no □; give a folder of mmweaver train",
@@ -172,7 +157,9 @@ ROWS = (
         f"{BATCH} --at 0,2 --at 0.5,2",
         (instead("give --at once", "--at 0.5,2"),),
     ),
-    Row("--repeat must be 1 to", f"{BATCH} --repeat 100000", (instead("--repeat must be 1 to", "100000", "1"),)),
+    Row(
+        "--per-class must be 1 to", f"{BATCH} --per-class 100000", (instead("--per-class must be 1 to", "100000", "1"),)
+    ),
     Row(
         "an empty room is no sequence of a person",
         f"generate --demo --texts {{with_nobody}} {SHORT}",
@@ -180,7 +167,7 @@ ROWS = (
     ),
     Row(
         "holds something else; choose another --out",
-        f"{BATCH} --draws free",
+        f"{BATCH}",
         (
             instead("choose another --out", "out", "other"),
             flag("--overwrite"),
@@ -195,14 +182,6 @@ ROWS = (
     ),
     Row("--store keeps cubes at the radar's frame rate", f"{BATCH} --store --fps 5", (drop("--fps"), drop("--store"))),
     Row(
-        "--store holds cubes of matched draws",
-        f"{BATCH} --store --draws free",
-        (
-            drop("--draws"),
-            drop("--store"),
-        ),
-    ),
-    Row(
         "--store holds the points of our own detector",
         f"{BATCH} --store --points firmware",
         (
@@ -210,10 +189,11 @@ ROWS = (
             drop("--store"),
         ),
     ),
+    Row("--store holds cubes alone", f"{BATCH} --store --bin", (drop("--bin"), drop("--store"))),
+    Row("--per-class is for many sequences", f"{DEMO} --per-class 2", (add("--texts", "{texts}"),)),
     # a stream
-    Row("--stream takes sentences", f"{STREAM} --html page.html", (drop("--html"), drop("--stream"))),
+    Row("--stream takes sentences", f"{STREAM} --seconds 1", (drop("--seconds"), drop("--stream"))),
     Row("--stream is of one person", f"{STREAM} --at 0,2 --at 0.5,2", (instead("give --at once", "--at 0.5,2"),)),
-    Row("--stream says every sentence once", f"{STREAM} --repeat 2", (drop("--repeat"),)),
     Row(
         "--stream needs sentences",
         f"generate --demo --stream {SHORT}",

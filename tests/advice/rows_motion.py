@@ -97,20 +97,28 @@ ROWS = (
         f"{ONE} --motion {{motion}}",
         (plus("HumanML3D and MotionGPT: 20", "--motion-set", "fps=20"),),
     ),
-    Row("frames a second, not", f"{ONE} --motion {{motion}} --motion-set fps=0", (add("--motion-set", "fps=30"),)),
-    Row("is a person of", f"{ONE} --motion {{giant}} --motion-set fps=30", (add("--motion-set", "unit=0.1"),)),
+    Row(
+        "frames a second, not",
+        f"{ONE} --motion {{motion}} --motion-set fps=0",
+        (plus("--motion-set fps=", "--motion-set", "fps=30"),),
+    ),
+    Row(
+        "is a person of",
+        f"{ONE} --motion {{giant}} --motion-set fps=30",
+        (plus("--motion-set unit=", "--motion-set", "unit=0.1"),),
+    ),
     Row(
         "the upward axis cannot be estimated",
         f"{ONE} --motion {{leaning}} --motion-set fps=30",
         (
-            add("--motion-set", "up=y"),
+            plus("--motion-set up=", "--motion-set", "up=y"),
             plus("or z", "--motion-set", "up=z"),
         ),
     ),
     Row(
         "so it cannot start at",
         f"{ONE} --motion {{motion}} --motion-set fps=30 --motion-set start=50",
-        (add("--motion-set", "start=0.1"),),
+        (plus("--motion-set start=", "--motion-set", "start=0.1"),),
     ),
     Row(
         "then it sets the length, or give a longer motion",
@@ -120,15 +128,15 @@ ROWS = (
     Row(
         "holds a single motion, so there is no clip □; leave out --motion-set clip=",
         f"{ONE} --motion {{motion}} --motion-set fps=30 --motion-set clip=b",
-        (drop("--motion-set clip="),),
+        (instead("leave out --motion-set clip=NAME", "--motion-set clip=b"),),
     ),
     Row(
-        "motions; choose one with --motion-set clip=",
+        "motions; choose one, for example --motion-set clip=",
         f"{ONE} --motion {{several}} --motion-set fps=30",
-        (add("--motion-set clip="),),
+        (plus("for example --motion-set clip=", "--motion-set", "clip=a/walk"),),
     ),
     Row(
-        "another --motion-set start=, --at or --heading",
+        "another --motion-set start=S, --at or --heading",
         f"{DEMO} --motion {{far}} --motion-set fps=30 --motion-set unit=m --motion-set up=y",
         (
             add("--frames", "2"),

@@ -29,21 +29,9 @@ ROWS = (
         (drop("--per-class"),),
     ),
     Row(
-        "give --room folders or --rgb and --depth, not both",
-        f"{SET} --room {{own_room}} --rgb {{rgb}} --depth {{depth}}",
-        (
-            drop("--room"),
-            drop("--rgb", "--depth"),
-        ),
-    ),
-    Row("--rgb needs --depth, too", f"{SET} --rgb {{rgb}}", (add("--depth", "{depth}"),)),
-    Row(
         "which room? give --room DIR",
         SET,
-        (
-            add("--room", "{own_room}"),
-            instead("or --rgb and --depth", "--dry-run", "--dry-run --rgb {rgb} --depth {depth}"),
-        ),
+        (add("--room", "{own_room}"),),
     ),
     Row(
         "give what mmweaver generate --texts wrote",
@@ -61,23 +49,23 @@ ROWS = (
     # training: the options alone
     Row("what to train on? give --data", "train weaver --out out", (add("--data", "{walk}"),)),
     Row(
-        "--captures fine-tunes existing weights",
-        "train weaver --captures {walk} --out out",
+        "--recordings fine-tunes existing weights",
+        "train weaver --recordings {walk} --out out",
         (add("--weights", "builtin"),),
     ),
     Row(
         "--encoder is for recipe weaver on --data",
-        "train weaver --captures {walk} --from builtin --encoder none --out out",
+        "train weaver --recordings {walk} --weights builtin --encoder none --out out",
         (drop("--encoder"),),
     ),
     Row(
-        "--rgb, --depth and --camera are the photo of --captures",
+        "--rgb, --depth and --camera are the photo of --recordings",
         f"{TRAIN} --rgb {{rgb}} --depth {{depth}}",
-        (instead("are the photo of --captures", "--rgb {rgb} --depth {depth}"),),
+        (instead("are the photo of --recordings", "--rgb {rgb} --depth {depth}"),),
     ),
     Row(
         "--rgb and --depth belong together",
-        "train weaver --captures {walk} --from builtin --rgb {rgb} --out out",
+        "train weaver --recordings {walk} --weights builtin --rgb {rgb} --out out",
         (add("--depth", "{depth}"),),
     ),
     Row(
@@ -98,9 +86,9 @@ ROWS = (
         (drop("--data"),),
     ),
     Row(
-        "--captures is for recipe weaver; recipe",
-        "train activity --captures {walk} --from builtin --out out",
-        (instead("is trained on --data", "--captures {walk} --from builtin", "--data {walk}"),),
+        "--recordings is for recipe weaver; recipe",
+        "train activity --recordings {walk} --weights builtin --out out",
+        (instead("is trained on --data", "--recordings {walk} --weights builtin", "--data {walk}"),),
     ),
     # others
     Row(

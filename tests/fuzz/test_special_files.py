@@ -42,7 +42,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("generate", "--texts"): {"--text": None},
     ("generate", "--motion"): {"--text": None}, ("generate", "--room"): dict.fromkeys(ROOM),
     ("dataset", "--activities"): {"--rooms": None, "--room": str(SAMPLE)},
-    ("dataset", "--weights-results"): {"--rooms": None},
+    ("dataset", "--from-results"): {"--rooms": None},
     ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
     ("generate", "--motion-model"): {"--motion-set": "for=all"},
     ("dataset", "--board"): {"--rooms": None, "--activities": "A", "--room": str(SAMPLE)},
