@@ -44,7 +44,7 @@ from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.parsed_request import ParsedRequest, parse
 from mmweaver.request import Request
-from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
+from mmweaver.result_folder import META_VERSION, file_digest
 from mmweaver.room_reader import RoomReader
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.streaming import (
@@ -322,18 +322,13 @@ class Weaver(RoomReader):
             "made_by": "mmweaver generate",
             "version": __version__,
             "text": request.text or people[0].plan.text,
-            "seed": request.seed, "frames": request.frames, "fps": 1 / request.config.frame_period_s, "at": request.at,
+            **request.meta(),
             "method": signal.method or self.method_name,
             "weights": self.weights,
             "board": board.meta(),
             "points": self.points,
             "firmware": self._firmware_of(board) if self.points == "firmware" else None,
-            **radar_meta(request.config),
             "inputs": room.inputs | _motion_input(request.motion),
-            "placed": {
-                "heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject,
-                "as_recorded": request.as_recorded,
-            },
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),

@@ -24,6 +24,7 @@ from mmweaver.motion.people import check_subject
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.request import Request
+from mmweaver.result_folder import radar_meta
 
 MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
@@ -68,6 +69,14 @@ class ParsedRequest:
         """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
         near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
         return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
+
+    def meta(self) -> dict[str, Any]:
+        """What meta.json holds of the request."""
+        placed = {name: getattr(self, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
+        return {
+            "seed": self.seed, "frames": self.frames, "fps": 1 / self.config.frame_period_s, "at": self.at,
+            "placed": placed, **radar_meta(self.config),
+        }  # fmt: skip
 
     @property
     def board_without_background(self) -> Board:

@@ -1,6 +1,5 @@
 """The small files that the commands of the advice tests name."""
 
-import argparse
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -126,9 +125,11 @@ def signals_made_once() -> Iterator[None]:
     Motions are composed.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "_photographed_room", _sample_room)
+        patch.setattr(generate.Options, "read_room", _sample_room)
         patch.setattr(Weaver, "carry_out", _signal)
-        patch.setattr(train, "_trained", lambda *_: {"weights": "out", "steps": 0, "validation_loss": 0.0})
+        trained = {"weights": "out", "steps": 0, "validation_loss": 0.0}
+        patch.setattr(train, "_RECIPES", dict.fromkeys(train._RECIPES, lambda *_: trained))
+        patch.setattr(train, "write_request", lambda *_: None)
         yield
 
 
@@ -136,8 +137,8 @@ _made: dict[str, Any] = {}
 _carry_out = Weaver.carry_out
 
 
-def _sample_room(weaver: Weaver, arguments: argparse.Namespace) -> Room:
-    generate._further(arguments.further_photos)
+def _sample_room(asked: generate.Options, weaver: Weaver) -> Room:
+    generate._photos(asked.extra_views)
     if "room" not in _made:
         _made["room"] = weaver.sample_room()
     return _made["room"]

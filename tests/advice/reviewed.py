@@ -136,7 +136,6 @@ REVIEWED: dict[str, str] = {
     ),
     **dict.fromkeys(
         (
-            "make one: mmweaver export DIR --to rerun",
             "is no .mmwl file",
             "find out what else is with: mmweaver verify",
             "says how), or delete",

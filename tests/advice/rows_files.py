@@ -245,9 +245,4 @@ ROWS = (
         (instead("give a folder of mmweaver generate", "{nothing}", "{walk}"),),
     ),
     Row("--sequence is of a labelled set", "plot {walk} --sequence 1 -o out.png", (drop("--sequence"),)),
-    Row(
-        "is opened in Rerun's viewer",
-        "view absent.rrd --no-browser",
-        (instead("leave out --out and --no-browser", "absent.rrd --no-browser", "{walk} --no-browser -o page.html"),),
-    ),
 )

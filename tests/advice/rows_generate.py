@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.advice.harness import Row, add, drop, first, flag, instead
+from tests.advice.harness import Row, add, drop, flag, instead
 
 SHORT = "--frames 1 --no-pictures --out out"
 DEMO = f"generate --demo {SHORT}"
@@ -133,7 +133,7 @@ ROWS = (
     Row(
         "--as-recorded is about a recorded motion; give --motion too",
         f"{DEMO} --as-recorded --text 'a person waves'",
-        (drop("--as-recorded"),),
+        (add("--motion", "{clip}"),),
     ),
     Row(
         "holds no □; give a folder of mmweaver train",
@@ -174,25 +174,9 @@ ROWS = (
         ),
         before=lambda: _holds_something("out/0000/meta.json"),
     ),
-    Row("--iq is for --store", f"{BATCH} --iq none", (flag("--store"),)),
-    Row(
-        "--store is for --texts",
-        f"{DEMO} --store",
-        (first("mmweaver export", drop("--store"), DIR="{walk}", OUT="zarr"),),
-    ),
-    Row("--store keeps cubes at the radar's frame rate", f"{BATCH} --store --fps 5", (drop("--fps"), drop("--store"))),
-    Row(
-        "--store holds the points of our own detector",
-        f"{BATCH} --store --points firmware",
-        (
-            drop("--points"),
-            drop("--store"),
-        ),
-    ),
-    Row("--store holds cubes alone", f"{BATCH} --store --bin", (drop("--bin"), drop("--store"))),
     Row("--per-class is for many sequences", f"{DEMO} --per-class 2", (add("--texts", "{texts}"),)),
     # a stream
-    Row("--stream takes sentences", f"{STREAM} --seconds 1", (drop("--seconds"), drop("--stream"))),
+    Row("--stream takes sentences", f"{STREAM} --path '0,3 0,1.5'", (drop("--path"),)),
     Row("--stream is of one person", f"{STREAM} --at 0,2 --at 0.5,2", (instead("give --at once", "--at 0.5,2"),)),
     Row(
         "--stream needs sentences",

@@ -112,7 +112,7 @@ ROWS = (
         f"{ONE} --motion {{leaning}} --motion-set fps=30",
         (
             plus("--motion-set up=", "--motion-set", "up=y"),
-            plus("or z", "--motion-set", "up=z"),
+            plus("or up=z", "--motion-set", "up=z"),
         ),
     ),
     Row(
@@ -133,7 +133,7 @@ ROWS = (
     Row(
         "motions; choose one, for example --motion-set clip=",
         f"{ONE} --motion {{several}} --motion-set fps=30",
-        (plus("for example --motion-set clip=", "--motion-set", "clip=a/walk"),),
+        (plus("for example --motion-set clip=", "--motion-set", "clip=walk"),),
     ),
     Row(
         "another --motion-set start=S, --at or --heading",

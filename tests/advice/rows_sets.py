@@ -14,13 +14,13 @@ ROWS = (
             instead(
                 "give --activities",
                 "--layouts 1 --sequences 1",
-                "--activities {activities} --rgb {rgb} --depth {depth}",
+                "--activities {activities} --room {own_room}",
             ),
         ),
     ),
     Row(
         "is for data sets of rooms; leave it out",
-        f"{SET} --rgb {{rgb}} --depth {{depth}} --layouts 3",
+        f"{SET} --room {{own_room}} --layouts 3",
         (instead("leave it out", "--layouts 3"),),
     ),
     Row(
@@ -91,12 +91,4 @@ ROWS = (
         (instead("is trained on --data", "--recordings {walk} --weights builtin", "--data {walk}"),),
     ),
     # others
-    Row(
-        "nobody is there: leave out --height",
-        "motion nobody --height 1.8",
-        (
-            drop("--height"),
-            instead("say what a person does", "nobody", "'a person waves'"),
-        ),
-    ),
 )

@@ -9,7 +9,6 @@ import pytest
 from mmweaver.cli.batch import read_texts
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.formats.npz_files import read_radar_npz
 
 SHORT = ["generate", "--demo", "--frames", "6", "--no-pictures", "--json"]
@@ -81,33 +80,6 @@ def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path):
     assert main(words) == 0
     frames = {len(read_radar_npz(tmp_path / name / "radar.npz").values) for name in ("0000", "0001")}
     assert len(frames) == 1
-
-
-def test_a_store_in_place_of_folders(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("zarr")
-    out = tmp_path / "set"
-    words = ["generate", "--demo", "--frames", "4", "--texts", str(texts), "--per-class", "3", "--store", "--json"]
-    assert main([*words, "--out", str(out)]) == 0
-    assert json.loads(capsys.readouterr().out)["leaks"]["verdict"].startswith("leaks: ")
-    stored = read_activity_set(out)
-    assert stored.label_names == ("a person walks to the left", "a person stands")
-    assert len(stored) == 6
-    assert stored.cube(0).values.shape == (4, 64, 32, 12)
-    for more, says in ((["--bin"], "leave out --bin"), (["--fps", "5"], "leave out --fps")):
-        assert main([*words, *more, "--out", str(tmp_path / "other")]) == 2
-        assert says in capsys.readouterr().err
-    assert main(["generate", "--demo", "--iq", "none", "--out", str(tmp_path / "other")]) == 2
-    assert "--iq is for --store" in capsys.readouterr().err
-
-
-def test_a_store_without_signals_makes_them_when_they_are_read(texts: Path, tmp_path: Path):
-    pytest.importorskip("zarr")
-    words = ["generate", "--demo", "--frames", "2", "--texts", str(texts), "--store", "--quiet", "--iq"]
-    cubes = []
-    for kind in ("float32", "none"):
-        assert main([*words, kind, "--out", str(tmp_path / kind)]) == 0
-        cubes.append(read_activity_set(tmp_path / kind).cube(0).values)
-    assert np.allclose(*cubes, rtol=1e-5, atol=1e-6 * np.abs(cubes[0]).max())
 
 
 def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

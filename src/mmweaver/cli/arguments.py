@@ -58,6 +58,7 @@ RENAMED = {
     "--draws": "generate sentences that need places of their own alone, with --text",
     "--log-level": "-v logs each stage",
     "--list": "",
+    "--store": "a labelled set is made of sentences by mmweaver dataset --activities TOML",
     "--split-by": "--split",
     "--model": "--weights",
     "--from": "--weights",
@@ -148,7 +149,8 @@ def _argument(one: "dataclasses.Field[Any]") -> tuple[list[str], dict[str, Any]]
             settings["choices"] = get_args(kind)
     is_required = one.default is dataclasses.MISSING
     if meta.get("positional"):
-        return [one.name], settings | ({"nargs": "+" if is_many else None} if is_required else {"nargs": "*" if is_many else "?"})
+        counts = {(True, True): "+", (True, False): "*", (False, True): None, (False, False): "?"}
+        return [one.name], settings | {"nargs": counts[is_many, is_required]}
     if is_many:
         settings |= {"nargs": "+"} if "nargs" in meta else {"action": "append"}
     names = [meta["short"]] if "short" in meta else []

@@ -1,18 +1,15 @@
-"""mmweaver generate --texts: many sequences in one room, which is read once; a folder for each, or one labelled set.
+"""mmweaver generate --texts: many sequences in one room, which is read once; a folder for each.
 
 All sentences have the same places, headings, people and lengths (matched draws).
 """
 
 import json
-import shlex
-import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import REQUEST_FILE
 from mmweaver.core.errors import InputError
-from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
@@ -143,33 +140,30 @@ class Batch:
         if not one.folder.exists() or is_empty(one.folder):
             return False
         request = self.request(one)
-        expected = self._expected_meta(request) | {"text": one.text, "seed": one.seed, "at": list(one.draw.start_m)}
-        placing = {"heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject}
-        output = self.asked.output
-        wanted = {"adc_data.bin": output["adc_data_bin"], "preview.png": output["pictures"]}
+        wanted = {"adc_data.bin": self.asked.keep_adc, "preview.png": not self.asked.no_pictures}
         try:
             found = read_json(one.folder / "meta.json")
             is_same = {name for name, is_wanted in wanted.items() if is_wanted} <= set(found["files"])
-            is_same = is_same and all(found[name] == value for name, value in expected.items())
-            is_same = is_same and all(found["placed"][name] == value for name, value in placing.items())
+            is_same = is_same and all(found[name] == value for name, value in self._expected(one, request).items())
         except (InputError, KeyError, TypeError):
             is_same = False
         if not is_same:
             raise InputError(f"{one.folder} holds something else; choose another --out or allow it with --overwrite")
         return not damages(one.folder)
 
-    def _expected_meta(self, request: "ParsedRequest") -> dict[str, Any]:
+    def _expected(self, one: BatchSequence, request: "ParsedRequest") -> dict[str, Any]:
+        """What meta.json of the same sequence holds."""
         from mmweaver.methods import DEFAULT_METHOD
-        from mmweaver.result_folder import plain, radar_meta
+        from mmweaver.result_folder import plain
 
         weaver = self.weaver
-        same = {
-            "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
-            "board": weaver.board_of(request, self.room)[0].meta(),
-        }  # fmt: skip
-        method: dict[str, Any] = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
-        method |= {"radar_pose": request.radar_poses[0]} if request.radar_poses else {}
-        return plain({**same, **method, **radar_meta(request.config)})
+        same = {"weights": weaver.weights, "inputs": self.room.inputs, "points": weaver.points, "text": one.text}
+        same["board"] = weaver.board_of(request, self.room)[0].meta()
+        if weaver.method_name != DEFAULT_METHOD:
+            same["method"] = weaver.method_name
+        if request.radar_poses:
+            same["radar_pose"] = request.radar_poses[0]
+        return plain(same | request.meta())
 
 
 class _NoPlaceError(Exception):
@@ -191,8 +185,6 @@ def run_batch(asked: "Options", out: Path) -> int:
     at, height_m, subject = ((values or [None])[0] for values in (asked.at, asked.height_m, asked.subject))
     heading = None if asked.heading_rad is None else heading_deg_of(asked.heading_rad)
     given = GivenPlacing(start_m=at, heading_deg=heading, height_m=height_m, subject=subject)
-    if asked.store:
-        return _run_store(asked, weaver, room, requests, out, given)
     sequences, refused = _sequences(asked, texts, requests, room, out, given)
     summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
     if asked.json:
@@ -283,58 +275,3 @@ def _sequences(
     if not made:
         raise InputError(f"none of {count} sequences could be made; the first: {refused[0]['why']}")
     return made, refused
-
-
-# one labelled set ---------------------------------------------------------------------------------------------------
-def check_store(asked: "Options") -> None:
-    """Raises InputError for options that a stored set does not have, and for `--iq` without one."""
-    if not asked.store:
-        raise InputError("--iq is for --store; result folders hold complex64")
-    need("dataset", "--store", "zarr")
-    if asked.texts is None:
-        raise InputError(
-            "--store is for --texts; a single sequence becomes a store with: mmweaver export DIR --to zarr --out OUT"
-        )
-    if asked.fps is not None:
-        raise InputError("--store keeps cubes at the radar's frame rate; leave out --fps, or --store")
-    if asked.keep_adc:
-        raise InputError("--store holds cubes alone; leave out --bin, or --store")
-    if asked.points == "firmware":
-        raise InputError("--store holds the points of our own detector; leave out --points firmware, or --store")
-
-
-def _run_store(
-    asked: "Options", weaver: "Weaver", room: "Room", requests: "dict[str, ParsedRequest]", out: Path,
-    given: "GivenPlacing",
-) -> int:  # fmt: skip
-    """Makes what is missing of the set and prints its verdict. Raises InputError."""
-    import tomli_w
-
-    from mmweaver.activity_sets.activity_list import ActivityList
-    from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
-    from mmweaver.activity_sets.leak_report import said
-    from mmweaver.activity_sets.sentence_draws import without_place
-    from mmweaver.cli.activity_set import make_with_bar
-
-    refused = without_place(requests, room.scene, asked.seed)
-    kept = [text for text in requests if text not in refused]
-    if not kept:
-        raise InputError(f"none of the sentences could be made; the first: {next(iter(refused.values()))}")
-    seconds, repeat = requests[kept[0]].frames * weaver.radar.frame_period_s, _repeat(asked)
-    options = SetOptions(each=repeat, seconds=seconds, seed=asked.seed)
-    given_too = {"iq": asked.iq, "board": None if asked.board is None else str(asked.board)}
-    options = replace(options, **{name: value for name, value in given_too.items() if value is not None})
-    command = shlex.join(["mmweaver", *sys.argv[1:]]) if sys.argv[1:2] == ["generate"] else "mmweaver generate"
-    builder = SetBuilder(
-        out, ActivityList(sentences={text: (text,) for text in kept}), [room], weaver, options, command=command,
-        activities_text=tomli_w.dumps({"activities": {text: [text] for text in kept}}), given=given,
-    )  # fmt: skip
-    report = make_with_bar(builder, quiet=asked.quiet)
-    if asked.json:
-        left_out = [{"text": text, "why": why} for text, why in refused.items()]
-        print(json.dumps({"out": str(out), "leaks": report, "refused": left_out}, ensure_ascii=False))
-    elif not asked.quiet:
-        print(f"{len(kept)} sentences x {repeat} sequences in {out}; {said(report)}")
-        for text, why in refused.items():
-            print(f"left out {text!r}: {why}")
-    return 0

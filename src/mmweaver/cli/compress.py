@@ -59,7 +59,7 @@ def run(asked: Options) -> int:
     """Compresses and writes the file. Raises InputError."""
     is_raw = asked.quality == math.inf
     if (asked.bytes is None) == (asked.quality is None):
-        raise InputError("say how small with --bytes, or how good with --quality (DB or lossless)")
+        raise InputError("say how small with --bytes, or how good with --quality DB or --quality lossless")
     if asked.out is None:
         raise InputError("name the file to write with -o")
     from mmweaver.core.output_checks import check_output_file

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mmweaver.cli.arguments import REQUEST_FILE, request_toml
 from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_background, room_of, weaver_of
-from mmweaver.cli.option_groups import Iq, Layout, PointChoice, RadarChoice, Ranges, Written
+from mmweaver.cli.option_groups import Layout, PointChoice, RadarChoice, Ranges, Written
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place, Setting, Source, option, options, read_settings
 from mmweaver.request import Request
@@ -169,14 +169,6 @@ class MotionInput:
         default=False,
     )  # fmt: skip
     per_class: int | None = option("with --texts: N of each sentence (default 1), at the same places", "N", rare=True)
-    store: bool = option(
-        "with --texts: one labelled set (the store of mmweaver dataset --activities) instead of folders; a sentence is"
-        " a label",
-        default=False, rare=True,
-    )  # fmt: skip
-    iq: Iq | None = option(
-        "with --store: how signals are stored (default float16); none: what they are made from", rare=True
-    )
 
 
 @options
@@ -258,10 +250,6 @@ def run(asked: Options) -> int:
         )
     out = asked.folder
     _check_motion(asked)
-    if asked.store or asked.iq is not None:
-        from mmweaver.cli.batch import check_store
-
-        check_store(asked)
     if asked.stream:
         from mmweaver.cli.stream import run_stream
 

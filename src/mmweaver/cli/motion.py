@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mmweaver.cli.arguments import General
+from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
 
 if TYPE_CHECKING:
     from mmweaver.core.records import PoseSequence
 
 SUFFIXES = (".npz", ".png", ".pdf", ".svg")
-EMPTY_S = 2.0  # of an empty place, whose length nothing decides
 EXAMPLES = """examples:
   mmweaver motion "a person walks to the left, then waves"
   mmweaver motion "a person falls, then gets up" --seconds 8 --out fall.npz --out fall.png
@@ -42,7 +42,7 @@ def run(asked: Options) -> int:
 
     _check_files(asked)
     if says_nobody(asked.text):
-        return _show_nobody(asked)
+        raise InputError(f"{asked.text[:60]!r} is an empty place, which has no motion; say what a person does")
     motion = act_out(
         asked.text, duration_s=asked.seconds, seed=asked.seed, height_m=asked.height,
         subject=asked.subject,
@@ -77,31 +77,6 @@ def run(asked: Options) -> int:
     return 0
 
 
-def _show_nobody(asked: Options) -> int:
-    """An empty place has no steps, and joints of nobody at the times of a motion. Raises InputError for a body."""
-    from mmweaver.core.atomic_files import atomic_file
-    from mmweaver.core.errors import InputError
-    from mmweaver.formats.npz_files import write_empty_pose_npz
-    from mmweaver.motion.animation.assemble import dense_times
-    from mmweaver.motion.language.timing import LONGEST_S
-
-    files = asked.out or []
-    if (asked.height, asked.subject) != (None, None) or any(file.suffix != ".npz" for file in files):
-        raise InputError("nobody is there: leave out --height, --subject and pictures, or say what a person does")
-    seconds = EMPTY_S if asked.seconds is None else asked.seconds
-    if not 0 < seconds <= LONGEST_S:
-        raise InputError(f"a duration of {seconds:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
-    for file in files:
-        with atomic_file(file) as temporary:
-            write_empty_pose_npz(temporary, dense_times(seconds))
-    if asked.json:
-        facts = {"text": asked.text, "seconds": seconds, "people": [], "steps": [], "clauses": []}
-        print(json.dumps({**facts, "assumptions": [], "files": list(map(str, files))}, indent=2))
-    else:
-        print(f"{0:6.2f} to {seconds:5.2f} s   nobody: an empty place")
-    return 0
-
-
 def _write_files(asked: Options, pose: "PoseSequence") -> None:
     """Writes joints and picture, both or none."""
     from mmweaver.core.atomic_files import atomic_files
@@ -119,7 +94,6 @@ def _write_files(asked: Options, pose: "PoseSequence") -> None:
 
 def _check_files(asked: Options) -> None:
     """What is cheap to refuse is refused before anything is made."""
-    from mmweaver.core.errors import InputError
     from mmweaver.core.output_checks import check_output_file
 
     for file in asked.out or ():

@@ -1,14 +1,10 @@
 """mmweaver view: a result folder as one HTML file that plays in any browser."""
 
-import subprocess
-import sys
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import General
-from mmweaver.core.errors import InputError
-from mmweaver.core.optional_packages import need
 from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
@@ -19,7 +15,6 @@ if TYPE_CHECKING:
 EXAMPLES = """examples:
   mmweaver view walk/                       # writes walk/view.html and opens it
   mmweaver view walk/ -o walk.html --no-browser
-  mmweaver view rerun/result.rrd            # of mmweaver export --to rerun: opens Rerun's viewer
 """
 
 
@@ -29,19 +24,14 @@ class Options(General):
     connection, so it can be sent to others.
     """
 
-    folder: Path = option(
-        "a folder of mmweaver generate or mmweaver process, or a Rerun recording of mmweaver export", "DIR|RRD",
-        default=MISSING, positional=True,
-    )  # fmt: skip
+    folder: Path = option("a folder of mmweaver generate or mmweaver process", "DIR", default=MISSING, positional=True)
     out: Path | None = option("the file (default: view.html in the folder)", "HTML", short="-o")
     overwrite: bool = option("replace the file where it exists", default=False)
     no_browser: bool = option("do not open it", default=False)
 
 
 def run(asked: Options) -> int:
-    """Writes the page, or opens Rerun's viewer. Raises InputError for a folder that holds no result."""
-    if asked.folder.suffix == ".rrd" and not asked.folder.is_dir():
-        return _open_rerun(asked)
+    """Writes the page. Raises InputError for a folder that holds no result."""
     out = asked.out or asked.folder / "view.html"
     check_output_file(out, overwrite=asked.overwrite)
     from mmweaver.playback.html_page import write_page
@@ -55,16 +45,6 @@ def run(asked: Options) -> int:
     if not asked.no_browser:
         webbrowser.open(out.resolve().as_uri())
     return 0
-
-
-def _open_rerun(asked: Options) -> int:
-    """Rerun's own viewer, of the installed package; nothing is fetched."""
-    if asked.out is not None or asked.no_browser:
-        raise InputError(f"{asked.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
-    if not asked.folder.is_file():
-        raise InputError(f"{asked.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
-    need("rerun", "Rerun's viewer", "rerun")
-    return subprocess.run([sys.executable, "-m", "rerun", str(asked.folder)], check=False).returncode
 
 
 def _room(stored: "StoredResult") -> "Playback | None":

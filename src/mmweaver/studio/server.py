@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import hmac
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, TypeVar
@@ -29,6 +29,7 @@ from mmweaver.studio.service import Service
 from mmweaver.studio.sessions import Session
 
 T = TypeVar("T")
+Work = Callable[[Session, dict[str, Any]], Any]
 LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 MAX_JSON_BYTES = 100_000
 MAX_IN_FLIGHT = 2  # chunks of a live stream that the page has not taken yet
@@ -93,17 +94,11 @@ class StudioServer:
             Route("/", self._index),
             Route("/page/mmweaver.js", self._script),
             Route("/api/session", self._open, methods=["POST"]),
-            Route("/api/room/{name}", self._room),
-            Route("/api/generate", self._generate, methods=["POST"]),
             Route("/api/upload", self._upload, methods=["POST"]),
-            Route("/api/depth/{name}", self._depth, methods=["POST"]),
-            Route("/api/recording/{name}", self._recording, methods=["POST"]),
-            Route("/api/result/{name}", self._result),
-            Route("/api/keep/{name}", self._keep, methods=["POST"]),
-            Route("/api/compare/{a}/{b}", self._compare),
             Route("/api/export/{name}/{kind}", self._export),
             WebSocketRoute("/api/presence", self._presence),
             WebSocketRoute("/api/live", self._live),
+            *(Route(f"/api/{path}", self._call(work), methods=[how]) for path, (how, work) in self._calls().items()),
         ]
 
         @contextlib.asynccontextmanager
@@ -132,39 +127,27 @@ class StudioServer:
         kinds = [(kind, label) for kind, (label, _) in exports.EXPORTS.items()]
         return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": True, **offered})
 
-    async def _room(self, request: Request) -> Response:
-        session = self._session(request)
-        name, radar = request.path_params["name"], request.query_params.get("radar", "awr1843")
-        return _packed(await self._do(request, lambda: self.service.room_bytes(session, name, radar)))
+    def _calls(self) -> dict[str, tuple[str, Work]]:
+        """What the page asks for, by path: a session and what was asked of it -> bytes for the page, or JSON."""
+        service = self.service
+        return {
+            "room/{name}": ("GET", lambda own, got: service.room_bytes(own, got["name"], got.get("radar", "awr1843"))),
+            "generate": ("POST", lambda own, got: service.generate(own, got["body"])),
+            "depth/{name}": ("POST", lambda own, got: uploads.room_with_estimated_depth(own, got["name"])),
+            "recording/{name}": ("POST", lambda own, got: service.recording(own, got["name"])),
+            "result/{name}": ("GET", lambda own, got: service.result_bytes(own, got["name"])),
+            "keep/{name}": ("POST", lambda own, got: own.keep(got["name"])),
+            "compare/{a}/{b}": ("GET", lambda own, got: service.compare(own, got["a"], got["b"])),
+        }
 
-    async def _generate(self, request: Request) -> Response:
-        session = self._session(request)
-        body = await _json(request)
-        return _packed(await self._do(request, lambda: self.service.generate(session, body)))
+    def _call(self, work: Work) -> Callable[[Request], Awaitable[Response]]:
+        async def answer(request: Request) -> Response:
+            session = self._session(request)
+            got = {**request.query_params, **request.path_params, "body": await _json(request)}
+            found = await self._do(request, lambda: work(session, got))
+            return _packed(found) if isinstance(found, bytes) else JSONResponse(found)
 
-    async def _result(self, request: Request) -> Response:
-        session = self._session(request)
-        name = request.path_params["name"]
-        return _packed(await self._do(request, lambda: self.service.result_bytes(session, name)))
-
-    async def _recording(self, request: Request) -> Response:
-        session, name = self._session(request), request.path_params["name"]
-        return _packed(await self._do(request, lambda: self.service.recording(session, name)))
-
-    async def _keep(self, request: Request) -> Response:
-        """Holds a result as long as others are compared with it; "none" lets go."""
-        session, name = self._session(request), request.path_params["name"]
-        session.pinned = None if name == "none" or not session.result(name) else name
-        return JSONResponse({})
-
-    async def _compare(self, request: Request) -> Response:
-        session, asked = self._session(request), request.path_params
-        return JSONResponse(await self._do(request, lambda: self.service.compare(session, asked["a"], asked["b"])))
-
-    async def _depth(self, request: Request) -> Response:
-        """A room of a photo that came without depth, which a depth model estimates."""
-        session, name = self._session(request), request.path_params["name"]
-        return JSONResponse(await self._do(request, lambda: uploads.room_with_estimated_depth(session, name)))
+        return answer
 
     async def _export(self, request: Request) -> Response:
         session = self._session(request)
@@ -256,7 +239,7 @@ async def _json(request: Request) -> Any:
         body += part
         if len(body) > MAX_JSON_BYTES:
             raise InputError("this request is too long")
-    return parse_json(bytes(body), "the request")
+    return parse_json(bytes(body), "the request") if body else None
 
 
 def _packed(content: bytes) -> Response:

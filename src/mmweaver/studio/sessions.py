@@ -108,6 +108,11 @@ class Session:
             raise InputError("this result is no longer kept; generate it again")
         return self.results[name]
 
+    def keep(self, name: str) -> dict[str, str]:
+        """Holds a result as long as others are compared with it; "none" lets go."""
+        self.pinned = None if name == "none" or not self.result(name) else name
+        return {}
+
     def end(self) -> None:
         """Removes the session's folder; its rooms and results go with it."""
         self.is_open = False
