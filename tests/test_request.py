@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from mmweaver import parsed_request as module
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, MMMESH
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.parsed_request import MAX_FRAMES, ParsedRequest, parse
-from mmweaver.request import Request
+from mmweaver.weaver import parsed_request as module
+from mmweaver.weaver.parsed_request import MAX_FRAMES, ParsedRequest, parse
+from mmweaver.weaver.request import Request
 
 TEXT = "a person walks towards the radar"
 

@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
-from mmweaver.methods import Physics
+from mmweaver.models.methods import Physics
 from mmweaver.motion.compose import compose
 from mmweaver.paths.static_paths import Propagation
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 

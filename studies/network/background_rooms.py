@@ -19,13 +19,13 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.photo_panel import draw_photo
 from mmweaver.figures.power_panels import draw_azimuth_with_clutter, power_bar
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
 

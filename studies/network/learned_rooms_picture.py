@@ -15,8 +15,8 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.photo_panel import draw_photo
 from mmweaver.figures.power_panels import draw_azimuth_with_clutter, draw_micro_doppler, power_bar
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Weaver
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.weaver.front_door import Weaver
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
 from studies.study import Reads

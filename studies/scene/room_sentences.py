@@ -16,9 +16,9 @@ from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.power_panels import draw_micro_doppler, draw_range_time, power_bar
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Weaver
-from mmweaver.generation import Generation, Room
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Generation, Room
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small, small
 from studies.scene.top_view import draw_top

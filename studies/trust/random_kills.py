@@ -15,7 +15,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from mmweaver.verification import verify
+from mmweaver.weaver.verification import verify
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.schema import metric

@@ -16,12 +16,12 @@ from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.generate import Weaver, compose_request
-from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
-from mmweaver.parsed_request import ParsedRequest
+from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.generation import Generation, Room
+from mmweaver.weaver.parsed_request import ParsedRequest
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES

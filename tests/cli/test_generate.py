@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver import result_folder
 from mmweaver.cli.main import main
+from mmweaver.figures.previews import PREVIEWS
 from mmweaver.formats.npz_files import read_npz, read_radar_npz
 from mmweaver.scene.sample_photo import sample_photo
 from tests.captures import write_camera
@@ -244,7 +244,7 @@ def test_bad_input_is_one_line_and_writes_nothing(
 def test_a_mistake_is_said_before_pytorch_is_loaded(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    for name in ("torch", "mmweaver.generate"):
+    for name in ("torch", "mmweaver.weaver.front_door"):
         monkeypatch.setitem(sys.modules, name, None)
     assert main(["generate", "--demo", *words]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -265,7 +265,7 @@ def test_what_stops_it_halfway_leaves_nothing(
     def stop(*_: object) -> None:
         raise raised
 
-    monkeypatch.setattr(result_folder, "draw_preview", stop)
+    monkeypatch.setitem(PREVIEWS, "preview.png", stop)
     assert main(["generate", "--demo", "--frames", "1", "--text", WALK, "--out", str(tmp_path / "out")]) == status
     captured = capsys.readouterr()
     assert word in captured.err

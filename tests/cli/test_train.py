@@ -14,9 +14,9 @@ import torch
 
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
+from mmweaver.weaver.front_door import Weaver
 
 pytest.importorskip("zarr")
 

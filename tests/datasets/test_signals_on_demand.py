@@ -17,9 +17,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets import RadarDataset, collate
 from mmweaver.datasets.activity_store import ActivitySet, read_activity_set
 from mmweaver.datasets.signals_on_demand import moving_power_db
-from mmweaver.generate import Weaver
-from mmweaver.methods import Physics
+from mmweaver.models.methods import Physics
 from mmweaver.paths.static_paths import Propagation
+from mmweaver.weaver.front_door import Weaver
 from tests.activity_sets.conftest import ACTIVITIES, OPTIONS, builder
 
 pytest.importorskip("zarr")

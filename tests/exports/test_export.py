@@ -15,7 +15,7 @@ from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
 from mmweaver.exports.export import FORMATS, export_result
 from mmweaver.exports.robotics import ros_axes
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 
 def has(package: str) -> None:

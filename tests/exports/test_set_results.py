@@ -10,7 +10,7 @@ from mmweaver.cli.main import main
 from mmweaver.datasets import RadarDataset
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.room_sequences import read_labelled
-from mmweaver.stored_result import read_result
+from mmweaver.formats.stored_result import read_result
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 pytest.importorskip("zarr")

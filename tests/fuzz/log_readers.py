@@ -29,11 +29,11 @@ from mmweaver.formats.pcap import udp_packets
 from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr
 from mmweaver.formats.point_clouds.read_points import read_points
 from mmweaver.formats.radar_options import RadarOptions, read_antennas, with_options
+from mmweaver.formats.stored_result import read_result
+from mmweaver.formats.stream_folder import read_stream_cube
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
 from mmweaver.playback.wire import pack, unpack
-from mmweaver.stored_result import read_result
-from mmweaver.stream_folder import read_stream_cube
 from mmweaver.studio.schemas import Form
 from mmweaver.training.run_log import RunLog
 from tests.formats.point_clouds.test_read_points import XYZV, out_of_box, packet

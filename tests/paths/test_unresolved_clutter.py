@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.stages import Stages
-from mmweaver.methods import Physics
+from mmweaver.models.methods import Physics
 from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator

@@ -10,9 +10,9 @@ from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.playback.wire import unpack
-from mmweaver.streaming import StreamChunk
 from mmweaver.studio.live import Live
 from mmweaver.studio.schemas import Form
+from mmweaver.weaver.streaming import StreamChunk
 
 
 def test_joints_go_on_from_chunk_to_chunk():

@@ -10,7 +10,7 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.stream_folder import StreamFolder
+from mmweaver.formats.stream_folder import StreamFolder
 from mmweaver.studio.recordings import check_offered, read_offered, read_recorded
 from mmweaver.studio.service import Offered
 from mmweaver.studio.sessions import Result

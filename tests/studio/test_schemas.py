@@ -9,8 +9,8 @@ import pytest
 from mmweaver.cli.arguments import parsed
 from mmweaver.cli.main import parser_of
 from mmweaver.core.errors import InputError
-from mmweaver.request import Request
 from mmweaver.studio.schemas import Form
+from mmweaver.weaver.request import Request
 
 GOOD = {"room": "demo", "text": ["a person waves"], "radar": "awr1843", "method": "auto", "seed": 3, "at": [0.2, 2.0]}
 

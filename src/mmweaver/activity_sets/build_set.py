@@ -49,11 +49,11 @@ from mmweaver.datasets.activity_store import (
 from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.signals_on_demand import SetGeometry, moving_power_db, storable
 from mmweaver.datasets.zarr_arrays import packed_iq
-from mmweaver.features import point_table
+from mmweaver.dsp.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
-from mmweaver.generate import Weaver, compose_request
-from mmweaver.generation import Room
-from mmweaver.parsed_request import ParsedRequest
+from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.parsed_request import ParsedRequest
 
 PARTS = "parts"
 SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test

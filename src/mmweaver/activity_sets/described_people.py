@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from mmweaver.motion.language.described_person import DescribedPerson
-from mmweaver.parsed_request import ParsedRequest
+from mmweaver.weaver.parsed_request import ParsedRequest
 
 
 def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:

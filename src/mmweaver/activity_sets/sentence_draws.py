@@ -15,8 +15,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.formats.npz_files import read_poses_npz
-from mmweaver.generate import compose_request
-from mmweaver.parsed_request import ParsedRequest
+from mmweaver.weaver.front_door import compose_request
+from mmweaver.weaver.parsed_request import ParsedRequest
 
 PLACES, SUBJECTS = 12, 10
 TRIES = 3  # seeds with which a sentence is tried wherever the planner likes

@@ -21,7 +21,7 @@ def run_activity_set(asked: "Options") -> int:
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
     from mmweaver.activity_sets.set_cost import estimate_set_cost
     from mmweaver.core.safe_files.safe_text import read_text
-    from mmweaver.generate import Weaver
+    from mmweaver.weaver.front_door import Weaver
 
     assert asked.activities is not None
     activities = read_activities(asked.activities)

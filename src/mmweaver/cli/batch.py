@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from mmweaver.activity_sets.matched_draws import Draw
     from mmweaver.activity_sets.sentence_draws import GivenPlacing
     from mmweaver.cli.generate import Options
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
-    from mmweaver.parsed_request import ParsedRequest
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
+    from mmweaver.weaver.parsed_request import ParsedRequest
 
 LIST, LEAKS = "sequences.json", "leaks.json"
 MAX_TEXTS_BYTES = 16 * 2**20
@@ -50,7 +50,7 @@ class BatchSequence:
 
     def options(self) -> dict[str, Any]:
         """The options of `mmweaver generate` that make it alone."""
-        from mmweaver.request import Heading
+        from mmweaver.weaver.request import Heading
 
         return {
             "text": [self.text], "texts": None, "per_class": None, "seed": self.seed, "seconds": None,
@@ -153,8 +153,8 @@ class Batch:
 
     def _expected(self, one: BatchSequence, request: "ParsedRequest") -> dict[str, Any]:
         """What meta.json of the same sequence holds."""
-        from mmweaver.methods import DEFAULT_METHOD
-        from mmweaver.result_folder import plain
+        from mmweaver.formats.result_folder import plain
+        from mmweaver.models.methods import DEFAULT_METHOD
 
         weaver = self.weaver
         same = {"weights": weaver.weights, "inputs": self.room.inputs, "points": weaver.points, "text": one.text}

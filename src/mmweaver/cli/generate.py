@@ -9,12 +9,12 @@ from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_backgroun
 from mmweaver.cli.option_groups import Layout, PointChoice, RadarChoice, Ranges, Written
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place, Setting, Source, option, options, read_settings
-from mmweaver.request import Request
+from mmweaver.weaver.request import Request
 
 if TYPE_CHECKING:
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
     from mmweaver.motion.mocap.clip import MotionClip
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
 DEMO_OUT = "demo"
@@ -268,8 +268,8 @@ def _run_one(asked: Options, out: Path) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.parsed_request import parse
-    from mmweaver.result_folder import FILES
+    from mmweaver.formats.result_folder import FILES
+    from mmweaver.weaver.parsed_request import parse
 
     files = [REQUEST_FILE] if len(asked.radar_poses) > 1 else FILES
     check_output_folder(out, overwrite=asked.overwrite, files=files, inputs=asked.inputs)

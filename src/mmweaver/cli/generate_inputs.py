@@ -7,8 +7,8 @@ if TYPE_CHECKING:
     from mmweaver.cli.generate import Options
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.records import RadarCube
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
 
 DEFAULT_RADAR = "awr1843"
 
@@ -41,7 +41,7 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
     """The generator that the options ask for."""
     from mmweaver.formats.radar_file import load_firmware
     from mmweaver.formats.ti_calibration import read_ti_calibration
-    from mmweaver.generate import Weaver
+    from mmweaver.weaver.front_door import Weaver
 
     name = asked.radar_name(DEFAULT_RADAR) or ""
     return Weaver(

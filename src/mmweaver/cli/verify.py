@@ -27,7 +27,7 @@ class Options(Printed):
 
 def run(asked: Options) -> int:
     """Prints what is damaged; returns 0 or 1. Raises InputError where nothing can be verified."""
-    from mmweaver.verification import verify
+    from mmweaver.weaver.verification import verify
 
     found = verify(asked.path)
     if asked.json:

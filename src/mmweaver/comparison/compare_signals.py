@@ -23,8 +23,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.core.version import __version__
+from mmweaver.formats.result_folder import plain
 from mmweaver.metrics.point_clouds import chamfer_m
-from mmweaver.result_folder import plain
 
 FEATURES: tuple[Feature, ...] = (
     *person_features.FEATURES, *room_features.FEATURES, *board_features.FEATURES, *cloud_features.FEATURES

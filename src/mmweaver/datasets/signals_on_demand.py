@@ -32,7 +32,7 @@ from mmweaver.core.version import __version__
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_sequence
 from mmweaver.datasets.photo_arrays import put_photo, stored_photo
 from mmweaver.datasets.zarr_arrays import put_array, put_sequences
-from mmweaver.methods import METHODS, Method
+from mmweaver.models.methods import METHODS, Method
 from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 

@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 from mmweaver.core.atomic_files import atomic_file, staged_folder
 from mmweaver.core.errors import InputError
 from mmweaver.exports.set_results import results_of_set
-from mmweaver.result_folder import radar_folder
-from mmweaver.stored_result import StoredResult, read_result
+from mmweaver.formats.result_folder import radar_folder
+from mmweaver.formats.stored_result import StoredResult, read_result
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ import numpy as np
 from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 
 def write_rerun(result: StoredResult, out: Path) -> str:

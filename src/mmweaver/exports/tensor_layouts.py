@@ -11,8 +11,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
-from mmweaver.features import dynamic_range_angle
-from mmweaver.stored_result import StoredResult
+from mmweaver.dsp.features import dynamic_range_angle
+from mmweaver.formats.stored_result import StoredResult
 
 # HuPR: (Doppler, range, azimuth, elevation), and its 14 joints
 HUPR_SHAPE = (16, 64, 64, 8)

@@ -10,7 +10,7 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.safe_files.safe_pictures import read_animation
 from mmweaver.figures.animation import render_pictures
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 CODECS = {"mp4": ("libx264", {"crf": "23", "preset": "medium"}), "webm": ("libvpx-vp9", {"crf": "33", "b:v": "0"})}
 

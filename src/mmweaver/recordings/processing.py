@@ -19,14 +19,15 @@ from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.previews import PREVIEWS
 from mmweaver.figures.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.formats.dca_packets import PacketCapture
 from mmweaver.formats.npz_files import write_npz
 from mmweaver.formats.radar_file import load_firmware
+from mmweaver.formats.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
-from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 
 
@@ -51,8 +52,8 @@ class ProcessedRecording:
         title = Path(self.meta["inputs"]["recording"]["path"]).name
         view = FigureData(title=title, cube=self.cube, points=self.points)
         return save_results(
-            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures,
-            more=partial(self._write_analysis, title, pictures),
+            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra,
+            pictures=PREVIEWS if pictures else None, more=partial(self._write_analysis, title, pictures),
         )  # fmt: skip
 
     def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:

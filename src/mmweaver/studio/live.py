@@ -9,14 +9,14 @@ import numpy as np
 
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
 from mmweaver.playback.sequence import make_playback
 from mmweaver.playback.wire import pack
 from mmweaver.recognition.live_recogniser import LiveRecogniser
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.streaming import StreamChunk
 from mmweaver.studio.schemas import DEFAULT_BOARD, Form
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.streaming import StreamChunk
 
 CHUNK_FRAMES = 10
 

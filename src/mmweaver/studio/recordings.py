@@ -8,9 +8,9 @@ from mmweaver.core.safe_files.regular_files import check_regular
 from mmweaver.formats.capture_std import is_capture
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.formats.radar_file import load_radar
+from mmweaver.formats.stored_result import read_result
+from mmweaver.formats.stream_folder import is_stream
 from mmweaver.recordings.processing import process_recording
-from mmweaver.stored_result import read_result
-from mmweaver.stream_folder import is_stream
 from mmweaver.studio.sessions import Result
 
 PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg

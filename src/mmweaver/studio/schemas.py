@@ -6,7 +6,7 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import command_words, option, option_name, options, options_of, read_value
-from mmweaver.request import Request
+from mmweaver.weaver.request import Request
 
 MAX_TEXT = 500
 MAX_PATH = 200

@@ -15,9 +15,7 @@ from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.generate import Weaver
-from mmweaver.generation import Generation, Room
-from mmweaver.methods import METHODS
+from mmweaver.models.methods import METHODS
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.register_activity import load_activity_plugins
@@ -29,6 +27,8 @@ from mmweaver.studio.live import Live
 from mmweaver.studio.recordings import check_offered, read_offered
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.sessions import BroughtRoom, Result, Session, Sessions
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Generation, Room
 
 DEMO = "demo"
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"

@@ -15,10 +15,10 @@ from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
-from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.playback.points_playback import point_log_playback
 from mmweaver.playback.sequence import Playback, make_playback
+from mmweaver.weaver.generation import Generation, Room
 
 MAX_SESSIONS = 100
 MAX_RESULTS = 6  # of one session; the oldest go first

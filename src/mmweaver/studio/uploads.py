@@ -10,8 +10,6 @@ from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.formats.radar_file import load_radar
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.scene.photo.estimated_depth import AUTO
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
@@ -19,6 +17,8 @@ from mmweaver.scene.scan_folders import scan_kind
 from mmweaver.studio.recordings import SETTINGS, read_recorded
 from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import BroughtRoom, Session
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 200

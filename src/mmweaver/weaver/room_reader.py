@@ -8,8 +8,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
-from mmweaver.generation import Room
-from mmweaver.result_folder import file_digest
+from mmweaver.formats.result_folder import file_digest
 from mmweaver.scene.multiview.reconstruct_together import reconstruct_together
 from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
@@ -21,6 +20,7 @@ from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
+from mmweaver.weaver.generation import Room
 
 VIEWS_FILE = "views.json"
 

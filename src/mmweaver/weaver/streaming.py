@@ -20,11 +20,11 @@ from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.detection import detect
-from mmweaver.generation import Room
-from mmweaver.methods import Method, Signal
+from mmweaver.models.methods import Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
-from mmweaver.parsed_request import parsed_text
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.parsed_request import parsed_text
 
 BLOCK_FRAMES = 10
 CHUNK_FRAMES = 10

@@ -12,6 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
+from mmweaver.formats.result_folder import radar_meta
 from mmweaver.motion.empty_place import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence
@@ -23,8 +24,7 @@ from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
-from mmweaver.request import Request
-from mmweaver.result_folder import radar_meta
+from mmweaver.weaver.request import Request
 
 MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0

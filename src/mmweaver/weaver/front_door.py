@@ -31,9 +31,9 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
+from mmweaver.formats.result_folder import META_VERSION, file_digest
 from mmweaver.formats.ti_calibration import read_ti_calibration
-from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal
+from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
@@ -42,12 +42,12 @@ from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
-from mmweaver.parsed_request import ParsedRequest, parse
-from mmweaver.request import Request
-from mmweaver.result_folder import META_VERSION, file_digest
-from mmweaver.room_reader import RoomReader
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
-from mmweaver.streaming import (
+from mmweaver.weaver.generation import Generation, Room
+from mmweaver.weaver.parsed_request import ParsedRequest, parse
+from mmweaver.weaver.request import Request
+from mmweaver.weaver.room_reader import RoomReader
+from mmweaver.weaver.streaming import (
     CHUNK_FRAMES,
     StreamChunk,
     Streamer,
