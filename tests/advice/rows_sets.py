@@ -1,6 +1,6 @@
 """Advice about data sets, training, recognisers and what else takes long: up to where the work would begin."""
 
-from tests.advice.harness import Row, add, drop, first, instead
+from tests.advice.harness import Row, add, drop, instead
 
 SET = "dataset out --activities {activities} --dry-run"
 TRAIN = "train weaver --data {walk} --out out"
@@ -47,22 +47,6 @@ ROWS = (
         ),
     ),
     # training: the options alone
-    Row("what to train on? give --data", "train weaver --out out", (add("--data", "{walk}"),)),
-    Row(
-        "--recordings fine-tunes existing weights",
-        "train weaver --recordings {walk} --out out",
-        (add("--weights", "builtin"),),
-    ),
-    Row(
-        "--encoder is for recipe weaver on --data",
-        "train weaver --recordings {walk} --weights builtin --encoder none --out out",
-        (drop("--encoder"),),
-    ),
-    Row(
-        "--rgb, --depth and --camera are the photo of --recordings",
-        f"{TRAIN} --rgb {{rgb}} --depth {{depth}}",
-        (instead("are the photo of --recordings", "--rgb {rgb} --depth {depth}"),),
-    ),
     Row(
         "--rgb and --depth belong together",
         "train weaver --recordings {walk} --weights builtin --rgb {rgb} --out out",
@@ -74,21 +58,5 @@ ROWS = (
         (instead("above 0", "--learning-rate 0", "--learning-rate 0.001"),),
     ),
     Row("--save-every must be 0 or more seconds", f"{TRAIN} --save-every -1", (instead("0 or more", "-1", "0"),)),
-    Row(
-        "train pose needs a task",
-        "train pose --out model/",
-        (first("mmweaver train pose", lambda *_: [], **{"TASK.toml": "{task}"}),),
-    ),
-    Row("a task and --sequences are for recipe pose", f"{TRAIN} --sequences 4", (drop("--sequences"),)),
-    Row(
-        "recipe pose is trained on the sentences of its task",
-        "train pose {task} --data {walk} --out out",
-        (drop("--data"),),
-    ),
-    Row(
-        "--recordings is for recipe weaver; recipe",
-        "train activity --recordings {walk} --weights builtin --out out",
-        (instead("is trained on --data", "--recordings {walk} --weights builtin", "--data {walk}"),),
-    ),
     # others
 )

@@ -1,6 +1,5 @@
 """mmweaver dataset --activities: a labelled set in one's own rooms."""
 
-import json
 import shlex
 import sys
 from dataclasses import asdict, replace
@@ -37,8 +36,7 @@ def run_activity_set(asked: "Options") -> int:
     )  # fmt: skip
     if asked.dry_run:
         cost = estimate_set_cost(builder)
-        print(json.dumps(asdict(cost)) if asked.json else cost.summary(1))
-        return 0
+        return asked.report(asdict(cost), cost.summary(1))
     report = make_with_bar(builder, quiet=asked.quiet)
     return _print_report(asked, report, f"{len(activities.labels)} labels x {options.each} sequences")
 
@@ -64,11 +62,7 @@ def _run_from_results(asked: "Options") -> int:
 def _print_report(asked: "Options", report: dict[str, Any], what: str) -> int:
     from mmweaver.activity_sets.leak_report import said
 
-    if asked.json:
-        print(json.dumps({"out": str(asked.out), "leaks": report}))
-    elif not asked.quiet:
-        print(f"{what} in {asked.out}; {said(report)}")
-    return 0
+    return asked.report({"out": str(asked.out), "leaks": report}, f"{what} in {asked.out}; {said(report)}")
 
 
 def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:

@@ -229,6 +229,17 @@ def renamed(old: str) -> str:
     return new
 
 
+def check_mode(asked: General, mode: str, uses: dict[str, str]) -> None:
+    """Raises InputError for an option that another mode of a command uses; `uses`: names of fields by mode."""
+    own, others = uses[mode].split(), {name for names in uses.values() for name in names.split()}
+    for one in options_of(asked):
+        if one.name in others and one.name not in own and getattr(asked, one.name) != one.default:
+            is_named = not one.metadata.get("positional")
+            name = f"--{option_name(one)}" if is_named else one.metadata["metavar"]
+            raise InputError(f"{name} is for {' or '.join(key for key in uses if one.name in uses[key].split())},"
+                             f" not for {mode}; leave it out")  # fmt: skip
+
+
 # options from a file ------------------------------------------------------------------------------------------------
 def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
     """The values of a file. Raises InputError for one that is no TOML, or has an option that the command lacks."""

@@ -187,14 +187,12 @@ def run_batch(asked: "Options", out: Path) -> int:
     given = GivenPlacing(start_m=at, heading_deg=heading, height_m=height_m, subject=subject)
     sequences, refused = _sequences(asked, texts, requests, room, out, given)
     summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
-    if asked.json:
-        print(json.dumps(summary, indent=2, ensure_ascii=False))
-    elif not asked.quiet:
-        count = len(summary["sequences"])
-        lines = [f"{count} sequence{'s' if count > 1 else ''} in {out}, listed in {LIST}"]
-        lines += [summary["leaks"]] if "leaks" in summary else []
-        print(*lines, *(f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in refused), sep="\n")
-    return 0
+    count = len(summary["sequences"])
+    lines = [f"{count} sequence{'s' if count > 1 else ''} in {out}, listed in {LIST}"]
+    lines += [summary["leaks"]] if "leaks" in summary else []
+    return asked.report(
+        summary, *lines, *(f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in refused)
+    )
 
 
 def read_texts(file: Path) -> list[str]:

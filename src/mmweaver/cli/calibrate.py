@@ -44,8 +44,6 @@ class Options(Written, Samples, Ranges):
 
 def run(asked: Options) -> int:
     """Calibrates, writes and prints. Raises InputError."""
-    import json
-
     from mmweaver.calibration.calibrate import calibrate
     from mmweaver.calibration.target_fits import KnownTarget
     from mmweaver.core.output_checks import check_output_file
@@ -59,8 +57,4 @@ def run(asked: Options) -> int:
         target=None if asked.target is None else KnownTarget(*asked.target),
     )  # fmt: skip
     found.board.save(asked.out)
-    if asked.json:
-        print(json.dumps(found.to_values(), indent=2, allow_nan=False, ensure_ascii=False))
-    else:
-        print(f"{found.text()}\nwrote {asked.out}")
-    return 0
+    return asked.report(found.to_values(), found.text(), f"wrote {asked.out}")

@@ -44,8 +44,6 @@ class Options(Samples, Written):
 
 def run(asked: Options) -> int:
     """Compares, writes and prints. Raises InputError."""
-    import json
-
     from mmweaver.comparison.compare_signals import compare
     from mmweaver.comparison.comparison_page import check_comparison_folder
 
@@ -59,10 +57,5 @@ def run(asked: Options) -> int:
         **asked.reading(),
     )  # fmt: skip
     written = [] if asked.out is None else found.save(asked.out, overwrite=asked.overwrite)
-    if asked.json:
-        print(json.dumps(found.to_values(), indent=2, allow_nan=False, ensure_ascii=False))
-        return 0
-    print(found.text())
-    if written:
-        print(f"\nwrote {', '.join(str(path) for path in written)}")
-    return 0
+    files = [f"\nwrote {', '.join(map(str, written))}"] if written else []
+    return asked.report(found.to_values(), found.text(), *files)

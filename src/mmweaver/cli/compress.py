@@ -1,6 +1,5 @@
 """mmweaver compress: a radar recording into a small .mmw file, or its raw samples into a .mmwl file without loss."""
 
-import json
 import math
 import time
 from pathlib import Path
@@ -99,15 +98,12 @@ def _compress_cube(asked: Options) -> int:
         "ratio": round(8 * num_values / size, 1), "frames": frames, "seconds": round(time.monotonic() - start, 2),
         **errors,
     }  # fmt: skip
-    if asked.json:
-        print(json.dumps(summary, indent=2))
-    elif not asked.quiet:
-        print(
-            f"{'added to' if is_appended else 'wrote'} {asked.out}: {size:,} bytes for {frames} frames,"
-            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s;"
-            f" {_said(errors, asked.quality)}"
-        )
-    return 0
+    return asked.report(
+        summary,
+        f"{'added to' if is_appended else 'wrote'} {asked.out}: {size:,} bytes for {frames} frames,"
+        f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s;"
+        f" {_said(errors, asked.quality)}",
+    )
 
 
 def _said(errors: dict[str, float], quality_db: float | None) -> str:
@@ -170,14 +166,11 @@ def _compress_samples(asked: Options) -> int:
         "out": str(asked.out), "bytes": size, "raw_bytes": before, "ratio": round(before / size, 2),
         "max_error_counts": 0, "seconds": round(time.monotonic() - start, 2),
     }  # fmt: skip
-    if asked.json:
-        print(json.dumps(summary, indent=2))
-    elif not asked.quiet:
-        kept = "every bit kept"
-        if asked.file.suffix != ".bin":
-            kept += " of the samples (zeros for lost packets), without the packets"
-        print(
-            f"wrote {asked.out}: {size:,} bytes, {100 * size / before:.1f} % of {before:,}; {kept}, in"
-            f" {summary['seconds']:.1f} s"
-        )
-    return 0
+    kept = "every bit kept"
+    if asked.file.suffix != ".bin":
+        kept += " of the samples (zeros for lost packets), without the packets"
+    return asked.report(
+        summary,
+        f"wrote {asked.out}: {size:,} bytes, {100 * size / before:.1f} % of {before:,}; {kept}, in"
+        f" {summary['seconds']:.1f} s",
+    )

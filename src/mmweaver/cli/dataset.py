@@ -1,6 +1,5 @@
 """mmweaver dataset: procedural rooms, people and motions, and the radar signal of each; or a labelled set."""
 
-import json
 import sys
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -143,8 +142,7 @@ def _run_rooms(asked: Options) -> int:
     check_for_leaks(plan.rooms())
     cost = estimate_cost(plan, config, out)
     if asked.dry_run:
-        print(json.dumps(asdict(cost)) if asked.json else cost.summary(workers))
-        return 0
+        return asked.report(asdict(cost), cost.summary(workers))
     check_packages(asked.ray_address)
     if not (asked.quiet or asked.json):
         print(cost.summary(workers), file=sys.stderr)
@@ -167,11 +165,5 @@ def _run_rooms(asked: Options) -> int:
         "sequences_made": sum(report.num_sequences for report in reports),
         "sequences_refused": sum(len(report.refused) for report in reports),
     }  # fmt: skip
-    if asked.json:
-        print(json.dumps(summary))
-    elif not asked.quiet:
-        print(
-            f"{summary['sequences_made']} sequences in {len(reports)} new rooms ({summary['rooms_already_there']} were"
-            f" there) in {out}"
-        )
-    return 0
+    rooms = f"{len(reports)} new rooms ({total - len(reports)} were there)"
+    return asked.report(summary, f"{summary['sequences_made']} sequences in {rooms} in {out}")

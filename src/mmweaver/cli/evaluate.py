@@ -1,11 +1,10 @@
 """mmweaver evaluate: scores what was trained on generated data alone on recordings of real people."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
-from mmweaver.cli.arguments import General
+from mmweaver.cli.option_groups import Printed
 from mmweaver.cli.recognise_text import score_lines
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
@@ -28,22 +27,20 @@ Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, k
 
 
 @options
-class Options(General):
+class Options(Printed):
     """Trains on generated data alone and scores on recordings of real people."""
 
     task: Literal["zero-shot-activity", "zero-shot-pose"] = option("what is scored", default=MISSING, positional=True)
     recordings: Path = option("folder of recordings", "DIR", default=MISSING)
     weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
     split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: of MARS (default test)")
-    json: bool = option("print the scores for machines", default=False)
 
 
 def run(asked: Options) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
     evaluated, as_lines = TASKS[asked.task]
     scores = evaluated(asked)
-    print(json.dumps(scores, indent=2, ensure_ascii=False) if asked.json else "\n".join(as_lines(scores)))
-    return 0
+    return asked.report(scores, *as_lines(scores))
 
 
 def _activities(asked: Options) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from mmweaver.cli.arguments import General
+from mmweaver.cli.option_groups import Written
 from mmweaver.core.options import option, options
 
 EXAMPLES = """examples:
@@ -15,7 +15,7 @@ EXAMPLES = """examples:
 
 
 @options
-class Options(General):
+class Options(Written):
     """Writes result folders (or folders of results, such as --texts makes) for other tools: data-set layouts, MATLAB,
     netCDF, ROS 2, MCAP, Rerun and videos. Without a folder it lists the formats.
     """
@@ -23,8 +23,6 @@ class Options(General):
     folder: Path | None = option("a result folder, a folder of them, or a labelled set", "DIR", positional=True)
     to: str | None = option("the format", "FORMAT")
     out: Path | None = option("folder for the files, or one file: walk.mp4", "DIR")
-    overwrite: bool = option("replace files in --out", default=False)
-    json: bool = option("print what was written, or the formats, for machines", default=False)
 
 
 def run(asked: Options) -> int:
@@ -52,30 +50,15 @@ def run(asked: Options) -> int:
 
 
 def _list(asked: Options) -> int:
-    import json
-
     from mmweaver.exports.export import FORMATS
 
-    if asked.json:
-        listed = [
-            {"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()
-        ]
-        print(json.dumps(listed, indent=2))
-    else:
-        for name, one in FORMATS.items():
-            print(f"{name:11s} {one.what}{' (needs samples: --bin)' if one.needs_samples else ''}")
-    return 0
+    listed = [{"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()]
+    notes = {True: " (needs samples: --bin)", False: ""}
+    return asked.report(listed, *(f"{name:11s} {one.what}{notes[one.needs_samples]}" for name, one in FORMATS.items()))
 
 
 def _say(written: dict[str, str], asked: Options) -> int:
-    import json
-
-    if asked.json:
-        print(json.dumps(written, indent=2))
-    else:
-        for out, what in written.items():
-            print(f"{out}: {what}")
-    return 0
+    return asked.report(written, *(f"{out}: {what}" for out, what in written.items()))
 
 
 def _results(folder: Path) -> dict[Path, str]:

@@ -1,10 +1,9 @@
 """mmweaver info: what a .mmw file holds."""
 
-import json
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import General
+from mmweaver.cli.option_groups import Printed
 from mmweaver.core.options import MISSING, option, options
 
 FLOAT32_STEP_DB = -110.0  # over the peak: the finest that levels can have, see `SegmentEncoder.finest_step`
@@ -15,11 +14,10 @@ EXAMPLES = """examples:
 
 
 @options
-class Options(General):
+class Options(Printed):
     """Reads all of a .mmw file, checks it, and says what is in it."""
 
     file: Path = option("a .mmw or .mmwl file", "FILE", default=MISSING, positional=True)
-    json: bool = option("print it for machines", default=False)
 
 
 def run(asked: Options) -> int:
@@ -29,11 +27,7 @@ def run(asked: Options) -> int:
 
     is_raw = is_lossless_file(asked.file)
     facts = describe_lossless(asked.file) if is_raw else describe_mmw(asked.file)
-    if asked.json:
-        print(json.dumps(facts, indent=2))
-    else:
-        print("\n".join(_lines_of_samples(facts) if is_raw else _lines(facts)))
-    return 0
+    return asked.report(facts, *(_lines_of_samples(facts) if is_raw else _lines(facts)))
 
 
 def _lines_of_samples(facts: dict[str, Any]) -> list[str]:

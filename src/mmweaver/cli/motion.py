@@ -1,10 +1,9 @@
 """mmweaver motion: a sentence alone, without a photo and without a radar."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmweaver.cli.arguments import General
+from mmweaver.cli.option_groups import Printed
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
 
@@ -19,7 +18,7 @@ EXAMPLES = """examples:
 
 
 @options
-class Options(General):
+class Options(Printed):
     """Reads a sentence and animates it on an empty floor, without a photo and without a radar."""
 
     text: str = option("what the person does", "SENTENCE", default=MISSING, positional=True)
@@ -31,7 +30,6 @@ class Options(General):
         "write 22 joints at 120 Hz, as pose.npz holds them, or draw the body at ten instants (.png, .pdf, .svg); once"
         " more for both", "NPZ|PNG",
     )  # fmt: skip
-    json: bool = option("print the reading for machines", default=False)
 
 
 def run(asked: Options) -> int:
@@ -58,23 +56,13 @@ def run(asked: Options) -> int:
         }
         for step in motion.plan.steps
     ]
-    if asked.json:
-        files = [str(file) for file in asked.out or ()]
-        facts = {
-            "text": asked.text,
-            "seconds": motion.plan.duration_s,
-            "height_m": round(motion.pose.height_m, 3),
-            "subject": motion.pose.subject,
-            "steps": steps,
-            "clauses": [vars(clause) for clause in motion.clauses],
-        }
-        print(json.dumps({**facts, "assumptions": motion.assumptions, "files": files}, indent=2))
-        return 0
-    for step in steps:
-        print(f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['shown']}")
-    for sentence in motion.assumptions:
-        print(f"  assumed: {sentence}")
-    return 0
+    facts = {
+        "text": asked.text, "seconds": motion.plan.duration_s, "height_m": round(motion.pose.height_m, 3),
+        "subject": motion.pose.subject, "steps": steps, "clauses": [vars(clause) for clause in motion.clauses],
+        "assumptions": motion.assumptions, "files": [str(file) for file in asked.out or ()],
+    }  # fmt: skip
+    lines = [f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['shown']}" for step in steps]
+    return asked.report(facts, *lines, *(f"  assumed: {sentence}" for sentence in motion.assumptions))
 
 
 def _write_files(asked: Options, pose: "PoseSequence") -> None:

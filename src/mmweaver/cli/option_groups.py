@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+import json
 from typing import Any, Literal
 
 from mmweaver.cli.arguments import General
@@ -16,6 +17,14 @@ class Printed(General):
 
     json: bool = option("print a machine-readable summary on stdout", default=False, is_setting=False)
     quiet: bool = option("print nothing but errors", default=False, is_setting=False)
+
+    def report(self, summary: Any, *lines: str) -> int:
+        """Prints a summary for machines or lines for people; the exit status."""
+        if self.json:
+            print(json.dumps(summary, indent=2, ensure_ascii=False))
+        elif not self.quiet:
+            print(*lines, sep="\n")
+        return 0
 
 
 @options

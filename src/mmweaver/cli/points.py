@@ -1,6 +1,5 @@
 """mmweaver points: point clouds of boards and data sets become points.npz."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -43,14 +42,11 @@ def run(asked: Options) -> int:
         "out": str(asked.out), "kind": asked.layout or points_kind(asked.file), "points": len(cloud.frame),
         "frames": frames, "with_points": len(np.unique(cloud.frame)),
     }  # fmt: skip
-    if asked.json:
-        print(json.dumps(summary, indent=2))
-    elif not asked.quiet:
-        print(
-            f"wrote {asked.out}: {summary['points']:,} points in {frames} frames ({summary['kind']});"
-            f" x {_span(cloud.x_m)}, y {_span(cloud.y_m)}, z {_span(cloud.z_m)} m"
-        )
-    return 0
+    return asked.report(
+        summary,
+        f"wrote {asked.out}: {summary['points']:,} points in {frames} frames ({summary['kind']}); x {_span(cloud.x_m)},"
+        f" y {_span(cloud.y_m)}, z {_span(cloud.z_m)} m",
+    )
 
 
 def _span(values: Any) -> str:

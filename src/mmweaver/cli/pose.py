@@ -1,6 +1,5 @@
 """mmweaver pose: joints of a person from a radar's points, by a network trained on generated people."""
 
-import json
 from pathlib import Path
 
 from mmweaver.cli.option_groups import Written
@@ -47,10 +46,7 @@ def run(asked: Options) -> int:
         "out": str(asked.out), "frames": recording.num_frames, "frames_with_points": seen,
         "seconds": recording.num_frames / rate_hz,
     }  # fmt: skip
-    if asked.json:
-        print(json.dumps(summary))
-    elif not asked.quiet:
-        text = f"wrote {asked.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s"
-        guessed = recording.num_frames - seen
-        print(text + (f"; {guessed} frames have no points, their poses are guessed" if guessed else ""))
-    return 0
+    guessed = recording.num_frames - seen
+    note = f"; {guessed} frames have no points, their poses are guessed" if guessed else ""
+    text = f"wrote {asked.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s{note}"
+    return asked.report(summary, text)

@@ -26,9 +26,18 @@ class StageBar:
 
             shape = "{desc:<28} {bar:24} {n_fmt}/{total_fmt} {elapsed}"
             self._bar = tqdm(total=self._num_stages, file=sys.stderr, leave=False, delay=PATIENCE_S, bar_format=shape)
+            self._bar.set_description_str(stage, refresh=False)
         else:
+            self._bar.set_description_str(stage, refresh=False)
             self._bar.update()
-        self._bar.set_description_str(stage)
+
+    def progress(self, stage: str, done: int, total: int) -> None:
+        """Hears how much of a stage is done."""
+        if self._bar is None or self._bar.desc != stage:
+            self(stage)
+        if self._bar is not None:
+            self._bar.total = total
+            self._bar.update(done - self._bar.n)
 
     def __enter__(self) -> "StageBar":
         return self

@@ -1,11 +1,12 @@
 """mmweaver recognise: a recogniser of activities, trained on generated data alone, scored and used."""
 
-import json
 import sys
 from pathlib import Path
 from typing import Literal
 
+from mmweaver.cli.arguments import check_mode
 from mmweaver.cli.option_groups import Printed
+from mmweaver.cli.progress import StageBar
 from mmweaver.core.errors import InputError
 from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
@@ -58,10 +59,7 @@ def run(asked: Options) -> int:
     needed = {"train": "out", "score": "recordings", "run": "points"}[action]
     if getattr(asked, needed) is None:
         raise InputError(f"recognise {action} needs --{needed}")
-    others = {"train": ("points",), "score": ("points",), "run": ("out", "recordings")}[action]
-    for name in others:
-        if getattr(asked, name) is not None:
-            raise InputError(f"--{name} is no option of recognise {action}")
+    check_mode(asked, action, {"train": "out recordings sequences", "score": "out recordings", "run": "points"})
     return {"train": _train, "score": _score, "run": _run}[asked.action](asked)
 
 
@@ -73,13 +71,9 @@ def _train(asked: Options) -> int:
 
     sequences = usual_sequences(read_task(asked.place)) if asked.sequences is None else asked.sequences
     options = TrainingOptions(sequences=sequences, seed=asked.seed)
-    with _Progress(quiet=asked.quiet) as progress:
-        model = train_recogniser(asked.place, asked.out, options, progress, asked.recordings)
-    if asked.json:
-        print(json.dumps({"out": str(asked.out), **model.meta}, indent=2, ensure_ascii=False))
-    elif not asked.quiet:
-        print("\n".join(training_lines(model, asked.out)))
-    return 0
+    with StageBar(0, quiet=asked.quiet) as bar:
+        model = train_recogniser(asked.place, asked.out, options, bar.progress, asked.recordings)
+    return asked.report({"out": str(asked.out), **model.meta}, *training_lines(model, asked.out))
 
 
 def _score(asked: Options) -> int:
@@ -101,8 +95,7 @@ def _score(asked: Options) -> int:
     if picture is not None:
         shown, _ = without_persistent_motion(model, recordings)
         confusion_picture(shown, asked.place / SEQUENCE_FOLDER, recordings, picture)
-    print(json.dumps(scores, indent=2, ensure_ascii=False) if asked.json else "\n".join(score_lines(scores)))
-    return 0
+    return asked.report(scores, *score_lines(scores))
 
 
 def _run(asked: Options) -> int:
@@ -126,31 +119,3 @@ def _run(asked: Options) -> int:
         text = f"{one.first_frame / rate_hz:8.1f} s  {one.label}  {share:.2f}{outside}"
         print(one.as_json() if asked.json else text, flush=True)
     return 0
-
-
-class _Progress:
-    """A bar on a terminal, lines now and then elsewhere."""
-
-    def __init__(self, *, quiet: bool):
-        self._quiet, self._bar = quiet, None
-
-    def __enter__(self) -> "_Progress":
-        return self
-
-    def __call__(self, stage: str, done: int, of: int) -> None:
-        if self._quiet or not sys.stderr.isatty():
-            return
-        from tqdm import tqdm
-
-        if self._bar is None or self._bar.desc != stage:
-            self._close()
-            self._bar = tqdm(desc=stage, total=of, file=sys.stderr, leave=False)
-        self._bar.n = done
-        self._bar.refresh()
-
-    def __exit__(self, *_: object) -> None:
-        self._close()
-
-    def _close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()

@@ -1,6 +1,5 @@
 """mmweaver rooms: furnished rooms with photo, depth, classes and truth, made from a seed."""
 
-import json
 from pathlib import Path
 
 from mmweaver.cli.arguments import write_request
@@ -64,8 +63,6 @@ def run(asked: Options) -> int:
                 write_room(stage / name, room, room.photo(lighting, asked.noise), lighting)
                 names.append(name)
         write_request(stage, asked)
-    if asked.json:
-        print(json.dumps({"out": str(asked.out), "rooms": names, "seed": asked.seed}, indent=2))
-    elif not asked.quiet:
-        print(f"wrote {len(names)} rooms to {asked.out}: {names[0]}{' ... ' + names[-1] if len(names) > 1 else ''}")
-    return 0
+    shown = names[0] + (f" ... {names[-1]}" if len(names) > 1 else "")
+    summary = {"out": str(asked.out), "rooms": names, "seed": asked.seed}
+    return asked.report(summary, f"wrote {len(names)} rooms to {asked.out}: {shown}")

@@ -1,6 +1,5 @@
 """mmweaver sample: files to try the other commands with."""
 
-import json
 from pathlib import Path
 
 from mmweaver.cli.option_groups import Written
@@ -36,11 +35,7 @@ def run(asked: Options) -> int:
     names = sorted([*bundled, PICTURE, RECORDING])
     check_output_folder(asked.out, overwrite=asked.overwrite, files=names)
     _write(asked.out, SAMPLE_FOLDER, bundled, overwrite=asked.overwrite)
-    if asked.json:
-        print(json.dumps({"out": str(asked.out), "files": names}, indent=2))
-    elif not asked.quiet:
-        print(f"wrote {asked.out}: {', '.join(names)}")
-    return 0
+    return asked.report({"out": str(asked.out), "files": names}, f"wrote {asked.out}: {', '.join(names)}")
 
 
 def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> None:

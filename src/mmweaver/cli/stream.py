@@ -1,6 +1,5 @@
 """mmweaver generate --stream: one sentence after the other without a break, written part by part."""
 
-import json
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -72,11 +71,8 @@ def run_stream(asked: "Options", out: Path) -> int:
     meta = folder.finish()
     if interrupted:
         raise KeyboardInterrupt(f"{folder.frames} frames are in {out}")
-    if asked.json:
-        print(json.dumps({"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}, indent=2))
-    elif not asked.quiet:
-        print(f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
-    return 0
+    summary = {"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}
+    return asked.report(summary, f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
 
 
 def _check(asked: "Options") -> None:

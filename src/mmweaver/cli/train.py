@@ -1,12 +1,11 @@
 """mmweaver train: weights from a data set, from recordings of one's own room, or from the sentences of a task."""
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from mmweaver.cli.arguments import REQUEST_FILE, write_request
+from mmweaver.cli.arguments import REQUEST_FILE, check_mode, write_request
 from mmweaver.cli.option_groups import Printed
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
@@ -19,6 +18,12 @@ if TYPE_CHECKING:
 
 # what a run writes: none may be a folder, or the weights that it starts from
 RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.jsonl", "README.md", REQUEST_FILE)
+# options of some recipes; "captures" is recipe weaver on recordings
+USES = {
+    "weaver": "data start encoder", "activity": "data start", "paper_power": "data start", "pose": "task sequences",
+    "captures": "recordings start rgb depth camera",
+}  # fmt: skip
+NEEDS = {"weaver": "data", "activity": "data", "paper_power": "data", "pose": "task", "captures": "start"}
 MAX_LEARNING_RATE = 1.0  # far above what Adam learns with
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
@@ -110,23 +115,25 @@ def run(asked: Options) -> int:
         raise KeyboardInterrupt(kept) from None
     if not place.is_first:
         return 0
-    if asked.json:
-        print(json.dumps(summary))
-    elif not is_quiet:
-        where = summary.get("evaluated_on", "unseen rooms")
-        weights = summary["weights"]
-        files = weights if isinstance(weights, str) else ", ".join(weights)
-        print(f"{files}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
-        for who, of_data in summary.get("scores", {}).items():
-            print(f"{who}: " + ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in of_data.items()))
-    return 0
+    weights = summary["weights"]
+    files = weights if isinstance(weights, str) else ", ".join(weights)
+    where = summary.get("evaluated_on", "unseen rooms")
+    scores = [
+        f"{who}: " + ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in of_data.items())
+        for who, of_data in summary.get("scores", {}).items()
+    ]
+    text = f"{files}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}"
+    return asked.report(summary, text, *scores)
 
 
 def _check(asked: Options) -> None:
     """Raises InputError for what a recipe cannot do, and for numbers outside their limits."""
-    is_pose, recipe = asked.recipe == "pose", asked.recipe
-    photo = (asked.rgb, asked.depth, asked.camera)
-    has_captures = asked.recordings is not None
+    recipe = "captures" if asked.recordings else asked.recipe
+    check_mode(asked, recipe, USES)
+    missing = next((name for name in NEEDS[recipe].split() if getattr(asked, name) is None), None)
+    if missing:
+        shown = {"task": "a task, TASK.toml", "start": "--weights to start from", "data": "--data, or --recordings"}
+        raise InputError(f"recipe {recipe} needs {shown[missing]}")
     if asked.tensorboard:
         need("training", "--tensorboard", "tensorboard")
     for name in ("steps", "batch", "sequences", "validate_every"):
@@ -134,36 +141,12 @@ def _check(asked: Options) -> None:
         if count is not None and count < 1:
             raise InputError(f"--{name.replace('_', '-')} must be 1 or more, not {count}")
     rate = asked.learning_rate
-    refusals = {
-        "train pose needs a task: mmweaver train pose TASK.toml --out model/": is_pose and asked.task is None,
-        f"a task and --sequences are for recipe pose; recipe {recipe} is trained on --data": (
-            not is_pose and (asked.task, asked.sequences) != (None, None)
-        ),
-        "recipe pose is trained on the sentences of its task: without --data, --recordings and --weights": (
-            is_pose and (asked.data, asked.recordings, asked.start) != (None, None, None)
-        ),
-        f"--recordings is for recipe weaver; recipe {recipe} is trained on --data": recipe != "weaver" and has_captures,
-        f"--learning-rate must be above 0 and at most {MAX_LEARNING_RATE:g}, not {rate}": (
-            rate is not None and not 0 < rate <= MAX_LEARNING_RATE
-        ),
-        "what to train on? give --data, a data set of mmweaver dataset, or --recordings, your recordings": (
-            not is_pose and (asked.data is None) != has_captures
-        ),
-        "--recordings fine-tunes existing weights; give them with --weights": has_captures and asked.start is None,
-        "--encoder is for recipe weaver on --data; fine-tuning keeps the encoder of its weights": (
-            asked.encoder is not None and (recipe != "weaver" or asked.data is None)
-        ),
-        "--rgb, --depth and --camera are the photo of --recordings; a data set has its own": (
-            not has_captures and photo != (None, None, None)
-        ),
-        "--rgb and --depth belong together: the photo of the room and its distances": (
-            (asked.rgb is None) != (asked.depth is None)
-        ),
-        f"--save-every must be 0 or more seconds, not {asked.save_every:g}": not asked.save_every >= 0,
-    }
-    for message, is_wrong in refusals.items():
-        if is_wrong:
-            raise InputError(message)
+    if rate is not None and not 0 < rate <= MAX_LEARNING_RATE:
+        raise InputError(f"--learning-rate must be above 0 and at most {MAX_LEARNING_RATE:g}, not {rate:g}")
+    if not asked.save_every >= 0:
+        raise InputError(f"--save-every must be 0 or more seconds, not {asked.save_every:g}")
+    if (asked.rgb is None) != (asked.depth is None):
+        raise InputError("--rgb and --depth belong together: the photo of the room and its distances")
 
 
 def _train_weaver(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:

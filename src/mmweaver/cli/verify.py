@@ -1,6 +1,5 @@
 """mmweaver verify: whether files are still as they were written, and which command makes damaged ones anew."""
 
-import json
 from pathlib import Path
 
 from mmweaver.cli.option_groups import Printed
@@ -12,7 +11,7 @@ EXAMPLES = """examples:
   mmweaver verify run/                   # a training run: weights and checkpoint
   mmweaver verify walk.mmw               # or any .mmwl, .npz or .zip
 """
-DAMAGED, MOST_SHOWN = 1, 20
+DAMAGED, MAX_SHOWN = 1, 20
 
 
 @options
@@ -30,22 +29,17 @@ def run(asked: Options) -> int:
     from mmweaver.weaver.verification import verify
 
     found = verify(asked.path)
-    if asked.json:
-        print(json.dumps(found.to_dict(), indent=2))
-    elif not asked.quiet:
-        for damage in found.damaged[:MOST_SHOWN]:
-            print(damage)
-        if len(found.damaged) > MOST_SHOWN:
-            print(f"... and {len(found.damaged) - MOST_SHOWN} more")
-        for command in found.commands:
-            print(f"make it anew with: {command}")
-        for name in found.unchecked[:MOST_SHOWN]:
-            print(f"{name} has no checksums: {_why_unchecked(found.kind, Path(name) == asked.path)}")
-        count = f"{found.checked} file{'' if found.checked == 1 else 's'}"
-        if found.is_sound:
-            print(f"{asked.path} ({found.kind}): {count} checked, all as written")
-        else:
-            print(f"{asked.path} ({found.kind}): {len(found.damaged)} of {count} damaged or missing")
+    count = f"{found.checked} file{'' if found.checked == 1 else 's'}"
+    damaged = len(found.damaged)
+    lines = [*map(str, found.damaged[:MAX_SHOWN])]
+    lines += [f"... and {damaged - MAX_SHOWN} more"] if damaged > MAX_SHOWN else []
+    lines += [f"make it anew with: {command}" for command in found.commands]
+    lines += [
+        f"{name} has no checksums: {_why_unchecked(found.kind, Path(name) == asked.path)}"
+        for name in found.unchecked[:MAX_SHOWN]
+    ]
+    verdict = f"{count} checked, all as written" if found.is_sound else f"{damaged} of {count} damaged or missing"
+    asked.report(found.to_dict(), *lines, f"{asked.path} ({found.kind}): {verdict}")
     return 0 if found.is_sound else DAMAGED
 
 
