@@ -70,8 +70,8 @@ def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: py
     ("words", "message"),
     [
         (["train", "pose", "--out", "b"], "needs a task"),
-        (["train", "pose", "t.toml", "--data", "a", "--out", "b"], "sentences of its task"),
-        (["train", "activity", "t.toml", "--data", "a", "--out", "b"], "are for recipe pose"),
+        (["train", "pose", "t.toml", "--data", "a", "--out", "b"], "--data"),
+        (["train", "activity", "t.toml", "--data", "a", "--out", "b"], "TASK.toml"),
         (["pose", "nowhere", "--points", "a", "--out", "b"], "nowhere holds no weights"),
         (["evaluate", "zero-shot-activity", "--recordings", "a", "--split", "test"], "is for zero-shot-pose"),
     ],

@@ -126,7 +126,7 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
     [
         (["train", "task.toml"], "needs --out"),
         (["score", "model", "--points", "a"], "needs --recordings"),
-        (["run", "model", "--points", "a", "--out", "b"], "--out is no option of recognise run"),
+        (["run", "model", "--points", "a", "--out", "b"], "--out"),
         (["run", "nowhere", "--points", "a"], "nowhere does not exist; give a folder of mmweaver recognise train"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
     ],

@@ -128,8 +128,8 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "what to train on"), (["--recordings", "a"], "give them with --weights"),
-        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --recordings"),
+        ([], "--data"), (["--recordings", "a"], "--weights"),
+        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "--rgb"),
         (["--recordings", "a", "--weights", "w", "--rgb", "p.png"], "belong together"),
         (["--data", "d", "--save-every", "-1"], "0 or more seconds"), (["--data", "d", "--device", "no"], "device"),
         (["--data", "d", "--steps", "0"], "--steps must be 1 or more"),

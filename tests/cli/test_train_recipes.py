@@ -55,7 +55,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     data = ["--data", str(tmp_path), "--out", str(tmp_path / "o")]
     for words, told in (
         (["train", "activity", *data], "no data set"),
-        (["train", "activity", *data, "--weights", "w", "--recordings", "c"], "recipe weaver"),
+        (["train", "activity", *data, "--weights", "w", "--recordings", "c"], "--recordings"),
     ):
         assert main(words) == 2
         error = capsys.readouterr().err.strip()

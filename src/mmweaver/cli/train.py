@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 # what a run writes: none may be a folder, or the weights that it starts from
 RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.jsonl", "README.md", REQUEST_FILE)
-# options of some recipes; "captures" is recipe weaver on recordings
+# options of some recipes; fine-tuning is recipe weaver on recordings
 USES = {
     "weaver": "data start encoder", "activity": "data start", "paper_power": "data start", "pose": "task sequences",
-    "captures": "recordings start rgb depth camera",
+    "fine-tuning": "recordings start rgb depth camera",
 }  # fmt: skip
-NEEDS = {"weaver": "data", "activity": "data", "paper_power": "data", "pose": "task", "captures": "start"}
+NEEDS = {"weaver": "data", "activity": "data", "paper_power": "data", "pose": "task", "fine-tuning": "start"}
 MAX_LEARNING_RATE = 1.0  # far above what Adam learns with
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
@@ -84,6 +84,11 @@ class Options(Printed):
     tensorboard: bool = option("also write TensorBoard's files to OUT/tensorboard", default=False, group="output")
 
     @property
+    def mode(self) -> str:
+        """The recipe, or fine-tuning of recipe weaver on recordings."""
+        return "fine-tuning" if self.recordings and self.recipe == "weaver" else self.recipe
+
+    @property
     def settings(self) -> dict[str, Any]:
         """The settings of the recipe that are given."""
         names = {"batch": "batch_size"}
@@ -104,7 +109,7 @@ def run(asked: Options) -> int:
     is_quiet = asked.quiet or not place.is_first
     start = None if asked.start is None or not Path(asked.start).is_file() else Path(asked.start)
     check_output_folder(asked.out, overwrite=True, files=RUN_FILES, inputs=[start])
-    recipe = "captures" if asked.recordings else asked.recipe
+    recipe = asked.mode
     try:
         summary = _RECIPES[recipe](asked, place, is_quiet)
         if place.is_first:
@@ -128,12 +133,12 @@ def run(asked: Options) -> int:
 
 def _check(asked: Options) -> None:
     """Raises InputError for what a recipe cannot do, and for numbers outside their limits."""
-    recipe = "captures" if asked.recordings else asked.recipe
+    recipe = asked.mode
     check_mode(asked, recipe, USES)
     missing = next((name for name in NEEDS[recipe].split() if getattr(asked, name) is None), None)
     if missing:
         shown = {"task": "a task, TASK.toml", "start": "--weights to start from", "data": "--data, or --recordings"}
-        raise InputError(f"recipe {recipe} needs {shown[missing]}")
+        raise InputError(f"{recipe} needs {shown[missing]}")
     if asked.tensorboard:
         need("training", "--tensorboard", "tensorboard")
     for name in ("steps", "batch", "sequences", "validate_every"):
@@ -226,7 +231,7 @@ def _tune(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, A
     file = write_tuned(asked.out, tuned, start=start, licence_of_start=card.licence) if place.is_first else None
     held_out = tuned.held_out
     return {
-        **_summary(file, tuned.trainer), "loss_before": tuned.loss_before, "captures": len(tuned.rooms),
+        **_summary(file, tuned.trainer), "loss_before": tuned.loss_before, "fine-tuning": len(tuned.rooms),
         "with_joints": sum(room.has_joints for room in tuned.rooms), "gain": tuned.gain,
         "evaluated_on": "the captures themselves" if held_out is None else f"{held_out.folder.name}, held out,",
     }  # fmt: skip
@@ -237,7 +242,7 @@ _RECIPES = {
     "activity": _train_activity,
     "paper_power": _train_power,
     "pose": _train_pose,
-    "captures": _tune,
+    "fine-tuning": _tune,
 }
 
 

@@ -51,9 +51,7 @@ from mmweaver.weaver.streaming import (
     CHUNK_FRAMES,
     StreamChunk,
     Streamer,
-    check_chunk_frames,
     check_streams,
-    point_detector,
     takes_argument,
 )
 
@@ -229,18 +227,7 @@ class Weaver(RoomReader):
             seed=request.seed, farthest_m=request.config.farthest_bin_m, start_m=person.start_m,
             heading_rad=request.heading_rad, height_m=person.height_m, subject=person.subject,
         )  # fmt: skip
-        own, given = self.board_of(request, room)
-        meta = {
-            "seed": request.seed, "points": self.points, "weights": self.weights, "inputs": room.inputs,
-            "board": own.meta(),
-        }  # fmt: skip
-        streamer = Streamer(
-            room=room, config=request.config, method=self.method, method_name=self.method_name,
-            detect_points=point_detector(self.points, self._firmware_of(own)), motion=motion, seed=request.seed,
-            chunk_frames=check_chunk_frames(chunk_frames), needs_adc=needs_adc(self.points), keep_adc=request.keep_adc,
-            meta=meta, board=given,
-        )  # fmt: skip
-        return streamer.chunks(sentences)
+        return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
     @single_precision()
     def carry_out(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...] | None = None) -> Generation:
@@ -271,7 +258,7 @@ class Weaver(RoomReader):
             **given,
         )  # fmt: skip
         with stages("point cloud"):
-            points = detect(signal.cube, signal.adc, self.points, self._firmware_of(board))
+            points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
@@ -308,7 +295,7 @@ class Weaver(RoomReader):
             raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
         return IDEAL_BOARD, {}
 
-    def _firmware_of(self, board: Board) -> FirmwareSettings | None:
+    def firmware_of(self, board: Board) -> FirmwareSettings | None:
         """The settings of TI's point cloud, with the threshold of the board that was calibrated."""
         return None if self.firmware is None else self.firmware.with_threshold(board.cfar_threshold)
 
@@ -327,7 +314,7 @@ class Weaver(RoomReader):
             "weights": self.weights,
             "board": board.meta(),
             "points": self.points,
-            "firmware": self._firmware_of(board) if self.points == "firmware" else None,
+            "firmware": self.firmware_of(board) if self.points == "firmware" else None,
             "inputs": room.inputs | _motion_input(request.motion),
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
