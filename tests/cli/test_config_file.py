@@ -92,6 +92,8 @@ def test_a_file_of_0_2_is_read_and_its_old_names_are_warned_of_once(tmp_path: Pa
     warned = capsys.readouterr().err.splitlines()
     assert len(warned) == 5
     assert any("--further-photos" in line and "--extra-views" in line for line in warned)
+    (tmp_path / "run.toml").write_text('draws = "free"\nhtml = "walk.html"\nseed = 4\n')
+    assert options("generate", "--config", str(tmp_path / "run.toml")).seed == 4
     (tmp_path / "run.toml").write_text("bounces = 1\n")
     with pytest.raises(InputError, match="bounces"):
         options("generate", "--config", str(tmp_path / "run.toml"))

@@ -29,6 +29,7 @@ REQUEST_FILE = "request.toml"
 HELP_ALL = "--help-all"
 # written into request.toml even where they are the default, which may change
 ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
+IGNORED_IN_FILES = ("draws", "html", "strict")  # of 0.2, which say nothing of the signal itself
 # Options of 0.2 by their name today, perhaps with a key that the value follows; or what to do instead.
 RENAMED = {
     "--empty-room": "--background",
@@ -253,6 +254,9 @@ def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, value in values.items():
         key = name.replace("_", "-")
+        if key in IGNORED_IN_FILES:
+            print(f"mmweaver: {file}: {key} has no effect any more", file=sys.stderr)
+            continue
         if f"--{key}" in RENAMED:
             key, _, prefix = renamed(f"--{key}")[2:].partition("=")
             value = f"{prefix}{write_word(value)}" if prefix else value

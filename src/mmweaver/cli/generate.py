@@ -266,7 +266,7 @@ def run(asked: Options) -> int:
 def _run_one(asked: Options, out: Path) -> int:
     """One sequence."""
     from mmweaver.cli.progress import StageBar
-    from mmweaver.cli.summary import print_summary
+    from mmweaver.cli.summary import machine_summary, summary_lines
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.formats.result_folder import FILES
     from mmweaver.weaver.parsed_request import parse
@@ -285,8 +285,7 @@ def _run_one(asked: Options, out: Path) -> int:
         result = weaver.carry_out(parsed, room_of(asked, weaver, background))
         written = {REQUEST_FILE: asked.request_toml(text=texts, frames=parsed.frames, seconds=None)}
         meta = result.save(out, overwrite=asked.overwrite, extra=written, **asked.output)
-    print_summary(out, meta, as_json=asked.json, quiet=asked.quiet, verbose=asked.verbose)
-    return 0
+    return asked.report(machine_summary(out, meta), *summary_lines(out, meta, verbose=asked.verbose))
 
 
 def _picture_or(model: str, picture: str, name: str) -> str:

@@ -46,7 +46,7 @@ class Options(Samples, Ranges, PointChoice, Written):
 def run(asked: Options) -> int:
     """Processes the recording and writes the results. Raises InputError."""
     from mmweaver.cli.progress import StageBar
-    from mmweaver.cli.summary import print_summary
+    from mmweaver.cli.summary import machine_summary, summary_lines
     from mmweaver.core.output_checks import check_output_folder
 
     if asked.file is None:
@@ -65,5 +65,4 @@ def run(asked: Options) -> int:
         )  # fmt: skip
         written = {REQUEST_FILE: request_toml(asked)}
         meta = recording.save(asked.out, overwrite=asked.overwrite, extra=written, pictures=not asked.no_pictures)
-    print_summary(asked.out, meta, as_json=asked.json, quiet=asked.quiet, verbose=asked.verbose)
-    return 0
+    return asked.report(machine_summary(asked.out, meta), *summary_lines(asked.out, meta, verbose=asked.verbose))
