@@ -145,8 +145,10 @@ def _mesh(session: Session, mesh: Path, files: dict[str, Path]) -> dict[str, Any
 def _room(session: Session, found: Room, /, **given: Path | str | None) -> dict[str, Any]:
     """Keeps a room; `given` are the options of `mmweaver generate` that read it, with names for files."""
     words = {name: Path(value).name for name, value in given.items() if value is not None}
-    names = {"materials": "--mesh-set=materials="}
-    options = tuple(f"{names.get(name, f'--{name}=')}{value}" for name, value in words.items())
+    pairs = [
+        ("mesh-set", f"materials={value}") if name == "materials" else (name, value) for name, value in words.items()
+    ]
+    options = tuple(word for name, value in pairs for word in (f"--{name}", value))
     is_model = words.get("depth") == AUTO
     words = {"depth_model" if is_model and name == "depth" else name: value for name, value in words.items()}
     first, *more = words.items()

@@ -247,8 +247,12 @@ def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
 
 def _most_frames(config: RadarConfig, has_adc: bool) -> int:
     """The most frames that limits and memory allow."""
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    return max(1, min(MAX_FRAMES, MAX_BYTES // (8 * numbers), int(MAX_SECONDS / config.frame_period_s)))
+    return max(1, min(MAX_FRAMES, MAX_BYTES // _frame_bytes(config, has_adc), int(MAX_SECONDS / config.frame_period_s)))
+
+
+def _frame_bytes(config: RadarConfig, has_adc: bool) -> int:
+    """Bytes of a frame of the largest array, complex64."""
+    return 8 * config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
 
 
 def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
@@ -256,12 +260,11 @@ def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
         raise InputError(
             f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
         )
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    most = MAX_BYTES // (8 * numbers)
-    if frames > most:
+    size = _frame_bytes(config, has_adc)
+    if frames > MAX_BYTES // size:
         raise InputError(
-            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
-            f" {most} are made at a time"
+            f"{frames} frames of radar {config.name!r} fill {frames * size / 1e9:.1f} GB of memory; at most"
+            f" {MAX_BYTES // size} are made at a time"
         )
 
 
