@@ -67,6 +67,7 @@ REVIEWED: dict[str, str] = {
             "Ctrl+C ends it",
             "--radar □",
             " (needs samples: --bin)",
+            "□; give --□ once",
             "--weights to start from",
             "--data, or --recordings",
         ),

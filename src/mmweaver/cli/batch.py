@@ -177,14 +177,16 @@ def run_batch(asked: "Options", out: Path) -> int:
     from mmweaver.core.output_checks import check_output_folder
 
     check_output_folder(out, overwrite=True, files=[LIST, LEAKS], inputs=asked.inputs)
+    person = asked.of_one_person("--texts makes sequences of one person each")
     texts = _checked_texts(asked)
     background = read_background(asked)
     weaver = weaver_of(asked, radar_of(asked, background))
     requests = _parsed(asked, weaver, texts)
     room = room_of(asked, weaver, background)
-    at, height_m, subject = ((values or [None])[0] for values in (asked.at, asked.height_m, asked.subject))
     heading = None if asked.heading_rad is None else heading_deg_of(asked.heading_rad)
-    given = GivenPlacing(start_m=at, heading_deg=heading, height_m=height_m, subject=subject)
+    given = GivenPlacing(
+        start_m=person["at"], heading_deg=heading, height_m=person["height_m"], subject=person["subject"]
+    )
     sequences, refused = _sequences(asked, texts, requests, room, out, given)
     summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
     count = len(summary["sequences"])
@@ -213,9 +215,6 @@ def _checked_texts(asked: "Options") -> list[str]:
         raise InputError(
             "--texts takes one --radar-pose; run it once for each radar: the same seeds give the same motions"
         )
-    for name, values in {"at": asked.at, "height": asked.height_m, "subject": asked.subject}.items():
-        if len(values or ()) > 1:
-            raise InputError(f"--texts makes sequences of one person each; give --{name} once")
     assert asked.texts is not None
     texts = read_texts(asked.texts)
     if not 1 <= _repeat(asked) <= MAX_SEQUENCES // len(texts):

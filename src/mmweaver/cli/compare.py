@@ -1,7 +1,7 @@
 """mmweaver compare: two signals, recorded or simulated, feature by feature."""
 
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mmweaver.cli.option_groups import Samples, Written, radar_name
 from mmweaver.core.errors import InputError
@@ -37,8 +37,8 @@ class Options(Samples, Written):
     out: Path | None = option(
         "folder for comparison.png, comparison.json and comparison.html (default: print the numbers only)", "DIR"
     )
-    radar: list[Source] | None = option(
-        "preset, TI .cfg or radar.json; once more where that of B is another", "NAME|FILE"
+    radar: Any = option(
+        "preset, TI .cfg or radar.json; once more if B has another", "NAME|FILE", kind=Source, many=True
     )
 
 

@@ -203,19 +203,28 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
 
     def asked(self, **instead: Any) -> Request:
         """The request of one sequence."""
-        given = {one.name: getattr(self, one.name) for one in fields(Request)} | instead
+        given: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(Request)} | instead
         for name in ("text", "at", "height_m", "subject"):  # of one person the value, of several a list
             value, people = given[name], len(given["text"] or [""])
             if isinstance(value, list) and len(value) == 1 and (name == "text" or people == 1):
-                given = {**given, name: value[0]}
-        return Request(**{**given, "board": self.board_name()})
+                given[name] = value[0]
+        given["board"] = self.board_name()
+        return Request(**given)
+
+    def of_one_person(self, why: str) -> dict[str, Any]:
+        """Place, height and number of the only person. Raises InputError where several are given."""
+        given: dict[str, Any] = {name: getattr(self, name) for name in ("at", "height_m", "subject")}
+        for name, values in given.items():
+            if len(values or ()) > 1:
+                raise InputError(f"{why}; give --{name.removesuffix('_m')} once")
+        return {name: values[0] if values else None for name, values in given.items()}
 
     def board_name(self) -> str | None:
         """The board by name; a typical one with the number of the seed, the same for all sequences of a run.
 
         None: that of the background recording.
         """
-        name = self.board or ("typical" if self.background is None else None)
+        name: Any = self.board or ("typical" if self.background is None else None)
         return f"typical:{self.seed % 2**31}" if name == "typical" else name and str(name)
 
     def request_toml(self, **instead: Any) -> str:
@@ -224,7 +233,7 @@ class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice,
         return request_toml(self, **{"radar": radar, "board": self.board_name(), **instead})
 
     @property
-    def inputs(self) -> list[Path | None]:
+    def inputs(self) -> list[Any]:
         """Files that an output must not replace."""
         return [self.rgb, self.depth and Path(self.depth), self.background, self.motion_file, self.texts]
 
@@ -363,7 +372,7 @@ def _motion_of_model(asked: Options, request: Request, is_of_all: bool, weaver: 
     if request.frames is not None:
         seconds = request.frames * (1 / request.fps if request.fps else weaver.radar.frame_period_s)
     path_m = tuple(request.path_m or ())
-    start_m = path_m[0] if path_m else request.at
+    start_m: Any = path_m[0] if path_m else request.at
     task = MotionTask(
         sentence=request.text, start_m=start_m, path_m=path_m, seconds=seconds, seed=request.seed
     )  # fmt: skip

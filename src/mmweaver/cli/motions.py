@@ -1,5 +1,7 @@
 """mmweaver motions: what a sentence may ask for, with an example of each."""
 
+from typing import Any
+
 from mmweaver.cli.option_groups import Printed
 from mmweaver.core.options import options
 
@@ -21,7 +23,7 @@ def run(asked: Options) -> int:
 
     load_activity_plugins()
     activities = sorted(BY_KEY.values(), key=lambda one: one.hands)
-    rows = [
+    rows: list[dict[str, Any]] = [
         {
             "activity": one.key, "name": one.name, "example": one.example, "part": "hands" if one.hands else "body",
             "shortest_s": one.least_s, "natural_s": one.natural_s, "can_be_counted": one.counted_s is not None,

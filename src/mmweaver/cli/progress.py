@@ -15,7 +15,7 @@ class StageBar:
 
     def __init__(self, num_stages: int, *, quiet: bool = False):
         self._num_stages, self._silent = num_stages, quiet or not sys.stderr.isatty()
-        self._bar: tqdm[None] | None = None
+        self._bar: tqdm | None = None
 
     def __call__(self, stage: str) -> None:
         """Hears that a stage begins."""

@@ -36,7 +36,7 @@ class Options(Printed):
     place: Path = option(
         "train: the task; else the trained folder", "TASK.toml|MODEL", default=MISSING, positional=True
     )
-    out: Path | None = option(
+    out: Path = option(
         "train: folder of the recogniser; the same command resumes it; score: draw the largest confusions, recorded"
         " windows that are mistaken, next to generated ones",
         "DIR|PNG",
@@ -45,12 +45,12 @@ class Options(Printed):
         "people that perform each activity (default 40, of gestures that are done once 100; 8 are a first look)", "N"
     )
     seed: int = option("of people, rooms and trees", "N", default=0)
-    recordings: Path | None = option(
+    recordings: Path = option(
         "labelled recordings, a folder per activity: that train along, or that are scored",
         "DIR",
         group="train and score",
     )
-    points: Path | None = option("a recording, or - for a pipe", "FILE|-", group="run")
+    points: Path = option("a recording, or - for a pipe", "FILE|-", group="run")
 
 
 def run(asked: Options) -> int:

@@ -28,6 +28,7 @@ def run_stream(asked: "Options", out: Path) -> int:
     from mmweaver.formats.stream_folder import LIST, PARTS, StreamFolder
 
     _check(asked)
+    person = asked.of_one_person("--stream is of one person")
     check_output_folder(out, overwrite=True, inputs=asked.inputs)
     sweep(out / PARTS)
     if (out / LIST).is_file():
@@ -40,14 +41,12 @@ def run_stream(asked: "Options", out: Path) -> int:
     background = read_background(asked)
     weaver = weaver_of(asked, radar_of(asked, background))
     room = room_of(asked, weaver, background)
-    at, height_m, subject = (values[0] if values else None for values in (asked.at, asked.height_m, asked.subject))
     limit = asked.frames
     folder: StreamFolder | None = None
     interrupted = False
     chunks = weaver.stream(
         room, _sentences(asked), seed=asked.seed, fps=asked.fps, keep_adc=asked.keep_adc, board=asked.board_name(),
-        chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit), at=at,
-        heading_rad=asked.heading_rad, height_m=height_m, subject=subject,
+        chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit), heading_rad=asked.heading_rad, **person,
     )  # fmt: skip
     try:
         for chunk in chunks:
@@ -80,9 +79,6 @@ def _check(asked: "Options") -> None:
     for name, option in NOT_OF_STREAMS.items():
         if getattr(asked, name):
             raise InputError(f"--stream takes sentences; leave out --{option}, or --stream")
-    for name, values in {"at": asked.at, "height": asked.height_m, "subject": asked.subject}.items():
-        if len(values or ()) > 1:
-            raise InputError(f"--stream is of one person; give --{name} once")
     if (asked.text is None) == (asked.texts is None):
         raise InputError("--stream needs sentences: --text for each, --texts FILE, or --texts - for standard input")
 

@@ -50,15 +50,15 @@ class Options(Printed):
         " of power as its target; or poses from points",
         default=MISSING, positional=True,
     )  # fmt: skip
-    task: Path | None = option("of recipe pose: docs/pose.md", "TASK.toml", positional=True)
-    data: Path | None = option(
+    task: Path = option("of recipe pose: docs/pose.md", "TASK.toml", positional=True)
+    data: Path = option(
         "a data set of mmweaver dataset; for recipe activity also a labelled set of your own room", "DIR"
     )
     out: Path = option("folder for checkpoint, log and weights", "DIR", default=MISSING, is_setting=False)
     start: Source | None = option(
         "weights of the same recipe to start from (default: random)", "FILE|DIR|HUB", name="weights"
     )
-    recordings: list[Path] | None = option(
+    recordings: list[Path] = option(
         "folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the joints"
         " are known, else only the static room is tuned; the last one is held out for validation",
         "DIR", nargs="+", group="your own recordings instead of --data (needs --weights)",

@@ -159,7 +159,7 @@ def command_words(asked: Any) -> list[str]:
     return words
 
 
-def keywords_of(asked: type, *without: str) -> Callable[[FunctionT], FunctionT]:
+def keywords_of(asked: Any, *without: str) -> Callable[[FunctionT], FunctionT]:
     """Gives a function's last parameter, `**asked`, the signature of a dataclass's fields."""
 
     def signed(function: FunctionT) -> FunctionT:
