@@ -46,11 +46,9 @@ def run(asked: Options) -> int:
     from mmweaver.recognition.recogniser import TREES_FILE
     from mmweaver.studio.serve import serve
 
-    is_recogniser = [(path / TREES_FILE).is_file() for path in asked.paths or ()]
-    recordings, recognisers = (
-        [path for path, one in zip(asked.paths or (), is_recogniser, strict=True) if one == wanted]
-        for wanted in (False, True)
-    )
+    paths = asked.paths or []
+    recognisers = [path for path in paths if (path / TREES_FILE).is_file()]
+    recordings = [path for path in paths if path not in recognisers]
     serve(
         asked.room or [], recordings, recognisers, host=asked.host, port=asked.port,
         workers=asked.workers, announce=partial(print, flush=True), open_browser=not asked.no_browser,
