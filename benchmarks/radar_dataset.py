@@ -16,7 +16,7 @@ from measuring import least_cpu_seconds, report, results_folder
 from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.radar_dataset import FEATURES, RadarDataset
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 
 ACTIVITIES: dict[str, tuple[str, ...]] = {"waving": ("a person waves",), "standing": ("a person stands",)}
 EACH, SECONDS, REPEATS = 20, 2.0, 2

@@ -85,7 +85,7 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     `reconstruct` and `LearnedRoom`, which stay as they are.
     """
     from mmweaver import room_reader
-    from mmweaver.methods import Learned
+    from mmweaver.models.methods import Learned
     from mmweaver.scene.reconstruction import reconstruct
 
     scenes: dict[str, Scene] = {}

@@ -24,12 +24,12 @@ from mmweaver.formats.npz_files import (
     read_radar_npz,
     write_radar_npz,
 )
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
-from mmweaver.methods import METHODS, Signal
+from mmweaver.formats.stored_result import read_result
+from mmweaver.models.methods import METHODS, Signal
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.stored_result import read_result
-from mmweaver.verification import verify
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.verification import verify
 
 TEXT = "a person walks towards the radar"
 

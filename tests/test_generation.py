@@ -7,8 +7,8 @@ import pytest
 import torch
 
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.generate import Weaver
-from mmweaver.generation import Generation, Room
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Generation, Room
 
 
 @pytest.fixture(scope="module")

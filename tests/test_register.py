@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver import register
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.registry import Registry
+from mmweaver.weaver import register
 
 ROOT = Path(__file__).resolve().parents[1]
 MODULE = """
@@ -19,7 +19,7 @@ import numpy as np
 from dataclasses import replace
 from mmweaver import PRESETS, RadarCube, register
 from mmweaver.core.records import CubeGrid
-from mmweaver.methods import Signal
+from mmweaver.models.methods import Signal
 
 near = replace(PRESETS["awr1843"], name="near", first_range_bin=8)
 
@@ -35,7 +35,7 @@ def activities():
                       perform=lambda context, controls: controls, least_s=0.5, natural_s=1.0)
 """
 ENTRY_POINTS = """
-[mmweaver.methods]
+[mmweaver.models.methods]
 ones = plugged:make
 broken = plugged_but_missing:make
 [mmweaver.radars]

@@ -1,15 +1,22 @@
 """A request is checked before any work, and its sentences are parsed once."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
-from mmweaver import request as module
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, MMMESH
-from mmweaver.request import MAX_FRAMES, parse_request
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.weaver import parsed_request as module
+from mmweaver.weaver.parsed_request import MAX_FRAMES, ParsedRequest, parse
+from mmweaver.weaver.request import Request
 
 TEXT = "a person walks towards the radar"
+
+
+def parse_request(radar: RadarConfig, text: str | list[str] | None = None, **asked: Any) -> ParsedRequest:
+    return parse(Request(text=text, **asked), radar)
 
 
 @pytest.mark.parametrize(
@@ -99,9 +106,9 @@ def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
 
     def counting(text: str):
         parsed.append(text)
-        return parse(text)
+        return plain(text)
 
-    parse = module.parse_sentence
+    plain = module.parse_sentence
     monkeypatch.setattr(module, "parse_sentence", counting)
     parse_request(AWR1843, [TEXT, "a person waves"])
     assert parsed == [TEXT, "a person waves"]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
-from mmweaver.streaming import StreamChunk
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.streaming import StreamChunk
 
 SENTENCES = ("a person waves", "a person claps")
 

@@ -8,13 +8,13 @@ import pytest
 import torch
 from torch import nn
 
-from mmweaver import testing
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.dsp.points import point_cloud
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
-from mmweaver.methods import Physics, Signal
+from mmweaver.models.methods import Physics, Signal
+from mmweaver.weaver import testing
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 
 SMALL = replace(AWR1843, name="small", num_loops=8, num_range_bins=56)
 

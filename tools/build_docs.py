@@ -141,7 +141,7 @@ def command_line(parser: "Parser") -> str:
     pending = [(name, sub) for action in commands for name, sub in action.choices.items()]
     while pending:
         name, sub = pending.pop(0)
-        parts += ["", f"## {parser.prog} {name}", "", "```text", sub.format_help_all().rstrip(), "```"]
+        parts += ["", f"## {parser.prog} {name}", "", "```text", sub.format_help().rstrip(), "```"]
         nested = [action for action in sub._actions if isinstance(action, argparse._SubParsersAction)]
         pending = [(f"{name} {more}", deep) for action in nested for more, deep in action.choices.items()] + pending
     return "\n".join(parts) + "\n"

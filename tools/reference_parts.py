@@ -134,7 +134,7 @@ def stream(weaver: Any, room: Any) -> list[Any]:
 
 def procedural(folders: Folders) -> Any:
     with tempfile.TemporaryDirectory() as place:
-        code.command("rooms", Path(place, "r"), "--kinds", "living_room", "--seed", 5, "--lighting", "day", "--noise")
+        code.command("rooms", Path(place, "r"), "--rooms", "living_room", "--seed", 5, "--noise")
         (folder,) = (one.parent for one in Path(place).rglob("rgb.png"))
         return code.weaver("physics").open_room(folder)
 
@@ -162,10 +162,10 @@ def activity_set(iq: str) -> dict[str, str]:
     with tempfile.TemporaryDirectory() as place:
         file, room = Path(place, "a.toml"), Path(place, "rooms")
         file.write_text('[activities]\nwave = "a person waves"\nsquat = ["a person squats", "she squats quickly"]\n')
-        code.command("rooms", room, "--kinds", "office", "--seed", 1)
+        code.command("rooms", room, "--rooms", "office", "--seed", 1)
         (folder,) = (one.parent for one in room.rglob("rgb.png"))
-        return stored("dataset", "--activities", file, "--room", folder, "--each", 4, "--seconds", 2, "--subjects", 2,
-                      "--iq", iq, "--seed", 2)  # fmt: skip
+        return stored("dataset", "--activities", file, "--room", folder, "--per-class", 4, "--seconds", 2,
+                      "--subjects", 2, "--iq", iq, "--seed", 2)  # fmt: skip
 
 
 def processed() -> dict[str, str]:

@@ -1,7 +1,7 @@
 """mmWeaver: a photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out.
 
-Start with `Weaver`. Names are imported when first used, so `import mmweaver` is cheap. `mmweaver.register` adds
-methods, radars, detectors, activities and encoders; `mmweaver.testing` checks them.
+Start with `Weaver`. Names are imported when first used, so `import mmweaver` is cheap. `mmweaver.weaver.register` adds
+methods, radars, detectors, activities and encoders; `mmweaver.weaver.testing` checks them.
 """
 
 from importlib import import_module
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Generation
     from mmweaver.recordings.processing import process_recording
     from mmweaver.recordings.read_recording import Recording, read_recording
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Generation
 
 _HOME = {
     "AdcCube": "core.records",
     "Board": "core.board",
     "Calibration": "calibration.calibrate",
     "Comparison": "comparison.compare_signals",
-    "Generation": "generation",
+    "Generation": "weaver.generation",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
     "PointCloud": "core.records",
@@ -40,7 +40,7 @@ _HOME = {
     "RadarPose": "core.radar_pose",
     "Recording": "recordings.read_recording",
     "Scene": "core.records",
-    "Weaver": "generate",
+    "Weaver": "weaver.front_door",
     "calibrate": "calibration.calibrate",
     "compare": "comparison.compare_signals",
     "load_radar": "formats.radar_file",
@@ -49,7 +49,7 @@ _HOME = {
     "read_recording": "recordings.read_recording",
 }
 
-_MODULES = ("register", "testing")
+_MODULES = ("features", "methods", "register", "testing")
 
 __all__ = [
     "PRESETS",

@@ -18,9 +18,9 @@ from jaxtyping import Bool, Float
 
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES
+from mmweaver.formats.result_folder import file_digest
 from mmweaver.motion.mocap.humanml3d import FPS, joints_from_features
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT
-from mmweaver.result_folder import file_digest
 from studies.manifest import StudyRun
 from studies.motion.humanml3d_features import features_from_joints, y_up
 from studies.motion.motion_classifier import MotionClassifier, train_classifier

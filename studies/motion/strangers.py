@@ -18,9 +18,11 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
+from mmweaver.models.methods import Physics
 from mmweaver.motion.compose import compose
+from mmweaver.paths.static_paths import Propagation
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 
@@ -78,7 +80,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    weaver = Weaver("physics", bounces=1, clutter="resolved")
+    weaver = Weaver(Physics(Propagation(bounces=1, clutter=False)))
     room = weaver.sample_room()
     path = DRAWS[options.draw]
     texts = path.read_text(encoding="utf-8").splitlines()

@@ -14,8 +14,8 @@ from pathlib import Path
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.panels import draw_azimuth_with_clutter, draw_micro_doppler, draw_photo, power_bar
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Weaver
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.weaver.front_door import Weaver
 from studies.manifest import StudyRun
 from studies.paper.power_method import PowerFields
 from studies.scene.room_pictures import save_small

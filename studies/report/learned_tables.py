@@ -185,7 +185,7 @@ COST = MatrixTable(
         ("physics_motion_to_cube_cpu_s", "physics (paths of second order), the same, room prepared, CPU",
          "{metric:.3f} s"),
         ("times_fewer_cpu_s_than_physics", "ratio of the two", "{metric:.1f}"),
-        ("first_order_motion_to_cube_cpu_s", "physics with `--bounces 1`, CPU", "{metric:.3f} s"),
+        ("first_order_motion_to_cube_cpu_s", "physics of first order, CPU", "{metric:.3f} s"),
         ("sentence_to_motion_cpu_s", "sentence to motion, for either, CPU", "{metric:.3f} s"),
         ("sentence_to_cube_wall_s", "network, sentence to cube, wall", "{metric:.2f} s"),
         ("weaver_encode_room_cpu_s", "encoding the reconstructed room, once, CPU", "{metric:.2f} s"),

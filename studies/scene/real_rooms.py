@@ -16,8 +16,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.generate import Weaver
-from mmweaver.generation import Generation, Room
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Generation, Room
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.study import Reads

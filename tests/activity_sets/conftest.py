@@ -7,7 +7,7 @@ import pytest
 from filelock import FileLock
 
 from mmweaver.activity_sets.build_set import SetBuilder, SetOptions, read_activities
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 
 ACTIVITIES = """[activities]
 waving = ["a person waves with the left hand", "a person waves with the right hand"]

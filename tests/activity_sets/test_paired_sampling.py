@@ -14,7 +14,7 @@ from mmweaver.activity_sets.paired_sampling import (
     unpaired_reasons,
 )
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 
 
 def place(x_m, y_m):

@@ -1,16 +1,16 @@
 """The small files that the commands of the advice tests name."""
 
-import argparse
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from PIL import Image
 
 from mmweaver.cli import generate, train
@@ -19,16 +19,16 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.generate import Weaver, compose_request
-from mmweaver.generation import Generation, Room
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
 from mmweaver.motion.motion_models import MotionTask
-from mmweaver.request import Request
 from mmweaver.scene.photo.estimated_depth import PROMPTED
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.training.captures import read_capture
+from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.generation import Generation, Room
+from mmweaver.weaver.parsed_request import ParsedRequest, Request
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
 from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES
@@ -75,7 +75,7 @@ def make(folder: Path) -> dict[str, Any]:
     made = {path.stem: path for path in folder.iterdir()} | {"walk": _result(folder / "walk")}
     for name, words in (
         ("processed", "process {iq} --radar {radar} --no-pictures --no-analysis --out {folder}/processed"),
-        ("packed.mmwl", "compress {iq} --radar {radar} --lossless -o {folder}/packed.mmwl"),
+        ("packed.mmwl", "compress {iq} --radar {radar} --quality lossless -o {folder}/packed.mmwl"),
     ):
         assert main([word.format(folder=folder, **made) for word in (words + " --quiet").split()]) == 0
         made[Path(name).stem] = folder / name
@@ -125,22 +125,25 @@ def _results(folder: Path) -> Path:
     return folder
 
 
-def load_model(source: str, *_: Any) -> tuple[Any, Any, Any]:
-    """As `load_pretrained`: "blind" sees nothing, "broken" refuses every picture."""
+@dataclass
+class DepthProcessor:
+    """The processor of a depth model: "blind" sees nothing, "broken" refuses every picture."""
 
-    def processor(**_: Any) -> dict[str, Any]:
-        if source == "broken":
+    source: str
+
+    def __call__(self, **_: Any) -> dict[str, Any]:
+        if self.source == "broken":
             raise ValueError("a picture of another size was expected")
         return {}
 
-    def estimated(_: Any, target_sizes: list[tuple[int, int]]) -> list[dict[str, Any]]:
-        import torch
+    def post_process_depth_estimation(self, _: Any, target_sizes: list[tuple[int, int]]) -> list[dict[str, Any]]:
+        return [{"predicted_depth": torch.full(target_sizes[0], 0.0 if self.source == "blind" else 2.0)}]
 
-        return [{"predicted_depth": torch.full(target_sizes[0], 0.0 if source == "blind" else 2.0)}]
 
-    processor.post_process_depth_estimation = estimated
+def load_model(source: str, *_: Any) -> tuple[Any, Any, Any]:
+    """As `load_pretrained`."""
     kind = PROMPTED if source == "prompted" else "depth_anything"
-    return SimpleNamespace(model_type=kind), processor, lambda **_: None
+    return SimpleNamespace(model_type=kind), DepthProcessor(source), lambda **_: None
 
 
 @contextmanager
@@ -155,9 +158,10 @@ def signals_made_once(*, reads_photo: bool = False) -> Iterator[None]:
             patch.setattr("mmweaver.scene.read_photo.refined_by_sam", lambda mask, *_: mask)
             patch.setattr(Weaver, "_reconstruct", lambda *_: _sample_room())
         else:
-            patch.setattr(generate, "_photographed_room", _named_room)
+            patch.setattr(generate.Options, "read_room", _named_room)
         patch.setattr(Weaver, "carry_out", _signal)
-        patch.setattr(train, "_trained", _trained)
+        patch.setattr(train, "_RECIPES", dict.fromkeys(train._RECIPES, _trained))
+        patch.setattr(train, "write_request", lambda *_: None)
         yield
         _made.pop("other room", None)
 
@@ -177,8 +181,8 @@ def use_room_without(kind: str) -> None:
     _made["other room"] = replace(of_room, scene=replace(of_room.scene, planes=planes))
 
 
-def _named_room(_: Weaver, arguments: argparse.Namespace) -> Room:
-    generate._further(arguments.further_photos)
+def _named_room(asked: generate.Options, _: Weaver) -> Room:
+    generate._photos(asked.extra_views)
     return _sample_room()
 
 
@@ -189,11 +193,11 @@ def _sample_room() -> Room:
     return _made.get("other room", _made["room"])
 
 
-def _trained(arguments: argparse.Namespace, *_: Any) -> dict[str, Any]:
-    if arguments.start is not None:
-        train._start(arguments.start)
-    for folder in arguments.captures or ():
-        read_capture(folder, rgb=arguments.rgb, depth=arguments.depth, camera=arguments.camera)
+def _trained(asked: train.Options, *_: Any) -> dict[str, Any]:
+    if asked.start is not None:
+        train._start(asked.start)
+    for folder in asked.recordings or ():
+        read_capture(folder, rgb=asked.rgb, depth=asked.depth, camera=asked.camera)
     return {"weights": "out", "steps": 0, "validation_loss": 0.0}
 
 
@@ -207,16 +211,8 @@ def _composed(request: Request, of_room: Room) -> tuple[Motion, ...]:
     return _made[key]
 
 
-def _signal(weaver: Weaver, request: Request, of_room: Room, people: Any = None) -> Generation:
-    people = _composed(request, of_room) if people is None else people
-    made = request.config.name, len(request.radar_poses)
-    made = made if made in _RADARS else ("awr1843", 0)
-    if made not in _made:
-        _made[made] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
-    if request.radar_poses:
-        return _made[made]
-    asked = {"text": request.text or people[0].plan.text, "seed": request.seed, "frames": request.frames}
-    placed = {name: getattr(request, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
-    board = weaver.board_of(request, of_room)[0].meta()
-    meta = {**_made[made].meta, **asked, "at": request.at, "placed": placed, "board": board}
-    return replace(_made[made], meta=meta)
+def _signal(weaver: Weaver, request: ParsedRequest, of_room: Room, people: Any = None) -> Generation:
+    people = compose_request(request, of_room.scene) if people is None else people
+    if "signal" not in _made:
+        _made["signal"] = _carry_out(weaver, replace(request, keep_adc=True), of_room, people)
+    return _made["signal"]

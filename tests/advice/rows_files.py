@@ -156,21 +156,21 @@ ROWS = (
     Row("energy at negative beat frequencies", f"{PROCESS} --overwrite --iq-order qi", (add("--iq-order"),)),
     Row(
         "the echoes of a chirp gather at fewer ranges",
-        f"{PROCESS} --overwrite --lanes 4",
+        f"{PROCESS} --overwrite --radar-set lanes=4",
         (
-            add("--lanes"),
-            instead("another --radar", "--lanes 4"),
+            plus("--radar-set lanes=2", "--radar-set", "lanes=2"),
+            instead("another --radar", "--radar-set lanes=4"),
         ),
     ),
     Row("the transmitters fit the static echoes to", f"{PROCESS} --overwrite --tx-order 2,0,1", (add("--tx-order"),)),
     Row(
-        "save it as .npy and give --axes",
+        "save it as .npy and give --layout",
         "process numbers.bin --radar {radar} --overwrite --no-pictures --no-analysis --out out",
         (
             edit(
                 "save it as .npy",
                 _as_npy,
-                instead("give --axes", "numbers.bin", "numbers.npy --axes frame,loop,tx,rx,sample"),
+                instead("give --layout", "numbers.bin", "numbers.npy --layout frame,loop,tx,rx,sample"),
             ),
         ),
         before=_floats,
@@ -186,9 +186,9 @@ ROWS = (
         (instead("give a folder that mmweaver process wrote", "{nothing} --radar {radar}", "{processed}"),),
     ),
     Row(
-        "name its axes, for example --axes",
+        "name its axes, for example --layout",
         "process {samples} --radar {radar} --no-pictures --no-analysis --out out",
-        (add("--axes"),),
+        (add("--layout"),),
     ),
     Row(
         "give --layout mmmesh or rf_genesis",
@@ -198,7 +198,7 @@ ROWS = (
             plus("or rf_genesis", "--layout", "rf_genesis"),
         ),
     ),
-    Row("name its kind with --kind", "points {points_log} -o out.npz", (add("--kind", "csv"),)),
+    Row("name its kind with --layout", "points {points_log} -o out.npz", (add("--layout", "csv"),)),
     # radars
     Row(
         "or a .json from: mmweaver radar awr1843 --json",
@@ -211,9 +211,21 @@ ROWS = (
         (first("mmweaver radar awr1843 --json > radar.json", instead("make one with", "empty.json", "radar.json")),),
         before=lambda: _written("empty.json", "[]"),
     ),
-    Row("it has □ sub-frames; choose one with --subframe", "radar {sub_frames}", (add("--subframe"),)),
-    Row("it has one plain frame", "radar {best_range} --subframe 0", (drop("--subframe"),)),
-    Row("has no sub-frames; leave out --subframe", "radar awr1843 --subframe 0", (drop("--subframe"),)),
+    Row(
+        "it has □ sub-frames; choose one of 0 to □: --radar-set subframe=",
+        "radar {sub_frames}",
+        (plus("--radar-set subframe=N", "--radar-set", "subframe=0"),),
+    ),
+    Row(
+        "it has one plain frame (frameCfg)",
+        "radar {best_range} --radar-set subframe=0",
+        (drop("--radar-set"),),
+    ),
+    Row(
+        "has no sub-frames; leave out --radar-set subframe=",
+        "radar awr1843 --radar-set subframe=0",
+        (drop("--radar-set"),),
+    ),
     Row(
         "which cannot be read; describe its chirp in a radar.json",
         "radar {other_device}",
@@ -224,7 +236,11 @@ ROWS = (
             ),
         ),
     ),
-    Row("another board: --antennas", "radar {made} --antennas boost1642", (add("--antennas", "ods"),)),
+    Row(
+        "another board: --radar-set antennas=",
+        "radar {made} --radar-set antennas=boost1642",
+        (plus("--radar-set antennas=", "--radar-set", "antennas=ods"),),
+    ),
     Row(
         "has no cfarCfg",
         "generate --demo --frames 1 --no-pictures --out out --radar {made} --points firmware",
@@ -359,7 +375,7 @@ ROWS = (
     Row(
         "give a result folder, --to FORMAT and --out DIR",
         "export {walk}",
-        (first("mmweaver export --list", plus("--to FORMAT and --out DIR", "--to", "mat", "--out", "out")),),
+        (first("mmweaver export", plus("--to FORMAT and --out DIR", "--to", "mat", "--out", "out")),),
     ),
     Row(
         "holds no result; give a folder of mmweaver generate",
@@ -380,10 +396,4 @@ ROWS = (
         (instead("give a folder of mmweaver generate", "{nothing}", "{walk}"),),
     ),
     Row("--sequence is of a labelled set", "plot {walk} --sequence 1 -o out.png", (drop("--sequence"),)),
-    Row("--frames are numbers such as", "plot {walk} --frames first -o out.png", (instead("such as 0", "first", "0"),)),
-    Row(
-        "is opened in Rerun's viewer",
-        "view absent.rrd --no-browser",
-        (instead("leave out --out and --no-browser", "absent.rrd --no-browser", "{walk} --no-browser -o page.html"),),
-    ),
 )

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.advice.harness import Row, add, drop, first, flag, instead
+from tests.advice.harness import Row, add, drop, flag, instead
 
 SHORT = "--frames 1 --no-pictures --out out"
 DEMO = f"generate --demo {SHORT}"
@@ -41,38 +41,26 @@ ROWS = (
     Row(
         "--rgb needs --depth too",
         f"generate --rgb {{rgb}} --camera {{camera}} --text 'a person waves' {SHORT}",
-        (
-            add("--depth", "{depth}"),
-            add("--depth-model"),
-        ),
+        (add("--depth", "{depth}"),),
     ),
     Row(
         "--depth needs --rgb too",
         f"generate --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
         (add("--rgb", "{rgb}"),),
     ),
-    Row("--mesh brings the whole room", f"{OWN} --mesh {{mesh}}", (drop("--rgb", "--depth", "--camera"),)),
     Row(
-        "options of a mesh need --mesh FILE",
-        f"generate --mesh-up z --text 'a person waves' {SHORT}",
-        (add("--mesh", "{mesh}"),),
-    ),
-    Row("--further-photos are those of a scan", f"{OWN} --further-photos auto", (drop("--further-photos"),)),
-    Row("--views names its own photos", f"{OWN} --views {{views}}", (drop("--rgb", "--depth", "--camera"),)),
-    Row(
-        "--capture brings its own depth and camera",
-        f"generate --capture {{capture}} --depth {{depth}} --camera {{camera}} --depth-model auto"
-        f" --text 'a person waves' {SHORT}",
-        (drop("--depth", "--camera", "--depth-model"),),
+        "--room brings the whole room",
+        f"generate --room {{views}} --depth {{depth}} --camera {{camera}} --text 'a person waves' {SHORT}",
+        (drop("--depth", "--camera"),),
     ),
     Row(
-        "--further-photos are those of a scan",
-        f"generate --further-photos auto --text 'a person waves' {SHORT}",
-        (add("--capture", "{scan}"),),
+        "--photo, --extra-views and --mesh-set are of a scan or mesh",
+        f"generate --rgb {{rgb}} --depth {{depth}} --extra-views auto --text 'a person waves' {SHORT}",
+        (instead("give --room", "--rgb {rgb} --depth {depth}", "--room {scan}"),),
     ),
     Row(
         "are no numbers of photos",
-        f"generate --capture {{scan}} --further-photos many --text 'a person waves' {SHORT}",
+        f"generate --room {{scan}} --extra-views many --text 'a person waves' {SHORT}",
         (
             instead("write 60,120,180", "many", "60,120,180"),
             instead("or auto", "many", "auto"),
@@ -83,21 +71,13 @@ ROWS = (
         f"generate {PHOTO} {SHORT}",
         (
             add("--text"),
-            add("--motion", "{motion}", "--motion-fps", "30"),
+            add("--motion", "{motion}", "--motion-set", "fps=30"),
         ),
     ),
     Row(
         "where to? give --out",
         f"generate {PHOTO} --text 'a person waves' --frames 1 --no-pictures",
         (add("--out", "out"),),
-    ),
-    Row(
-        "--html shows a radar at the camera",
-        f"{DEMO} --radar-pose 0,0,0,0,0 --html page.html",
-        (
-            drop("--radar-pose"),
-            drop("--html"),
-        ),
     ),
     Row("holds a stream already", STREAM, (instead("choose another --out", "out", "other"),), before=_a_stream),
     Row(
@@ -141,14 +121,19 @@ ROWS = (
         ),
     ),
     Row(
-        "is about a recorded motion; give --motion too",
-        f"{DEMO} --motion-unit cm --motion-fps 30",
+        "--motion-set is about a recorded motion; give --motion too",
+        f"{DEMO} --motion-set unit=cm --motion-set fps=30",
         (add("--motion", "{motion}"),),
     ),
     Row(
-        "--subframe, --antennas and --lanes belong to a radar",
-        "process {iq} --antennas boost --no-pictures --out out",
+        "--radar-set belongs to a radar",
+        "process {iq} --radar-set antennas=boost --no-pictures --out out",
         (add("--radar", "{radar}"),),
+    ),
+    Row(
+        "--as-recorded is about a recorded motion; give --motion too",
+        f"{DEMO} --as-recorded --text 'a person waves'",
+        (add("--motion", "{clip}"),),
     ),
     Row(
         "holds no □; give a folder of mmweaver train",
@@ -172,7 +157,9 @@ ROWS = (
         f"{BATCH} --at 0,2 --at 0.5,2",
         (instead("give --at once", "--at 0.5,2"),),
     ),
-    Row("--repeat must be 1 to", f"{BATCH} --repeat 100000", (instead("--repeat must be 1 to", "100000", "1"),)),
+    Row(
+        "--per-class must be 1 to", f"{BATCH} --per-class 100000", (instead("--per-class must be 1 to", "100000", "1"),)
+    ),
     Row(
         "an empty room is no sequence of a person",
         f"generate --demo --texts {{with_nobody}} {SHORT}",
@@ -180,40 +167,17 @@ ROWS = (
     ),
     Row(
         "holds something else; choose another --out",
-        f"{BATCH} --draws free",
+        f"{BATCH}",
         (
             instead("choose another --out", "out", "other"),
             flag("--overwrite"),
         ),
         before=lambda: _holds_something("out/0000/meta.json"),
     ),
-    Row("--iq is for --store", f"{BATCH} --iq none", (flag("--store"),)),
-    Row(
-        "--store is for --texts",
-        f"{DEMO} --store",
-        (first("mmweaver export", drop("--store"), DIR="{walk}", OUT="zarr"),),
-    ),
-    Row("--store keeps cubes at the radar's frame rate", f"{BATCH} --store --fps 5", (drop("--fps"), drop("--store"))),
-    Row(
-        "--store holds cubes of matched draws",
-        f"{BATCH} --store --draws free",
-        (
-            drop("--draws"),
-            drop("--store"),
-        ),
-    ),
-    Row(
-        "--store holds the points of our own detector",
-        f"{BATCH} --store --points firmware",
-        (
-            drop("--points"),
-            drop("--store"),
-        ),
-    ),
+    Row("--per-class is for many sequences", f"{DEMO} --per-class 2", (add("--texts", "{texts}"),)),
     # a stream
-    Row("--stream takes sentences", f"{STREAM} --html page.html", (drop("--html"), drop("--stream"))),
+    Row("--stream takes sentences", f"{STREAM} --path '0,3 0,1.5'", (drop("--path"),)),
     Row("--stream is of one person", f"{STREAM} --at 0,2 --at 0.5,2", (instead("give --at once", "--at 0.5,2"),)),
-    Row("--stream says every sentence once", f"{STREAM} --repeat 2", (drop("--repeat"),)),
     Row(
         "□ is an empty place, a sequence of its own",
         "generate --demo --no-pictures --out out --stream --text 'a person waves' --text nobody",

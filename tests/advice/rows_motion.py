@@ -119,39 +119,51 @@ ROWS = (
     ),
     # recorded motions
     Row(
-        "states no frame rate; give --motion-fps",
+        "states no frame rate; give --motion-set fps=",
         f"{ONE} --motion {{motion}}",
-        (plus("HumanML3D and MotionGPT: 20", "--motion-fps", "20"),),
+        (plus("HumanML3D and MotionGPT: 20", "--motion-set", "fps=20"),),
     ),
-    Row("frames per second, not", f"{ONE} --motion {{motion}} --motion-fps 0", (add("--motion-fps", "30"),)),
-    Row("is a person of", f"{ONE} --motion {{giant}} --motion-fps 30", (add("--motion-unit", "0.1"),)),
+    Row(
+        "frames a second, not",
+        f"{ONE} --motion {{motion}} --motion-set fps=0",
+        (plus("--motion-set fps=", "--motion-set", "fps=30"),),
+    ),
+    Row(
+        "is a person of",
+        f"{ONE} --motion {{giant}} --motion-set fps=30",
+        (plus("--motion-set unit=", "--motion-set", "unit=0.1"),),
+    ),
     Row(
         "the upward axis cannot be estimated",
-        f"{ONE} --motion {{leaning}} --motion-fps 30",
+        f"{ONE} --motion {{leaning}} --motion-set fps=30",
         (
-            add("--motion-up", "y"),
-            plus("or z", "--motion-up", "z"),
+            plus("--motion-set up=", "--motion-set", "up=y"),
+            plus("or up=z", "--motion-set", "up=z"),
         ),
     ),
     Row(
         "so it cannot start at",
-        f"{ONE} --motion {{motion}} --motion-fps 30 --motion-start 50",
-        (add("--motion-start", "0.1"),),
+        f"{ONE} --motion {{motion}} --motion-set fps=30 --motion-set start=50",
+        (plus("--motion-set start=", "--motion-set", "start=0.1"),),
     ),
     Row(
         "then it sets the length, or give a longer motion",
-        f"{DEMO} --motion {{motion}} --motion-fps 30 --seconds 60",
+        f"{DEMO} --motion {{motion}} --motion-set fps=30 --seconds 60",
         (drop("--seconds"),),
     ),
     Row(
-        "holds a single motion, so there is no clip □; leave out --clip",
-        f"{ONE} --motion {{motion}} --motion-fps 30 --clip b",
-        (drop("--clip"),),
+        "holds a single motion, so there is no clip □; leave out --motion-set clip=",
+        f"{ONE} --motion {{motion}} --motion-set fps=30 --motion-set clip=b",
+        (instead("leave out --motion-set clip=NAME", "--motion-set clip=b"),),
     ),
-    Row("motions; choose one with --clip", f"{ONE} --motion {{several}} --motion-fps 30", (add("--clip"),)),
     Row(
-        "another --motion-start, --at or --heading",
-        f"{DEMO} --motion {{far}} --motion-fps 30 --motion-unit m --motion-up y",
+        "motions; choose one, for example --motion-set clip=",
+        f"{ONE} --motion {{several}} --motion-set fps=30",
+        (plus("for example --motion-set clip=", "--motion-set", "clip=walk"),),
+    ),
+    Row(
+        "another --motion-set start=S, --at or --heading",
+        f"{DEMO} --motion {{far}} --motion-set fps=30 --motion-set unit=m --motion-set up=y",
         (
             add("--frames", "2"),
             plus("or --as-recorded", "--as-recorded"),
@@ -159,7 +171,7 @@ ROWS = (
     ),
     Row(
         "take a radar with a longer window (--radar)",
-        f"{ONE} --motion {{motion}} --motion-fps 30 --range 0.7,1.0",
+        f"{ONE} --motion {{motion}} --motion-set fps=30 --range 0.7,1.0",
         (plus("or --as-recorded", "--as-recorded"),),
     ),
 )

@@ -8,10 +8,10 @@ from functools import cache
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "mmweaver"
-ONLY_A_NAME = re.compile(r"-?-[a-z-]+=?|mmweaver [a-z ]+")
+ONLY_A_NAME = re.compile(r"-?-[a-z\N{WHITE SQUARE}-]+=?([a-z\N{WHITE SQUARE}]+=?)?|mmweaver [a-z ]+")
 # Declarations of options, whose texts are shown by --help alone; examples of the help are run by tests of the README.
-DECLARES = {"add_argument", "add_parser", "add_argument_group", "Parser", "Rare", "shown", "help_of", "add_command"}
-HELP = {"EXAMPLES", "USAGE", "DESCRIPTION", "COMMANDS"}
+DECLARES = {"add_argument", "add_parser", "add_argument_group", "Parser", "Rare", "shown", "option"}
+HELP = {"EXAMPLES", "USAGE", "DESCRIPTION", "COMMANDS", "RENAMED"}
 GAP = "\N{WHITE SQUARE}"  # stands for a value in a text
 NAMES = re.compile(rf"(?<![\w-])--[a-z{GAP}]|\bmmweaver (?:[a-z]|--)")
 

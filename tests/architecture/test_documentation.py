@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from mmweaver import PRESETS
-from mmweaver.cli.arguments import glued
 from mmweaver.cli.main import build_parser
 from mmweaver.core.errors import InputError
 
@@ -84,7 +83,7 @@ def test_commands_of_pages_are_understood():
     seen = 0
     for page in PAGES:
         for command in _commands(page):
-            words = glued(shlex.split(command)[1:])
+            words = shlex.split(command)[1:]
             if "--config" in words:  # whose file has the rest
                 continue
             try:

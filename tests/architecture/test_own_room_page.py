@@ -60,7 +60,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def make_set(each: int, *more: str) -> None:
     words = command("dataset set/ --room")
-    words[words.index("--each") + 1] = str(each)
+    words[words.index("--per-class") + 1] = str(each)
     assert main([*words, "--quiet", *more]) == 0
 
 

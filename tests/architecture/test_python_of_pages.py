@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from mmweaver import Weaver
-from mmweaver.cli.generate_options import DEMO_TEXT
+from mmweaver.cli.generate import DEMO_TEXT
 from mmweaver.recognition import train_pose
 from mmweaver.recognition.recogniser import save_recogniser
 from tests.recognition.small_recogniser import small_recogniser

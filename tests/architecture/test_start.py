@@ -21,7 +21,7 @@ def test_samples_are_compressed_without_torch(tmp_path):
     """Starting it takes longer than most recordings."""
     recording, out = tmp_path / "adc_data.bin", tmp_path / "adc_data.mmwl"
     recording.write_bytes(bytes(2 * bytes_of_frame(PRESETS["awr1843"])))
-    given = ["compress", str(recording), "--radar", "awr1843", "--lossless", "-o", str(out), "--quiet"]
+    given = ["compress", str(recording), "--radar", "awr1843", "--quality", "lossless", "-o", str(out), "--quiet"]
     code = f"import sys, mmweaver.cli.main as m; m.main({given!r}); assert 'torch' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
     assert out.is_file()

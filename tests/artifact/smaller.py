@@ -5,7 +5,7 @@ from tests.artifact.readme import Recipe
 # Parts of recipes that take long, and what runs in their place.
 SMALLER = {
     "--rooms living_room,office --layouts 1 --sequences 4": "--rooms office --layouts 1 --sequences 1 --frames 3",
-    "--activities activities.toml --each 10": "--activities activities.toml --each 2 --seconds 1",
+    "--activities activities.toml --per-class 10": "--activities activities.toml --per-class 2 --seconds 1",
     "recognise train TASK.toml --quick": "recognise train TASK.toml --sequences 2",
     "--out walk/ --seed 0": "--out walk/ --seed 0 --no-pictures --frames 5",
     "--out board/": "--out board/ --no-pictures",

@@ -334,7 +334,7 @@ def test_a_room_without_a_floor_offers_recovery_options(page: Any, tmp_path: Pat
 def test_a_mesh_becomes_a_room(page: Any, tmp_path: Path):
     drop(page, [furnished(tmp_path / "room.glb", Y_UP)])
     assert "s of radar in" in page.inner_text(".status")
-    assert "--mesh room.glb" in page.evaluate("studio.result.header.command")
+    assert "--room room.glb" in page.evaluate("studio.result.header.command")
     page.locator("select[aria-label=Room]").select_option("demo")
     page.wait_for_selector(IDLE, timeout=60_000)
 

@@ -21,7 +21,7 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     shutil.copytree(SAMPLE, room)
     (tmp_path / "a.toml").write_text(ACTIVITIES)
     arguments = ["dataset", str(tmp_path / "set"), "--room", str(room), "--activities", str(tmp_path / "a.toml")]
-    assert main([*arguments, "--each", "1", "--seconds", "2", "--iq", "none", "--json", "--quiet"]) == 0
+    assert main([*arguments, "--per-class", "1", "--seconds", "2", "--iq", "none", "--json", "--quiet"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["leaks"]["verdict"].startswith("leaks")
     stored = read_activity_set(tmp_path / "set")
@@ -36,7 +36,7 @@ def test_a_disk_needs_room_for_the_set_and_its_parts(
 ):
     """Measured while the parts are there, too; without signals most of so small a set is the room, which is once."""
     (tmp_path / "a.toml").write_text(ACTIVITIES)
-    words = ["--room", str(SAMPLE), "--activities", str(tmp_path / "a.toml"), "--each", "2", "--seconds", "1"]
+    words = ["--room", str(SAMPLE), "--activities", str(tmp_path / "a.toml"), "--per-class", "2", "--seconds", "1"]
     most: list[int] = []
     remove = build_set.remove
 
@@ -62,7 +62,7 @@ def test_a_disk_needs_room_for_the_set_and_its_parts(
 def test_a_dry_run_says_the_cost_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "a.toml").write_text(ACTIVITIES)
     words = ["dataset", str(tmp_path / "set"), "--room", str(SAMPLE), "--activities", str(tmp_path / "a.toml")]
-    assert main([*words, "--each", "4", "--iq", "none", "--dry-run", "--json"]) == 0
+    assert main([*words, "--per-class", "4", "--iq", "none", "--dry-run", "--json"]) == 0
     cost = json.loads(capsys.readouterr().out)
     assert cost["sequences"] == sum(cost["splits"].values()) == 8
     assert not (tmp_path / "set").exists()
@@ -70,7 +70,7 @@ def test_a_dry_run_says_the_cost_and_writes_nothing(tmp_path: Path, capsys: pyte
 
 @pytest.mark.parametrize(
     "options",
-    [["--each", "3"], ["--iq", "none"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
+    [["--per-class", "3"], ["--iq", "none"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
      ["--activities", "a.toml", "--room", "missing"], ["--activities", "a.toml", "--rgb", "rgb.png"],
      ["--activities", "a.toml", "--geometry-only"], ["--from-results", "results", "--layouts", "3"]],
 )  # fmt: skip

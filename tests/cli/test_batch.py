@@ -9,7 +9,6 @@ import pytest
 from mmweaver.cli.batch import read_texts
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.formats.npz_files import read_radar_npz
 
 SHORT = ["generate", "--demo", "--frames", "6", "--no-pictures", "--json"]
@@ -35,7 +34,7 @@ def test_a_folder_for_each_and_more_of_them_later(texts: Path, tmp_path: Path, c
     assert json.loads((out / "sequences.json").read_text()) == summary
     assert not (out / "0000" / "preview.png").exists()
     first = (out / "0000" / "radar.npz").stat()
-    assert main([*words, "--repeat", "2"]) == 0
+    assert main([*words, "--per-class", "2"]) == 0
     more = json.loads(capsys.readouterr().out)
     assert [one["seed"] for one in more["sequences"]] == [5, 5, 6, 6]
     assert "leaks" in more
@@ -65,56 +64,22 @@ def test_what_an_earlier_run_made_otherwise_is_not_touched(
     assert json.loads((tmp_path / "set" / "0001" / "meta.json").read_text())["method"] == "physics"
 
 
-def test_place_person_and_heading_may_be_given(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_place_person_and_heading_may_be_given(texts: Path, tmp_path: Path):
     given = ["--at", "0.1,2", "--heading", "40", "--subject", "7", "--height", "1.8"]
-    for draws in ("matched", "free"):
-        out = tmp_path / draws
-        assert main([*SHORT, "--texts", str(texts), "--draws", draws, *given, "--out", str(out)]) == 0
-        capsys.readouterr()
-        for name in ("0000", "0001"):
-            meta = json.loads((out / name / "meta.json").read_text())
-            assert (meta["at"], meta["placed"]["subject"], meta["placed"]["height_m"]) == ([0.1, 2.0], 7, 1.8)
-            assert meta["placed"]["heading_rad"] == pytest.approx(np.radians(40 - 90))
-    seeds = [json.loads((tmp_path / "free" / name / "meta.json").read_text())["seed"] for name in ("0000", "0001")]
-    assert seeds == [0, 1]
+    assert main([*SHORT, "--texts", str(texts), *given, "--out", str(tmp_path / "set")]) == 0
+    for name in ("0000", "0001"):
+        meta = json.loads((tmp_path / "set" / name / "meta.json").read_text())
+        assert (meta["at"], meta["placed"]["subject"], meta["placed"]["height_m"]) == ([0.1, 2.0], 7, 1.8)
+        assert meta["placed"]["heading_rad"] == pytest.approx(np.radians(40 - 90))
 
 
-def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_without_a_length_all_are_as_long_as_the_longest(tmp_path: Path):
     file = tmp_path / "sentences.txt"
     file.write_text("a person stands\na person sits down, then stands up\n")
-    words = ["generate", "--demo", "--no-pictures", "--json", "--texts", str(file)]
-    for draws, lengths in (("matched", 1), ("free", 2)):
-        assert main([*words, "--draws", draws, "--out", str(tmp_path / draws)]) == 0
-        capsys.readouterr()
-        frames = {len(read_radar_npz(tmp_path / draws / name / "radar.npz").values) for name in ("0000", "0001")}
-        assert len(frames) == lengths
-
-
-def test_a_store_in_place_of_folders(texts: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("zarr")
-    out = tmp_path / "set"
-    words = ["generate", "--demo", "--frames", "4", "--texts", str(texts), "--repeat", "3", "--store", "--json"]
-    assert main([*words, "--out", str(out)]) == 0
-    assert json.loads(capsys.readouterr().out)["leaks"]["verdict"].startswith("leaks: ")
-    stored = read_activity_set(out)
-    assert stored.label_names == ("a person walks to the left", "a person stands")
-    assert len(stored) == 6
-    assert stored.cube(0).values.shape == (4, 64, 32, 12)
-    for more, says in ((["--bin"], "leave out --bin"), (["--fps", "5"], "leave out --fps")):
-        assert main([*words, *more, "--out", str(tmp_path / "other")]) == 2
-        assert says in capsys.readouterr().err
-    assert main(["generate", "--demo", "--iq", "none", "--out", str(tmp_path / "other")]) == 2
-    assert "--iq is for --store" in capsys.readouterr().err
-
-
-def test_a_store_without_signals_makes_them_when_they_are_read(texts: Path, tmp_path: Path):
-    pytest.importorskip("zarr")
-    words = ["generate", "--demo", "--frames", "2", "--texts", str(texts), "--store", "--quiet", "--iq"]
-    cubes = []
-    for kind in ("float32", "none"):
-        assert main([*words, kind, "--out", str(tmp_path / kind)]) == 0
-        cubes.append(read_activity_set(tmp_path / kind).cube(0).values)
-    assert np.allclose(*cubes, rtol=1e-5, atol=1e-6 * np.abs(cubes[0]).max())
+    words = ["generate", "--demo", "--no-pictures", "--json", "--texts", str(file), "--out", str(tmp_path)]
+    assert main(words) == 0
+    frames = {len(read_radar_npz(tmp_path / name / "radar.npz").values) for name in ("0000", "0001")}
+    assert len(frames) == 1
 
 
 def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -136,7 +101,7 @@ def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys
     [
         ("a person stands\na person photosynthesises\n", [], "photosynthesises"),
         ("# nothing\n", [], "no sentence"),
-        ("a person stands\n", ["--repeat", "0"], "--repeat must be"),
+        ("a person stands\n", ["--per-class", "0"], "--per-class must be"),
         ("a person stands\n", ["--text", "a person waves"], "leave out --text"),
         ("a person stands\n", ["--at", "0,2", "--at", "1,2"], "give --at once"),
         ("a person stands\n", ["--at", "0,20"], "0,20"),

@@ -27,7 +27,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def words(recording: Path, out: Path) -> list[str]:
     axes = "frame,loop,tx,rx,sample"
     source, radar = str(recording / "adc.npy"), str(recording / "radar.json")
-    return ["calibrate", source, "--radar", radar, "--axes", axes, "--out", str(out)]
+    return ["calibrate", source, "--radar", radar, "--layout", axes, "--out", str(out)]
 
 
 def test_it_writes_a_board_that_generate_takes(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):

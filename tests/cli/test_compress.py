@@ -34,7 +34,7 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     assert -15.6 < signal_db <= -15.0
     assert all_db >= signal_db
     assert "better than asked" not in shown
-    assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
+    assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--overwrite"]) == 0
 
 
 def test_a_file_that_may_not_grow_is_named(
@@ -57,8 +57,8 @@ def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixt
     (tmp_path / "radar.json").write_text(SMALL.to_json())
     words = ["compress", str(tmp_path / "adc.npy"), "-o", str(tmp_path / "a.mmw"), "--bytes", "4000"]
     assert main(words) == 2
-    assert "--axes" in capsys.readouterr().err
-    words += ["--axes", "frame,loop,tx,rx,sample"]
+    assert "--layout" in capsys.readouterr().err
+    words += ["--layout", "frame,loop,tx,rx,sample"]
     assert main(words) == 2
     assert "--radar" in capsys.readouterr().err
     assert main([*words, "--radar", str(tmp_path / "radar.json"), "--quiet"]) == 0
@@ -99,7 +99,7 @@ def test_frames_are_added(recording: Path, capsys: pytest.CaptureFixture[str]):
     from mmweaver.compression.mmw_codec import read_cube
 
     out = recording.with_name("a.mmw")
-    for words in (["--keep-noise"], ["--append", "--effort", "fast"]):
+    for words in ([], ["--append", "--preset", "fast"]):
         assert main(["compress", str(recording), "-o", str(out), "--bytes", "2000", *words]) == 0
     assert "added to" in capsys.readouterr().out
     assert len(read_cube(out).values) == 6

@@ -1,23 +1,23 @@
 """Options from a TOML file, and the request.toml by which a run is repeated bit for bit."""
 
+import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from mmweaver.cli.config_file import request_toml, with_config
-from mmweaver.cli.main import build_parser, main
+from mmweaver.cli.arguments import parsed, request_toml
+from mmweaver.cli.main import main, parser_of
+from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 
 REPEATED = ("radar.npz", "pose.npz", "points.npz", "radar.json", "request.toml")
 
 
-def parsed(argv: list[str]):
-    return build_parser().parse_args(argv)
-
-
-def commands():
-    return next(action.choices for action in build_parser()._actions if action.dest == "command")
+def options(*argv: str) -> Any:
+    return parsed(*parser_of(argv[0]), list(argv))
 
 
 def test_a_run_is_repeated_by_its_request(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -55,29 +55,48 @@ def test_every_kind_of_value_comes_back(tmp_path: Path):
         'a "b" \u00e9\n',
         "--text",
         "c",
-        "--at=-0.1,2",
+        "--at",
+        "-0.1,2",
         "--at",
         "1,1.5",
     ]
-    argv += ["--landmark", "door=0.9,2.8", "--fps", "12.5", "--bin", "--heading=-20.25", "--iq-order", "qi"]
-    first = parsed(argv)
+    argv += ["--landmark", "door=0.9,2.8", "--fps", "12.5", "--bin", "--heading", "-20.25", "--iq-order", "qi"]
+    argv += ["--path", "0,3 -0.5,1", "--radar-pose", "0.5,0,0.2,-30,10", "--mesh-set", "up=y", "--tx-order", "0,2,1"]
+    first = options(*argv)
     file = tmp_path / "request.toml"
-    file.write_text(request_toml(commands()["generate"], first), encoding="utf-8")
-    again = parsed(with_config(["generate", "--config", str(file)], commands()))
-    again.config = None
-    settings = [
-        {name: value for name, value in vars(one).items() if name not in ("parser", "whole_parser")}
-        for one in (first, again)
-    ]
-    assert settings[0] == settings[1]
+    file.write_text(request_toml(first), encoding="utf-8")
+    again = options("generate", "--config", str(file))
+    assert first == replace(again, config=None)
+    assert first.heading_rad == pytest.approx(math.radians(-110.25))
+    assert first.landmark == [("door", (0.9, 2.8))]
 
 
 def test_the_command_line_goes_before_the_file_and_paths_are_the_files(tmp_path: Path):
     file = tmp_path / "run.toml"
     file.write_text('rgb = "rgb.png"\ntext = ["one", "two"]\nframes = 7\nno_pictures = true\n')
-    found = parsed(with_config(["generate", "--config", str(file), "--text", "mine", "--frames=9"], commands()))
+    found = options("generate", "--config", str(file), "--text", "mine", "--frames=9")
     assert (found.text, found.frames, found.no_pictures) == (["mine"], 9, True)
     assert found.rgb == tmp_path / "rgb.png"
+
+
+def test_a_file_of_0_2_is_read_and_its_old_names_are_warned_of_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "names.json").write_text("{}")
+    (tmp_path / "run.toml").write_text(
+        'mesh = "room.glb"\nmesh_eye = [0.5, 1.0, 1.2]\nmesh_materials = "names.json"\nrepeat = 3\n'
+        'further_photos = "auto"\n'
+    )
+    found = options("generate", "--config", str(tmp_path / "run.toml"))
+    assert found.room == tmp_path / "room.glb"
+    assert found.mesh_set == ["eye=0.5,1.0,1.2", f"materials={tmp_path / 'names.json'}"]
+    assert (found.per_class, found.extra_views) == (3, "auto")
+    warned = capsys.readouterr().err.splitlines()
+    assert len(warned) == 5
+    assert any("--further-photos" in line and "--extra-views" in line for line in warned)
+    (tmp_path / "run.toml").write_text('draws = "free"\nhtml = "walk.html"\nseed = 4\n')
+    assert options("generate", "--config", str(tmp_path / "run.toml")).seed == 4
+    (tmp_path / "run.toml").write_text("bounces = 1\n")
+    with pytest.raises(InputError, match="bounces"):
+        options("generate", "--config", str(tmp_path / "run.toml"))
 
 
 @pytest.mark.parametrize(
@@ -106,5 +125,5 @@ def test_a_bad_file_is_one_line(content: str | None, says: str, tmp_path: Path, 
 def test_floats_keep_every_bit(tmp_path: Path):
     fps = float(np.nextafter(0.1, 1)) * 100
     file = tmp_path / "request.toml"
-    file.write_text(request_toml(commands()["generate"], parsed(["generate", "--demo", "--fps", repr(fps)])))
-    assert parsed(with_config(["generate", "--config", str(file)], commands())).fps == fps
+    file.write_text(request_toml(options("generate", "--demo", "--fps", repr(fps))))
+    assert options("generate", "--config", str(file)).fps == fps

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver import result_folder
 from mmweaver.cli.main import main
+from mmweaver.figures.previews import PREVIEWS
 from mmweaver.formats.npz_files import read_npz, read_radar_npz
 from mmweaver.scene.sample_photo import sample_photo
 from tests.captures import write_camera
@@ -59,7 +59,7 @@ def test_a_demo_too_short_for_its_sentence_says_how_long_it_takes(tmp_path: Path
 def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     photo, _ = sample_photo()
     write_camera(tmp_path / "realsense", photo.intrinsics, [photo.depth_m] * 2, [photo.rgb] * 2)
-    argv = ["generate", "--capture", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
+    argv = ["generate", "--room", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
     assert main([*argv, "--frames", "2", "--no-pictures"]) == 0
     capsys.readouterr()
     meta = json.loads((tmp_path / "out" / "meta.json").read_text())
@@ -207,7 +207,7 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--frames", "1000000"], "2000"),
         ([*PICTURES, "--fps", "-1"], "fps"),
         ([*PICTURES, "--seed", "-1"], "seed"),
-        ([*PICTURES, "--at", "1"], "x,y"),
+        ([*PICTURES, "--at", "1"], "X,Y"),
         ([*PICTURES, "--at", "-50,2"], "-50"),
         ([*PICTURES, "--radar", "nope"], "awr1843"),
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
@@ -244,7 +244,7 @@ def test_bad_input_is_one_line_and_writes_nothing(
 def test_a_mistake_is_said_before_pytorch_is_loaded(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    for name in ("torch", "mmweaver.generate"):
+    for name in ("torch", "mmweaver.weaver.front_door"):
         monkeypatch.setitem(sys.modules, name, None)
     assert main(["generate", "--demo", *words]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -265,7 +265,7 @@ def test_what_stops_it_halfway_leaves_nothing(
     def stop(*_: object) -> None:
         raise raised
 
-    monkeypatch.setattr(result_folder, "draw_preview", stop)
+    monkeypatch.setitem(PREVIEWS, "preview.png", stop)
     assert main(["generate", "--demo", "--frames", "1", "--text", WALK, "--out", str(tmp_path / "out")]) == status
     captured = capsys.readouterr()
     assert word in captured.err

@@ -35,7 +35,7 @@ def test_version_and_help_end_well(capsys: pytest.CaptureFixture[str]):
     for argv, word in (
         (["--version"], __version__),
         (["generate", "--help"], "--text"),
-        (["process", "--help"], "--axes"),
+        (["process", "--help"], "--layout"),
     ):
         with pytest.raises(SystemExit) as ended:
             main(argv)
@@ -148,13 +148,12 @@ def test_rare_options_are_in_the_full_help_alone(capsys: pytest.CaptureFixture[s
     assert texts[0] == texts[2]
     for group in ("input:", "motion:", "radar:", "output:", "advanced:"):
         assert f"\n{group}\n" in texts[0]
-    assert "--segmenter" not in texts[0]
+    assert "--classes" not in texts[0]
     assert "more options: mmweaver generate --help-all" in texts[0]
-    assert "--segmenter" in texts[1]
+    assert "--classes" in texts[1]
     with pytest.raises(SystemExit):
         main(["radar", "--help"])
     assert "\n1 more option: mmweaver radar --help-all" in capsys.readouterr().out
-    assert "--empty-room" not in texts[1]
 
 
 STOPPED = """

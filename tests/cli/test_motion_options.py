@@ -32,7 +32,18 @@ def recorded(tmp_path: Path) -> Path:
 
 def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
-    argv = ["generate", "--demo", "--motion", str(recorded), "--motion-fps", "30", "--frames", "5", "--out", str(out)]
+    argv = [
+        "generate",
+        "--demo",
+        "--motion",
+        str(recorded),
+        "--motion-set",
+        "fps=30",
+        "--frames",
+        "5",
+        "--out",
+        str(out),
+    ]
     argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85", "--no-pictures"]
     assert main(argv) == 0
     shown = capsys.readouterr().out
@@ -66,15 +77,15 @@ def test_as_recorded(tmp_path: Path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--motion", "arm.npy"], "--motion-fps"),
+        (["--motion", "arm.npy"], "--motion-set fps="),
         (["--motion", "none.bvh"], "there is no motion file"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1 s, 2 s are asked for"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--motion-start", "4"], "cannot start at 4 s"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "5", "--at", "0.1,9"], "nearest free place"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--motion-unit", "ell"], "no unit of length"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "5", "--height", "9"], "body height"),
+        (["--motion", "arm.npy", "--motion-set", "fps=30", "--frames", "20"], r"lasts 1 s, 2 s are asked for"),
+        (["--motion", "arm.npy", "--motion-set", "fps=30", "--motion-set", "start=4"], "cannot start at 4 s"),
+        (["--motion", "arm.npy", "--motion-set", "fps=30", "--frames", "5", "--at", "0.1,9"], "nearest free place"),
+        (["--motion", "arm.npy", "--motion-set", "fps=30", "--motion-set", "unit=ell"], "no unit of length"),
+        (["--motion", "arm.npy", "--motion-set", "fps=30", "--frames", "5", "--height", "9"], "body height"),
         (["--motion", "arm.npy", "--as-recorded", "--at", "0,2"], "moves nothing"),
-        (["--text", "a person walks", "--motion-unit", "cm"], "--motion-unit is about a recorded motion"),
+        (["--text", "a person walks", "--motion-set", "unit=cm"], "--motion-set is about a recorded motion"),
         (["--text", "a person walks", "--as-recorded"], "--as-recorded is about a recorded motion"),
         (["--text", "a person waves", "--path", "0,2 0,1.5"], "walks or runs"),
         (["--motion", "arm.npy", "--motion-model", "m.tar"], "give one of them"),
@@ -101,8 +112,8 @@ def test_a_motion_model_acts_out_the_text(tmp_path: Path, capsys: pytest.Capture
                 "--demo",
                 "--motion-model",
                 str(tmp_path / "none.tar"),
-                "--motion-model-for",
-                "all",
+                "--motion-set",
+                "for=all",
                 "--out",
                 str(tmp_path / "o"),
             ]

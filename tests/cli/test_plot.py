@@ -42,14 +42,14 @@ def test_without_the_mean_chirp_the_middle_of_the_doppler_axis_is_dark(walk: Pat
         colour = picture(out)
         return float(((colour[..., 0] > 150) & (colour[..., 2] < 120)).mean())  # orange and yellow
 
-    assert share_bright("--moving") < 0.8 * share_bright()
+    assert share_bright("--remove-static", "mean_chirp") < 0.8 * share_bright()
 
 
 def test_a_sequence_of_a_labelled_set(tmp_path: Path):
     (tmp_path / "a.toml").write_text(ACTIVITIES)
     sample = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
     words = ["dataset", str(tmp_path / "set"), "--room", str(sample), "--activities", str(tmp_path / "a.toml")]
-    assert main([*words, "--each", "1", "--seconds", "1", "--quiet"]) == 0
+    assert main([*words, "--per-class", "1", "--seconds", "1", "--quiet"]) == 0
     out = tmp_path / "features.png"
     assert main(["plot", str(tmp_path / "set"), "--sequence", "1", "-o", str(out)]) == 0
     assert out.is_file()

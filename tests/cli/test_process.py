@@ -75,7 +75,7 @@ def test_both_iq_orders_and_npy_give_the_same_cube(recording: Path, tmp_path: Pa
     words = {
         "iq": ["adc_data.bin"],
         "qi": ["qi.bin", "--iq-order", "qi"],
-        "npy": ["adc.npy", "--axes", "frame,loop,tx,rx,sample"],
+        "npy": ["adc.npy", "--layout", "frame,loop,tx,rx,sample"],
     }
     cubes = []
     for name, (file, *more) in words.items():
@@ -122,7 +122,7 @@ def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.Capture
         (["whole.bin", "--radar", "broken.json"], "broken.json"),
         (["whole.bin", "--radar", "lines.cfg"], "lines.cfg"),
         (["whole.bin", "--radar", "awr1843", "--tx-order", "0,0,1"], "tx_order"),
-        (["whole.bin", "--radar", "awr1843", "--tx-order", "x"], "transmitters"),
+        (["whole.bin", "--radar", "awr1843", "--tx-order", "x"], "--tx-order"),
         (["whole.bin", "--radar", "awr1843", "--iq-order", "xy"], "iq"),
         (["whole.bin", "--radar", "bgt60"], "no board for a DCA1000"),
         (["whole.bin", "--radar", "bgt60", "--points", "firmware"], "--points cfar"),
@@ -132,10 +132,10 @@ def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.Capture
         (["capture_00000", "--radar", "awr1843"], "leave out --radar"),
         (["capture_00000", "--iq-order", "iq"], "leave out --iq-order"),
         (["capture_00001"], "folder"),
-        (["whole.npy", "--radar", "awr1843"], "--axes"),
-        (["whole.npy", "--radar", "awr1843", "--axes", "frame,loop"], "axes"),
-        (["whole.npy", "--radar", "awr1843", "--axes", "frame,fish"], "fish"),
-        (["objects.npy", "--radar", "awr1843", "--axes", "frame"], "objects.npy"),
+        (["whole.npy", "--radar", "awr1843"], "--layout"),
+        (["whole.npy", "--radar", "awr1843", "--layout", "frame,loop"], "axes"),
+        (["whole.npy", "--radar", "awr1843", "--layout", "frame,fish"], "fish"),
+        (["objects.npy", "--radar", "awr1843", "--layout", "frame,loop"], "objects.npy"),
     ],
     ids=lambda value: value if isinstance(value, str) else None,
 )

@@ -39,7 +39,7 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
     assert main(["recognise", "score", str(model), "--recordings", folder, "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)
     assert {"window", "three_windows", "recording", "classes", "chance", "distance", "warning"} <= set(scores)
-    assert main(["evaluate", "zero-shot-activity", "--model", str(model), "--recordings", folder, "--json"]) == 0
+    assert main(["evaluate", "zero-shot-activity", "--weights", str(model), "--recordings", folder, "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert {name: again[name] for name in scores} == scores
     assert again["generated_windows"] > 0
@@ -91,7 +91,7 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
         "recognise",
         "train",
         str(model.parent / "task.toml"),
-        "--labelled",
+        "--recordings",
         str(logs),
         "--sequences",
         "4",
@@ -106,8 +106,7 @@ def test_logs_of_a_data_port_are_scored_trained_on_and_labelled(
     [
         (["train", "task.toml"], "needs --out"),
         (["score", "model", "--points", "a"], "needs --recordings"),
-        (["run", "model", "--points", "a", "--out", "b"], "--out is no option of recognise run"),
-        (["score", "model", "--recordings", "a", "--labelled", "b"], "--labelled is no option of recognise score"),
+        (["run", "model", "--points", "a", "--out", "b"], "--out"),
         (["run", "nowhere", "--points", "a"], "nowhere does not exist; give a folder of mmweaver recognise train"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
     ],

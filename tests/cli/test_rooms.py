@@ -11,7 +11,7 @@ from mmweaver.cli.main import main
 @pytest.mark.slow  # tests/scene/procedural and tests/cli/test_generate.py hold its parts
 def test_rooms_are_written_and_generated_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "rooms"
-    assert main(["rooms", str(out), "--kinds", "living_room,corridor", "--layouts", "2", "--seed", "1", "--json"]) == 0
+    assert main(["rooms", str(out), "--rooms", "living_room,corridor", "--layouts", "2", "--seed", "1", "--json"]) == 0
     made = json.loads(capsys.readouterr().out)
     assert made["rooms"] == ["living_room_00", "living_room_01", "corridor_00", "corridor_01"]
     for name in made["rooms"]:
@@ -26,7 +26,7 @@ def test_rooms_are_written_and_generated_from(tmp_path: Path, capsys: pytest.Cap
 
 def test_rooms_are_repeated_by_their_request(tmp_path: Path):
     first, again = tmp_path / "first", tmp_path / "again"
-    options = ["--kinds", "corridor", "--seed", "3", "--lighting", "lamps", "--noise", "--quiet"]
+    options = ["--rooms", "corridor", "--seed", "3", "--noise", "--quiet"]
     assert main(["rooms", str(first), *options]) == 0
     assert main(["rooms", "--config", str(first / "request.toml"), str(again), "--quiet"]) == 0
     files = sorted(path.relative_to(first) for path in first.rglob("*") if path.is_file())
@@ -37,9 +37,8 @@ def test_rooms_are_repeated_by_their_request(tmp_path: Path):
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
-        (["--kinds", "castle"], "known: office"),
+        (["--rooms", "castle"], "known: office"),
         (["--layouts", "0"], "--layouts"),
-        (["--lighting", "moon"], "known: day"),
         (["--seed", "-1"], "seed"),
     ],
 )

@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from mmweaver.cli.summary import print_summary, summary_lines
+from mmweaver.cli.option_groups import Printed
+from mmweaver.cli.summary import machine_summary, summary_lines
 from mmweaver.core.assumptions import UsualAssumption
 
 META = {
@@ -44,18 +45,17 @@ def test_a_recorded_motion_has_no_line_of_what_is_shown():
     )
 
 
-def test_machines_read_json(capsys: pytest.CaptureFixture[str]):
-    print_summary("walk", META, as_json=True, quiet=False)
-    summary = json.loads(capsys.readouterr().out)
+def test_machines_read_json_people_read_lines_and_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):
+    printed = []
+    for how in ({"json": True}, {}, {"quiet": True}):
+        assert Printed(**how).report(machine_summary("walk", META), "two", "lines") == 0
+        printed.append(capsys.readouterr().out)
+    summary = json.loads(printed[0])
     assert summary["files"]["radar.npz"] == "walk/radar.npz"
-    assert summary["assumed"] == META["assumed"]
-    assert summary["seconds"] == META["seconds"]
-    assert summary["method"] == "weaver"
-
-
-def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):
-    print_summary("walk", META, as_json=False, quiet=True)
-    assert capsys.readouterr().out == ""
+    assert {name: summary[name] for name in ("assumed", "seconds", "method")} == {
+        name: META[name] for name in ("assumed", "seconds", "method")
+    }
+    assert printed[1:] == ["two\nlines\n", ""]
 
 
 def test_usual_assumptions_are_for_verbose():

@@ -14,9 +14,9 @@ import torch
 
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
+from mmweaver.weaver.front_door import Weaver
 
 pytest.importorskip("zarr")
 
@@ -117,7 +117,7 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
         words = ["generate", "--demo", "--text", text, "--frames", "6", "--out", str(tmp_path / name), "--quiet"]
         assert main([*words, "--no-pictures"]) == 0
     capsys.readouterr()
-    words = ["train", "weaver", "--from", str(start), "--captures", str(tmp_path / "one"), str(tmp_path / "two")]
+    words = ["train", "weaver", "--weights", str(start), "--recordings", str(tmp_path / "one"), str(tmp_path / "two")]
     assert main([*words, "--out", str(tmp_path / "tuned"), "--steps", "3", "--batch", "1", "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert (summary["captures"], summary["with_joints"]) == (2, 2)
@@ -128,9 +128,9 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ([], "what to train on"), (["--captures", "a"], "give them with --from"),
-        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --captures"),
-        (["--captures", "a", "--from", "w", "--rgb", "p.png"], "belong together"),
+        ([], "--data"), (["--recordings", "a"], "--weights"),
+        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "--rgb"),
+        (["--recordings", "a", "--weights", "w", "--rgb", "p.png"], "belong together"),
         (["--data", "d", "--save-every", "-1"], "0 or more seconds"), (["--data", "d", "--device", "no"], "device"),
         (["--data", "d", "--steps", "0"], "--steps must be 1 or more"),
         (["--data", "d", "--batch", "-1"], "--batch must be 1 or more"),

@@ -54,7 +54,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     data = ["--data", str(tmp_path), "--out", str(tmp_path / "o")]
     for words, told in (
         (["train", "activity", *data], "no data set"),
-        (["train", "activity", *data, "--from", "w", "--captures", "c"], "recipe weaver"),
+        (["train", "activity", *data, "--weights", "w", "--recordings", "c"], "--recordings"),
     ):
         assert main(words) == 2
         error = capsys.readouterr().err.strip()
@@ -68,9 +68,9 @@ def test_it_goes_on_from_weights_of_its_own_recipe_alone(
 ):
     few = ["--data", str(tiny_signals), "--steps", "1", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
-    assert main(["train", "activity", "--out", str(tmp_path / "b"), "--from", str(tmp_path / "a"), *few]) == 0
+    assert main(["train", "activity", "--out", str(tmp_path / "b"), "--weights", str(tmp_path / "a"), *few]) == 0
     capsys.readouterr()
-    words = ["train", "activity", "--out", str(tmp_path / "c"), "--from", str(shipped_weights()), *few]
+    words = ["train", "activity", "--out", str(tmp_path / "c"), "--weights", str(shipped_weights()), *few]
     assert main(words) == 2
     assert "mmweaver train activity" in capsys.readouterr().err
 

@@ -44,23 +44,3 @@ def test_what_is_no_result_is_said(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "holds no radar.npz" in capsys.readouterr().err
     assert main(["view", str(tmp_path / "absent"), "--no-browser"]) == 2
     assert "absent does not exist; give a folder of mmweaver generate" in capsys.readouterr().err
-
-
-def test_a_rerun_recording_is_opened_in_its_viewer(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
-    package = tmp_path / "packages" / "rerun"
-    package.mkdir(parents=True)
-    (package / "__init__.py").touch()
-    (package / "__main__.py").write_text(
-        "import pathlib, sys\npathlib.Path(sys.argv[1]).with_suffix('.seen').touch()\n"
-    )
-    recording = tmp_path / "result.rrd"
-    recording.write_bytes(b"RRF2")
-    monkeypatch.syspath_prepend(str(package.parent))
-    monkeypatch.setenv("PYTHONPATH", str(package.parent))
-    assert main(["view", str(recording)]) == 0
-    assert (tmp_path / "result.seen").is_file()
-    assert main(["view", str(recording), "--no-browser"]) == 2
-    assert main(["view", str(tmp_path / "absent.rrd")]) == 2
-    assert capsys.readouterr().err.count("\n") == 2

@@ -15,8 +15,8 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
+from mmweaver.formats.stream_folder import StreamFolder
 from mmweaver.recordings.read_recording import RawReading
-from mmweaver.stream_folder import StreamFolder
 from tests.comparison.made_signals import RADAR, samples, still
 
 ADC = samples([still(1.2), still(2.3, 0.5)], frames=2, config=replace(RADAR, num_loops=8))

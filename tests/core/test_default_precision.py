@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from mmweaver.core.default_precision import single_precision
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 
 
 def test_the_default_type_is_restored():

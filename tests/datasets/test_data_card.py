@@ -11,7 +11,7 @@ from mmweaver.core.version import __version__
 from mmweaver.datasets.data_card import CARD_FILE, write_rooms_card, write_set_card
 from mmweaver.datasets.dataset_writer import AXES
 from mmweaver.datasets.radar_dataset import RadarDataset
-from mmweaver.verification import verify
+from mmweaver.weaver.verification import verify
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 zarr = pytest.importorskip("zarr")

@@ -11,7 +11,7 @@ from torch.utils.data import DataLoader
 from mmweaver.core.errors import InputError
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.radar_dataset import FEATURES, RadarDataset, collate
-from mmweaver.features import range_doppler_db
+from mmweaver.dsp.features import range_doppler_db
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 
@@ -35,7 +35,7 @@ def test_features_are_those_of_the_cube(activity_set: Path):  # noqa: F811
 
 
 def test_signals_are_stored_to_float16(activity_set: Path):  # noqa: F811
-    from mmweaver.generate import Weaver
+    from mmweaver.weaver.front_door import Weaver
 
     stored = read_activity_set(activity_set)
     at = int(np.flatnonzero(stored.columns["draw"] == 0)[0])

@@ -16,7 +16,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets import RadarDataset, collate
 from mmweaver.datasets.activity_store import ActivitySet, read_activity_set
 from mmweaver.datasets.signals_on_demand import moving_power_db
-from mmweaver.generate import Weaver
+from mmweaver.models.methods import Physics
+from mmweaver.paths.static_paths import Propagation
+from mmweaver.weaver.front_door import Weaver
 from tests.activity_sets.conftest import ACTIVITIES, OPTIONS, builder
 
 pytest.importorskip("zarr")
@@ -91,7 +93,7 @@ def test_another_version_of_the_signal_is_noticed(both: tuple[ActivitySet, Activ
 
 def test_what_cannot_be_made_again_is_refused(tmp_path: Path):
     (tmp_path / "a.toml").write_text(ACTIVITIES)
-    plain, first_order = Weaver(), Weaver("physics", bounces=1)
+    plain, first_order = Weaver(), Weaver(Physics(Propagation(bounces=1)))
     room = plain.sample_room()
     with_background = room.with_background(
         plain.generate(room, "a person stands", frames=2).cube  # any cube of this radar

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver import Weaver
-from mmweaver.stored_result import StoredResult, read_result
+from mmweaver.formats.stored_result import StoredResult, read_result
 
 FRAMES = 4  # two in a second
 

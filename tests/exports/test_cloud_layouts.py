@@ -10,7 +10,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.exports.cloud_layouts import write_mars, write_radhar
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 
 def radhar_blocks(text: str) -> list[dict[str, float]]:

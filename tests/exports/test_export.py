@@ -15,7 +15,7 @@ from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
 from mmweaver.exports.export import export_result
 from mmweaver.exports.robotics import ros_axes
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 
 def has(package: str) -> None:
@@ -129,9 +129,9 @@ def test_the_command_exports_many(result_folder: Path, tmp_path: Path, capsys: p
     assert main(["export", str(result_folder.parent), "--to", "radhar", "--out", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / result_folder.name / "radhar.txt").is_file()
     assert "points as RadHAR's text" in capsys.readouterr().out
-    assert main(["export", "--list"]) == 0
+    assert main(["export"]) == 0
     assert "hupr" in capsys.readouterr().out
-    assert main(["export", "--list", "--json"]) == 0
+    assert main(["export", "--json"]) == 0
     assert {one["format"]: one["needs_samples"] for one in json.loads(capsys.readouterr().out)}["hupr"] is True
 
 

@@ -10,7 +10,7 @@ from mmweaver.cli.main import main
 from mmweaver.datasets import RadarDataset
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.room_sequences import read_labelled
-from mmweaver.stored_result import read_result
+from mmweaver.formats.stored_result import read_result
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 pytest.importorskip("zarr")
@@ -60,7 +60,9 @@ def test_a_set_in_other_formats(activity_set: Path, tmp_path: Path, capsys: pyte
     assert not (tmp_path / "hupr").exists()
 
 
-@pytest.mark.parametrize(("words", "says"), [(["--each", "3"], "leave out --each"), ([], "holds no result folders")])
+@pytest.mark.parametrize(
+    ("words", "says"), [(["--per-class", "3"], "leave out --per-class"), ([], "holds no result folders")]
+)
 def test_bad_sources_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "source").mkdir()
     source, out = str(tmp_path / "source"), tmp_path / "set"

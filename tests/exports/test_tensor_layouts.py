@@ -11,6 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.features import dynamic_range_angle
 from mmweaver.exports.tensor_layouts import (
     HUPR_JOINTS,
     hupr_frame,
@@ -19,10 +20,9 @@ from mmweaver.exports.tensor_layouts import (
     write_mmmesh,
     write_rf_genesis,
 )
-from mmweaver.features import dynamic_range_angle
 from mmweaver.formats.peer_arrays import read_hupr
+from mmweaver.formats.stored_result import StoredResult
 from mmweaver.recordings.read_recording import read_recording
-from mmweaver.stored_result import StoredResult
 
 HUPR = PRESETS["hupr"]
 LIGHT_MPS = 299_792_458.0

@@ -18,8 +18,8 @@ from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.datasets.room_generation import GeneratedRoom
 from mmweaver.formats.npz_files import write_radar_npz
-from mmweaver.result_folder import save_results
-from mmweaver.stream_folder import LIST, StreamFolder
+from mmweaver.formats.result_folder import save_results
+from mmweaver.formats.stream_folder import LIST, StreamFolder
 from tests.faults.synced_disk import SyncedDisk
 from tests.fields.echoes import SMALL, crowd
 from tests.figures.views import noise_view
@@ -38,7 +38,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def results(out: Path, **how: bool) -> None:
-    save_results(out, noise_view(frames=2), {"seed": 0}, extra={"request.toml": "seed = 0\n"}, pictures=False, **how)
+    save_results(out, noise_view(frames=2), {"seed": 0}, extra={"request.toml": "seed = 0\n"}, **how)
 
 
 def new_results(folder: Path, _: Path) -> None:
@@ -61,7 +61,7 @@ def files(folder: Path, recording: Path) -> None:
 
 def appended(folder: Path, recording: Path) -> None:
     """To a file that begins so, and once more."""
-    words = ["compress", str(recording / "radar.npz"), "-o", str(folder / "a.mmw"), "--append", "--effort", "fast"]
+    words = ["compress", str(recording / "radar.npz"), "-o", str(folder / "a.mmw"), "--append", "--preset", "fast"]
     for _ in range(2):
         assert main([*words, "--bytes", "3000", "--quiet"]) == 0
 

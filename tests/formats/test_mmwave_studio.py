@@ -114,7 +114,7 @@ def test_sub_frames_and_lanes(tmp_path: Path):
     config = read_mmwave_studio(path, RadarOptions(sub_frame=1))
     assert (config.num_loops, config.num_slots, config.frame_period_s) == (32, 1, pytest.approx(0.05))
     assert config.frame_words_before == 3 * 8 * 4 * config.num_samples * 2
-    with pytest.raises(InputError, match="--subframe"):
+    with pytest.raises(InputError, match="--radar-set subframe="):
         read_mmwave_studio(path)
     values = json.loads(written(tmp_path, SETUP).read_text())
     values["mmWaveDevices"][0]["rawDataCaptureConfig"]["rlDevLaneEnable_t"] = {"laneEn": "0xF"}

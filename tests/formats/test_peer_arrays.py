@@ -127,7 +127,7 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
         (lambda: read_hupr(tmp_path / "none.npy", HUPR), "cannot read"),
         (lambda: detect_layout(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
         (lambda: detect_layout(saved("d.npy", np.zeros((40, 6)))), r"\(40, 6\)"),
-        (lambda: detect_layout(saved("e.npy", np.zeros((4, 5)))), "--axes"),
+        (lambda: detect_layout(saved("e.npy", np.zeros((4, 5)))), "--layout"),
         (lambda: read_mmmesh(saved("f.npy", np.zeros((3, 4, 7, 256), complex)), MMMESH), "shape"),
         (lambda: read_recording(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),
         (lambda: read_recording(hupr_frame, layout="nobody"), "not both"),

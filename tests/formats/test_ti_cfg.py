@@ -199,10 +199,10 @@ def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
     assert first.frame_period_s == second.frame_period_s == pytest.approx(0.08)
     assert (first.frame_words_before, first.frame_words_after) == (0, 64 * 4 * 256 * 2)
     assert (second.frame_words_before, second.frame_words_after) == (2 * 32 * 4 * 128 * 2, 0)
-    for sub_frame, words in ((None, "--subframe 0 to 1"), (2, "0 to 1, not 2")):
+    for sub_frame, words in ((None, "0 to 1: --radar-set subframe=N"), (2, "0 to 1, not 2")):
         with pytest.raises(InputError, match=words):
             read_ti_cfg(path, RadarOptions(sub_frame=sub_frame))
-    with pytest.raises(InputError, match="--subframe"):
+    with pytest.raises(InputError, match="--radar-set subframe="):
         read_ti_cfg(written(tmp_path, BEST_RANGE), RadarOptions(sub_frame=0))
 
 

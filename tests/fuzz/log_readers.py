@@ -15,8 +15,8 @@ import numpy as np
 import torch
 
 from mmweaver.activity_sets.build_set import read_activities
-from mmweaver.cli.config_file import with_config
-from mmweaver.cli.main import _parser_and_commands
+from mmweaver.cli.arguments import parsed
+from mmweaver.cli.main import parser_of
 from mmweaver.compression.lossless_file import CHECK, LosslessFile, compress_bin
 from mmweaver.compression.lossless_file import PREFIX as LOSSLESS
 from mmweaver.core.presets import MMMESH, PRESETS
@@ -29,12 +29,12 @@ from mmweaver.formats.pcap import udp_packets
 from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr
 from mmweaver.formats.point_clouds.read_points import read_points
 from mmweaver.formats.radar_options import RadarOptions, read_antennas
+from mmweaver.formats.stored_result import read_result
+from mmweaver.formats.stream_folder import read_stream_cube
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
 from mmweaver.playback.wire import pack, unpack
-from mmweaver.stored_result import read_result
-from mmweaver.stream_folder import read_stream_cube
-from mmweaver.studio.asked import Asked
+from mmweaver.studio.schemas import Form
 from mmweaver.training.run_log import RunLog
 from tests.formats.point_clouds.test_read_points import XYZV, out_of_box, packet
 from tests.formats.test_pcap import pcapng_of
@@ -178,11 +178,10 @@ def _lossless(data: bytes, rng: random.Random) -> bytes:
 
 # texts --------------------------------------------------------------------------------------------------------------
 def _texts() -> list[Reader]:
-    parser, commands = _parser_and_commands()
     tables = PRESETS["awr1843"]
 
     def command(path: Path) -> Any:
-        return parser.parse_args(with_config(["generate", "--config", str(path), "--out", "x"], commands))
+        return parsed(*parser_of("generate"), ["generate", "--config", str(path), "--out", "x"])
 
     def antennas(path: Path) -> Any:
         return RadarOptions(antennas=read_antennas(str(path))).applied(tables).antenna_position_m
@@ -193,7 +192,7 @@ def _texts() -> list[Reader]:
         return RunLog(path.parent / "run", 100)
 
     def asked(path: Path) -> Any:
-        request = Asked.of(read_json(path))
+        request = Form.of(read_json(path))
         return request.request, request.command(["--demo"]), request.python("sample_room()")
 
     def of_json(value: Any) -> dict[str, Any]:

@@ -12,10 +12,10 @@ import numpy as np
 from PIL import Image
 
 from mmweaver.cli.batch import read_texts
-from mmweaver.cli.config_file import _read as read_request
 from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, read_cube
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import AdcCube, CameraIntrinsics, PointCloud, PoseSequence
+from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.formats.dca1000 import read_bin, write_bin
@@ -410,7 +410,7 @@ def _others(folder: Path) -> list[Reader]:
             read=read_tensors,
             damaged=lambda rng: m.mutated_bytes(tensors, rng),
         ),
-        Reader(name="request.toml", suffix=".toml", read=read_request, damaged=lambda rng: _text_of(toml, rng)),
+        Reader(name="request.toml", suffix=".toml", read=read_toml, damaged=lambda rng: _text_of(toml, rng)),
         Reader(
             name="texts",
             suffix=".txt",

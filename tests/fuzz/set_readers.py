@@ -29,7 +29,7 @@ from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.static_paths import FIRST_ORDER
 from mmweaver.paths.static_paths_store import room_of
 from mmweaver.paths.visibility import Visibility
-from mmweaver.verification import verify
+from mmweaver.weaver.verification import verify
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader
 

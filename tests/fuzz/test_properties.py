@@ -42,8 +42,8 @@ from mmweaver.formats.npz_files import (
 from mmweaver.formats.peer_arrays import read_mmmesh, read_rf_genesis
 from mmweaver.formats.point_clouds.read_points import read_points
 from mmweaver.formats.radar_file import load_radar
+from mmweaver.formats.stored_result import StoredResult
 from mmweaver.paths.receiver import Impairments, Receiver
-from mmweaver.stored_result import StoredResult
 from tests.cubes import point_cube
 
 SMALL = replace(AWR1843, num_loops=2, num_samples=8, num_range_bins=4, first_range_bin=0)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mmweaver.cli.main import _parser_and_commands, main
+from mmweaver.cli.main import COMMANDS, main, parser_of
+from mmweaver.core.options import Source, option_kind, option_name, options_of
 from mmweaver.models.pose_network import PoseNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.recognition.recogniser import save_recogniser
@@ -21,7 +22,7 @@ SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
 ROOM = {name: str(SAMPLE / file) for name, file in
         (("--rgb", "rgb.webp"), ("--depth", "depth.png"), ("--camera", "camera.json"))}  # fmt: skip
 WEIGHTS = str(SAMPLE.parent / "weights" / "weaver.safetensors")
-WRITTEN = {"--out", "-o", "--html", "--picture", "out"}
+WRITTEN = {"--out", "-o", "out"}
 # What a command needs besides the option that is tried.
 NEEDED: dict[str, dict[str, str | None]] = {
     "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
@@ -38,39 +39,32 @@ NEEDED: dict[str, dict[str, str | None]] = {
 }  # fmt: skip
 # Other options that an option needs (a word) or does not go with (None).
 WITH: dict[tuple[str, str], dict[str, str | None]] = {
-    ("generate", "--depth-model"): {"--depth": None}, ("generate", "--texts"): {"--text": None},
-    ("generate", "--motion"): {"--text": None}, ("generate", "--capture"): dict.fromkeys(ROOM),
-    ("generate", "--body-model"): {"--text": None, "--motion": "MOTION"},
-    ("dataset", "--activities"): {"--rooms": None, **ROOM},
+    ("generate", "--texts"): {"--text": None},
+    ("generate", "--motion"): {"--text": None}, ("generate", "--room"): dict.fromkeys(ROOM),
+    ("dataset", "--activities"): {"--rooms": None, "--room": str(SAMPLE)},
     ("dataset", "--from-results"): {"--rooms": None},
     ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
-    ("generate", "--motion-model"): {"--motion-model-for": "all"},
-    ("generate", "--sam"): {"--segmenter": "builtin"},
-    **{("generate", name): {**dict.fromkeys(ROOM), "--mesh": "room.ply"} for name in ("--mesh", "--mesh-materials")},
-    ("generate", "--views"): dict.fromkeys(ROOM),
-    ("dataset", "--board"): {"--rooms": None, "--activities": "A", **ROOM},
+    ("generate", "--motion-model"): {"--motion-set": "for=all"},
+    ("dataset", "--board"): {"--rooms": None, "--activities": "A", "--room": str(SAMPLE)},
     ("recognise", "--recordings"): {"action": "score", "--out": None, "place": "MODEL"},
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
-    ("evaluate", "--model"): {"--recordings": "."},
-    ("compare", "--antennas"): {"a": "BIN", "--radar": "awr1843"},
-    ("plot", "--antennas"): {"signal": "BIN", "--radar": "awr1843"}, ("plot", "--radar"): {"signal": "BIN"},
-    ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
+    ("evaluate", "--weights"): {"--recordings": "."},
+    ("plot", "--radar"): {"signal": "BIN"},
+    ("compare", "--radar"): {"a": "BIN"},
     ("train", "task"): {"recipe": "pose", "--data": None},
-    ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
-    ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},
-    **{("dataset", name): {"--rooms": None, "--activities": "A", **ROOM} for name in ROOM},
-    **{("train", name): {"--data": None, "--captures": "CAPTURE", "--from": WEIGHTS, **ROOM} for name in ROOM},
+    ("train", "--recordings"): {"--data": None, "--weights": WEIGHTS},
+    ("train", "--weights"): {"--data": None, "--recordings": "CAPTURE"},
+    **{("train", name): {"--data": None, "--recordings": "CAPTURE", "--weights": WEIGHTS, **ROOM} for name in ROOM},
 }  # fmt: skip
 
 
 def _options() -> list[tuple[str, str]]:
     """Every option and argument of every command that names something to read."""
     found = []
-    for command, parser in _parser_and_commands()[1].items():
-        for action in parser._actions:
-            kind = getattr(action.type, "__name__", "")
-            name = action.option_strings[0] if action.option_strings else action.dest
-            if (kind in ("Path", "source") or name in ("--config", "radar")) and name not in WRITTEN:
+    for command, (_, kind) in parser_of(*COMMANDS)[1].items():
+        for one in options_of(kind):
+            name = one.name if one.metadata.get("positional") else f"--{option_name(one)}"
+            if option_kind(one)[0] in (Path, Source) and name not in WRITTEN:
                 found.append((command, name))
     return found
 

@@ -14,7 +14,7 @@ from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.npz_files import read_points_npz, read_poses_npz, read_radar_npz
 from mmweaver.models.weights import load_into
-from mmweaver.verification import verify
+from mmweaver.weaver.verification import verify
 from tests.fields.echoes import crowd, error_db
 
 # of the first cube and the joints of the data set, and of the cube of the result folder; by the code that wrote them

@@ -13,7 +13,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import cube_values, radar_cube
-from mmweaver.methods import Physics
+from mmweaver.models.methods import Physics
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cube_rendering import CubeRenderer
@@ -171,7 +171,7 @@ def test_a_room_is_traced_once_for_boards_that_differ_by_seed(monkeypatch: pytes
         made.append(RayTracedRoom(*args, **options))  # type: ignore[arg-type]
         return made[-1]
 
-    monkeypatch.setattr("mmweaver.methods.RayTracedRoom", traced)
+    monkeypatch.setattr("mmweaver.models.methods.RayTracedRoom", traced)
     method = Physics(Propagation(bounces=1))
     for seed in (1, 2):
         board = typical_board(AWR1843, seed)

@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.stages import Stages
-from mmweaver.methods import Learned, Physics, with_propagation
+from mmweaver.models.methods import Physics
 from mmweaver.paths.diffuse_clutter import diffuse_clutter, room_level, seed_of_room
 from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator
@@ -69,12 +69,6 @@ def test_the_front_door_has_it_and_the_ray_tracer_only_where_asked():
     assert counts[False] == 0
     assert counts[True] > 1000
     assert Physics().propagation.clutter
-    for method in (Physics(), Learned()):
-        for clutter, has_clutter in (("resolved", False), (None, True)):
-            chosen = with_propagation(method, 1, clutter)
-            assert isinstance(chosen, Physics | Learned)
-            assert type(chosen) is type(method)
-            assert chosen.propagation == Propagation(bounces=1, clutter=has_clutter)
 
 
 def test_rooms_have_clutter_of_their_own_and_keep_it():

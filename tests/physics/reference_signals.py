@@ -11,7 +11,7 @@ from mmweaver import Weaver
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.stages import Stages
-from mmweaver.methods import METHODS, Physics
+from mmweaver.models.methods import METHODS, Physics
 from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward
 from mmweaver.paths.static_paths import Propagation
 

@@ -5,9 +5,9 @@ import pytest
 
 from mmweaver import Weaver
 from mmweaver.core.skeleton import joint
-from mmweaver.generation import Generation
 from mmweaver.playback.room import room_playback
 from mmweaver.playback.sequence import Playback, make_playback
+from mmweaver.weaver.generation import Generation
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 from studies.scene.real_rooms import agreement
 
 WALK = "a person walks towards the radar, then waves with the left hand"

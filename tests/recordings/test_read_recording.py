@@ -106,7 +106,7 @@ def test_firmware_settings_are_checked_before_samples_are_read(adc: AdcCube, tmp
     [
         ("nowhere", {}, "does not exist"),
         ("adc_data.bin", {}, "--radar"),
-        ("adc.npy", {"radar": "awr1843"}, "--axes"),
+        ("adc.npy", {"radar": "awr1843"}, "--layout"),
         ("adc.npy", {"layout": "hupr", "axes": "frame,loop"}, "not both"),
         ("capture", {"iq_order": "iq"}, "--iq-order"),
         ("empty", {}, r"dca\.pcap.*radar\.npz"),

@@ -8,9 +8,9 @@ from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_radar_npz
+from mmweaver.formats.stream_folder import LIST, PARTS
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.recordings.recording_pieces import RecordingPieces
-from mmweaver.stream_folder import LIST, PARTS
 from tests.captures import packets_of, pcap_of
 from tests.fields.echoes import SMALL
 

@@ -206,7 +206,7 @@ def test_sources_of_classes_exclude_each_other(files: Files, tmp_path: Path):
     assert (photo.classes.index == photo.classes.names.index("couch")).all()
     with pytest.raises(InputError, match="leave out --segmenter"):
         read_photo(files.rgb, files.depth, classes=tmp_path / "classes.png", segmenter="any")
-    with pytest.raises(InputError, match="--segmenter"):
+    with pytest.raises(InputError, match="segmenter"):
         read_photo(files.rgb, files.depth, sam="any")
     with pytest.raises(InputError, match="--classes"):
         read_photo(files.rgb, files.depth, classes=tmp_path / "none.png")

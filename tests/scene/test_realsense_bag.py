@@ -7,10 +7,10 @@ import pytest
 from PIL import Image
 
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
 from mmweaver.geometry.pinhole import resized
 from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.weaver.front_door import Weaver
 
 pytest.importorskip("rosbags")
 SIZE = (320, 240)

@@ -10,10 +10,10 @@ from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.generate import Weaver
 from mmweaver.geometry.pinhole import resized, rotated_clockwise
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+from mmweaver.weaver.front_door import Weaver
 
 SIZE = (320, 240)
 # rotations of a camera (x right, y down) into a world with y up, as x, y, z, w: upright, and up to the picture's right

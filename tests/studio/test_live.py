@@ -10,14 +10,14 @@ from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.playback.wire import unpack
-from mmweaver.streaming import StreamChunk
-from mmweaver.studio.asked import Asked
 from mmweaver.studio.live import Live
+from mmweaver.studio.schemas import Form
+from mmweaver.weaver.streaming import StreamChunk
 
 
 def test_joints_go_on_from_chunk_to_chunk():
     weaver = Weaver()
-    live = Live(weaver, weaver.sample_room(), Asked(room="demo", text=("a person waves with the left hand",)))
+    live = Live(weaver, weaver.sample_room(), Form(room="demo", text=["a person waves with the left hand"]))
     chunks = [unpack(live.next_chunk()) for _ in range(2)]
     live.say("a person claps")
     chunks += [unpack(live.next_chunk()) for _ in range(3)]
@@ -34,7 +34,7 @@ def test_joints_go_on_from_chunk_to_chunk():
 
 def test_an_unknown_first_sentence_is_refused():
     weaver = Weaver()
-    live = Live(weaver, weaver.sample_room(), Asked(room="demo", text=("a person flies to the moon",)))
+    live = Live(weaver, weaver.sample_room(), Form(room="demo", text=["a person flies to the moon"]))
     with pytest.raises(InputError):
         live.next_chunk()
 
@@ -42,7 +42,7 @@ def test_an_unknown_first_sentence_is_refused():
 def test_one_person_only():
     weaver = Weaver()
     with pytest.raises(InputError, match="one person"):
-        Live(weaver, weaver.sample_room(), Asked(room="demo", text=("a person waves", "a person sits")))
+        Live(weaver, weaver.sample_room(), Form(room="demo", text=["a person waves", "a person sits"]))
 
 
 class Watched(Weaver):
@@ -59,7 +59,7 @@ class Watched(Weaver):
 def test_no_joint_jumps_in_twenty_seconds():
     """No joint moves 5 cm between two samples of 120 Hz, within chunks, between them and between sentences."""
     weaver = Watched()
-    live = Live(weaver, weaver.sample_room(), Asked(room="demo", text=("a person walks to the left",)))
+    live = Live(weaver, weaver.sample_room(), Form(room="demo", text=["a person walks to the left"]))
     said = iter(["a person claps", "a person sits down", "a person stands up, then waves", "a person walks"])
     frames = 0
     while frames < 200:

@@ -7,10 +7,10 @@ import pytest
 from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.playback.wire import unpack
-from mmweaver.recognition.recogniser import save_recogniser
-from mmweaver.studio.asked import Asked
+from mmweaver.recognition.recogniser import load_recogniser, save_recogniser
 from mmweaver.studio.live import Live
-from mmweaver.studio.live_labels import OfferedRecognisers
+from mmweaver.studio.schemas import Form
+from mmweaver.studio.service import Offered, Service
 from tests.recognition.small_recogniser import small_recogniser
 
 TASK = """radar = "awr1843"
@@ -29,10 +29,10 @@ def test_live_says_what_is_recognised(tmp_path: Path):
     """The first label comes with the first whole window, and is the one that the whole recording gets."""
     (tmp_path / "task.toml").write_text(TASK)
     save_recogniser(tmp_path / "rest_or_not", small_recogniser(tmp_path / "task.toml"))
-    offered = OfferedRecognisers([tmp_path / "rest_or_not"])
+    offered = Offered("recogniser", [tmp_path / "rest_or_not"], load_recogniser)
     model = offered.get("rest_or_not")
     weaver = Weaver()
-    live = Live(weaver, weaver.sample_room(), Asked(room="demo", text=("a person walks",)), recogniser=model)
+    live = Live(weaver, weaver.sample_room(), Form(room="demo", text=["a person walks"]), recogniser=model)
     labels = [unpack(live.next_chunk())[0]["live"]["label"] for _ in range(3)]
     assert labels[0] is None
     assert labels[1]["label"] in model.labels
@@ -44,4 +44,4 @@ def test_live_says_what_is_recognised(tmp_path: Path):
 
 def test_what_is_no_recogniser_is_said(tmp_path: Path):
     with pytest.raises(InputError, match="holds no recogniser"):
-        OfferedRecognisers([tmp_path])
+        Service(recognisers=[tmp_path])

@@ -21,7 +21,7 @@ from mmweaver.playback.sequence import make_playback
 from mmweaver.playback.wire import unpack
 from mmweaver.studio import sessions
 from mmweaver.studio.server import StudioServer
-from mmweaver.studio.workshop import Workshop
+from mmweaver.studio.service import Service
 
 TEXTS = ("a person walks to the left", "a person claps", "a person sits down", "a person waves")
 ROOM_FOR = 12_000_000  # bytes of results: about four of them
@@ -29,7 +29,7 @@ ROOM_FOR = 12_000_000  # bytes of results: about four of them
 
 @pytest.fixture(scope="module")
 def served() -> Iterator[tuple[StudioServer, str]]:
-    studio = StudioServer(Workshop(), workers=2)
+    studio = StudioServer(Service(), workers=2)
     bound = socket.create_server(("127.0.0.1", 0))
     server = uvicorn.Server(uvicorn.Config(studio.app(), log_level="error", timeout_graceful_shutdown=2))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [bound]})
@@ -68,18 +68,20 @@ def test_all_are_answered_right(served: tuple[StudioServer, str], count: int, mo
             assert set(one) == set(expected)
             for name, values in expected.items():
                 np.testing.assert_array_equal(one[name], values, err_msg=f"{text}, {seed}, {board}: {name}")
-    kept = [result.num_bytes for session in studio.workshop.sessions.all() for result in session.results.values()]
+    kept = [
+        result.num_bytes for session in studio.service.sessions._open.values() for result in session.results.values()
+    ]
     assert 0 < sum(kept) <= ROOM_FOR
     assert studio.jobs.waiting == 0
-    studio.workshop.sessions.end_all()
+    studio.service.sessions.end_all()
 
 
 def test_who_leaves_is_not_served(served: tuple[StudioServer, str], monkeypatch: pytest.MonkeyPatch):
     """While both workers are busy a client asks and hangs up; another one who asks after it is answered."""
     studio, address = served
     made: list[int] = []
-    generate = studio.workshop.generate
-    monkeypatch.setattr(studio.workshop, "generate", lambda own, body: made.append(body["seed"]) or generate(own, body))
+    generate = studio.service.generate
+    monkeypatch.setattr(studio.service, "generate", lambda own, body: made.append(body["seed"]) or generate(own, body))
     hold = threading.Event()
     busy = [studio.jobs.submit(hold.wait) for _ in range(2)]
     try:

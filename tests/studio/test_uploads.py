@@ -14,9 +14,9 @@ from mmweaver.core.presets import PRESETS
 from mmweaver.scene.photo.estimated_depth import EstimatedDepth
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.studio import uploads
-from mmweaver.studio.recovery_options import NoWayError
+from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import Session, Sessions
-from mmweaver.studio.uploads import place_of, said_names, take
+from mmweaver.studio.uploads import file_names, place_of, take
 from tests import captures
 from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
 from tests.fuzz.corpus import corpus
@@ -71,14 +71,14 @@ def test_paths_are_kept_within_the_folder(tmp_path: Path):
 
 @pytest.mark.parametrize("listed", ["[1, 2]", '["a"]', "{}", '"a"', None])
 def test_paths_that_do_not_fit_are_left_out(listed: str | None):
-    assert said_names(listed, ["a.png", None]) == ["a.png", "file"]
-    assert said_names(json.dumps(["x/a.png", "b"]), ["a.png", None]) == ["x/a.png", "b"]
+    assert file_names(listed, ["a.png", None]) == ["a.png", "file"]
+    assert file_names(json.dumps(["x/a.png", "b"]), ["a.png", None]) == ["x/a.png", "b"]
 
 
 def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
     monkeypatch.setattr(uploads, "is_installed", lambda _: True)
-    with pytest.raises(NoWayError, match="a photo alone") as refused:
+    with pytest.raises(RecoverableError, match="a photo alone") as refused:
         take(session, tmp_path, AWR)
     (way,) = refused.value.recovery_options
     photo, _ = sample_photo()
@@ -94,7 +94,7 @@ def test_a_photo_alone_offers_a_depth_model(session: Session, tmp_path: Path, mo
 def test_without_the_package_it_says_what_to_install(session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "IMG_1.webp").write_bytes((SAMPLE / "rgb.webp").read_bytes())
     monkeypatch.setattr(uploads, "is_installed", lambda _: False)
-    with pytest.raises(NoWayError, match=r"mmweaver\[pretrained\]") as refused:
+    with pytest.raises(RecoverableError, match=r"mmweaver\[pretrained\]") as refused:
         take(session, tmp_path, AWR)
     assert refused.value.recovery_options == []
 

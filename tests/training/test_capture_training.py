@@ -8,7 +8,6 @@ import pytest
 import torch
 
 from mmweaver.core.tensor_files import sha256_of
-from mmweaver.generate import Weaver
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.capture_training import (
@@ -20,6 +19,7 @@ from mmweaver.training.capture_training import (
     write_tuned,
 )
 from mmweaver.training.captures import Capture, read_capture, rooms_of
+from mmweaver.weaver.front_door import Weaver
 
 pytestmark = pytest.mark.usefixtures("blank_training_pictures")
 RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,

@@ -11,9 +11,9 @@ from PIL import Image
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.formats.npz_files import read_poses_npz, read_radar_npz, write_radar_npz
-from mmweaver.generate import Weaver
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.training.captures import read_capture, rooms_of
+from mmweaver.weaver.front_door import Weaver
 
 
 @pytest.fixture(scope="module")

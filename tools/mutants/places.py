@@ -19,23 +19,18 @@ class Part:
 
 PARTS = {
     "core": Part(14, ("core", "geometry"), ("conventions", "security", "radars", "board")),
-    "paths": Part(15, ("paths", "methods.py"), ("conventions", "radar_primer", "several_people", "several_radars")),
-    "dsp": Part(10, ("dsp", "features.py"), ("conventions", "radar_primer", "features")),
-    "formats": Part(9, ("formats", "exports", "conversions.py"), ("formats", "captures", "export")),
+    "paths": Part(15, ("paths",), ("conventions", "radar_primer", "several_people", "several_radars")),
+    "dsp": Part(10, ("dsp",), ("conventions", "radar_primer", "features")),
+    "formats": Part(9, ("formats", "exports"), ("formats", "captures", "export")),
     "motion": Part(14, ("motion",), ("motion", "motion_files", "motiongpt")),
-    "scene": Part(10, ("scene", "room_reader.py"), ("photos", "rooms")),
+    "scene": Part(10, ("scene",), ("photos", "rooms")),
     "compression": Part(9, ("compression",), ("mmw_format",)),
     "datasets": Part(6, ("datasets", "activity_sets"), ("training", "own_room_dataset")),
     "recordings": Part(4, ("recordings",), ("captures",)),
     "recognition": Part(7, ("recognition",), ("recognise", "pose", "zero_shot")),
     "comparison": Part(6, ("calibration", "comparison", "metrics"), ("board", "compare", "evidence")),
     "models": Part(6, ("models", "fields", "training"), ("weaver", "fields", "training")),
-    "results": Part(
-        5,
-        ("generate.py", "generation.py", "request.py", "result_folder.py", "stored_result.py", "stream_folder.py",
-         "streaming.py", "verification.py", "register.py", "testing.py"),
-        ("generate", "limits", "extend"),
-    ),
+    "results": Part(5, ("weaver",), ("generate", "limits", "extend")),
     "command line": Part(5, ("cli", "studio"), ("generate", "limits", "studio")),
 }  # fmt: skip
 # pictures, and what is measured for the documents alone

@@ -52,12 +52,12 @@ from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.dataset_cost import BENCHMARK_FRAMES, DatasetCost
 from mmweaver.datasets.signals_on_demand import SetGeometry, moving_power_db, storable
 from mmweaver.datasets.zarr_arrays import packed_iq
-from mmweaver.features import point_table
+from mmweaver.dsp.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
-from mmweaver.generate import Weaver, compose_request
-from mmweaver.generation import Room
 from mmweaver.motion.worded_activities import activities_of
-from mmweaver.request import Request
+from mmweaver.weaver.front_door import Weaver, compose_request
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.parsed_request import ParsedRequest
 
 PARTS = "parts"
 SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test
@@ -124,8 +124,8 @@ class SetBuilder:
         self._board = find_board(options.board, weaver.radar, options.seed)
         if options.iq == "none" and not weaver.is_standard:
             raise InputError(
-                "signals are made on demand by the methods as they are installed; leave out weights, bounces and"
-                " clutter of your own, or store signals (--iq float16)"
+                "signals are made on demand by the methods as they are installed; leave out weights and"
+                " propagation of your own, or store signals (--iq float16)"
             )
         if options.iq == "none" and any(room.background is not None for room in self.rooms):
             raise InputError("signals on demand have no background recording; leave it out, or store signals")
@@ -155,7 +155,7 @@ class SetBuilder:
     def _placed(self, draw: Draw) -> Draw:
         return draw if self.given is None else self.given.applied(draw)
 
-    def request_of(self, one: PlannedSequence) -> Request:
+    def request_of(self, one: PlannedSequence) -> ParsedRequest:
         """The request of one sequence."""
         draw = one.draw
         height_m = None if self.given is None else self.given.height_m

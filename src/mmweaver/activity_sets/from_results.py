@@ -26,8 +26,8 @@ from mmweaver.datasets.activity_store import (
 )
 from mmweaver.datasets.data_card import write_set_card
 from mmweaver.datasets.zarr_arrays import packed_iq
-from mmweaver.features import point_table
-from mmweaver.stored_result import StoredResult, read_result
+from mmweaver.dsp.features import point_table
+from mmweaver.formats.stored_result import StoredResult, read_result
 
 SAME_PLACE_M = 0.05
 OWN = ("room", "place", "split")  # what an export of a set says of each sequence

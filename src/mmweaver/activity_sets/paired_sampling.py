@@ -22,11 +22,11 @@ from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array
 from mmweaver.formats.npz_files import read_poses_npz
-from mmweaver.generate import compose_request
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.language.described_person import DescribedPerson
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.request import Request
+from mmweaver.weaver.front_door import compose_request
+from mmweaver.weaver.parsed_request import ParsedRequest
 
 MAX_ATTEMPTS = 60  # places and headings that are tried for a draw of all labels
 MAX_OWN_ATTEMPTS = 300  # and for a label that the best of these does not serve
@@ -158,7 +158,7 @@ def _own(
     )
 
 
-def obstacle_of(request: Request, scene: Scene, sentence: str) -> str:
+def obstacle_of(request: ParsedRequest, scene: Scene, sentence: str) -> str:
     """Why a sentence cannot be carried out with its draw in a scene; "" where it can.
 
     Without the advice of the error: that concerns a single start, not a set.
@@ -228,14 +228,14 @@ def heading_deg(draw: Draw) -> float:
     return round(math.degrees(draw.heading_rad) + 90, 1)
 
 
-def placed(request: Request, draw: Draw, height_m: float | None = None) -> Request:
+def placed(request: ParsedRequest, draw: Draw, height_m: float | None = None) -> ParsedRequest:
     """The request of one person with the place, heading, person and seed of a draw."""
     person = replace(request.people[0], start_m=draw.start_m, subject=draw.subject, height_m=height_m)
     return replace(request, people=(person,), heading_rad=draw.heading_rad, seed=draw.seed)
 
 
 def sentence_draws(
-    requests: dict[str, Request], scene: Scene, number: int, seed: int, given: GivenPlacing
+    requests: dict[str, ParsedRequest], scene: Scene, number: int, seed: int, given: GivenPlacing
 ) -> tuple[list[dict[str, Draw]], dict[str, str]]:
     """`number` times the draw of each sentence, and why each sentence that the room has no place for is left out.
 
@@ -257,7 +257,7 @@ def sentence_draws(
     ], refused
 
 
-def unplaceable(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
+def unplaceable(requests: dict[str, ParsedRequest], scene: Scene, seed: int) -> dict[str, str]:
     """Why each sentence that the room has no place for wherever the planner tries cannot be made, by sentence."""
     refused: dict[str, str] = {}
     for text, request in requests.items():
@@ -278,7 +278,7 @@ def sentence_order(texts: Sequence[str], draw: int, seed: int) -> list[str]:
 
 
 def folder_leaks(
-    folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[Request]
+    folders: Sequence[Path], texts: Sequence[str], draws: Sequence[Draw], requests: Sequence[ParsedRequest]
 ) -> dict[str, Any]:
     """The leak report of result folders: what predicts their sentences without a look at the radar signal."""
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
@@ -299,7 +299,7 @@ def folder_leaks(
 
 
 # sentences that describe different people ("she", "an old man") ------------------------------------------------------
-def differing_descriptions(requests: Iterable[Request]) -> list[str]:
+def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
     """The words of the sentences that describe their person; none where all describe the same kind of person."""
     people = [_described(request) for request in requests]
     if len({replace(one, words="") for one in people}) < 2:
@@ -307,7 +307,7 @@ def differing_descriptions(requests: Iterable[Request]) -> list[str]:
     return list(dict.fromkeys(one.words for one in people if one.is_described))
 
 
-def done_by_anybody(request: Request) -> Request:
+def done_by_anybody(request: ParsedRequest) -> ParsedRequest:
     """The request without what its sentence says of the person: the subject alone decides who does it."""
     first, *others = request.people
     if first.plan is None:
@@ -316,6 +316,6 @@ def done_by_anybody(request: Request) -> Request:
     return replace(request, people=(replace(first, plan=plan), *others))
 
 
-def _described(request: Request) -> DescribedPerson:
+def _described(request: ParsedRequest) -> DescribedPerson:
     plan = request.people[0].plan
     return DescribedPerson() if plan is None else plan.person

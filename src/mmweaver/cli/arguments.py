@@ -1,33 +1,108 @@
-"""The command line's parser: words become values, rare options stay out of the short help, errors are one line."""
+"""The command line: options of a dataclass become arguments, those of a TOML file fill in what is not given."""
 
 import argparse
+import dataclasses
 import difflib
-import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NoReturn
+import re
+import sys
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal, NoReturn, get_args, get_origin
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.options import (
+    Setting,
+    Source,
+    given_values,
+    option,
+    option_kind,
+    option_name,
+    options,
+    options_of,
+    read_value,
+    read_word,
+    write_word,
+)
+from mmweaver.core.version import __version__
 
-if TYPE_CHECKING:
-    from mmweaver.core.radar_pose import RadarPose
+REQUEST_FILE = "request.toml"
+HELP_ALL = "--help-all"
+# written into request.toml even where they are the default, which may change
+ALWAYS_WRITTEN = ("radar", "frames", "seed", "points", "method", "board")
+IGNORED_IN_FILES = ("draws", "html", "strict")  # of 0.2, which say nothing of the signal itself
+# Options of 0.2 by their name today, perhaps with a key that the value follows; or what to do instead.
+RENAMED = {
+    "--empty-room": "--background",
+    "--each": "--per-class",
+    "--repeat": "--per-class",
+    "--doing": "--action",
+    "--effort": "--preset",
+    "--further-photos": "--extra-views",
+    "--start": "--weights",
+    "--views": "--room",
+    "--capture": "--room",
+    "--mesh": "--room",
+    "--axes": "--layout",
+    "--kinds": "--rooms",
+    "--moving": "--remove-static=mean_chirp",
+    "--subframe": "--radar-set=subframe=",
+    "--antennas": "--radar-set=antennas=",
+    "--lanes": "--radar-set=lanes=",
+    "--motion-model-for": "--motion-set=for=",
+    "--body-model": "--motion-set=body=",
+    "--clip": "--motion-set=clip=",
+    **{f"--motion-{key}": f"--motion-set={key}=" for key in ("fps", "unit", "up", "start")},
+    **{f"--mesh-{key}": f"--mesh-set={key}=" for key in ("eye", "look", "unit", "up", "materials")},
+    "--html": "make it of the results: mmweaver view DIR --out FILE",
+    "--bounces": "make paths of first order in Python: Weaver(Physics(Propagation(bounces=1)))",
+    "--clutter": "leave clutter out in Python: Weaver(Physics(Propagation(clutter=False)))",
+    "--draws": "generate sentences that need places of their own alone, with --text",
+    "--log-level": "-v logs each stage",
+    "--list": "",
+    "--store": "a labelled set is made of sentences by mmweaver dataset --activities TOML",
+    "--split-by": "--split",
+    "--model": "--weights",
+    "--from": "--weights",
+    "--recording": "PATH",
+    "--recogniser": "PATH",
+    "--radar-b": "--radar",
+    "--labelled": "--recordings",
+    "--captures": "--recordings",
+    "--quick": "--sequences=8",
+    "--picture": "--out",
+    "--lossless": "--quality=lossless",
+    "--kind": "--layout",
+    "--depth-model": "--depth",
+    "--segmenter": "--classes",
+    "--sam": "refine classes in Python: weaver.read_room(..., sam=NAME)",
+    "--max-error": "bound the error in Python: compress_bin(..., max_error=N)",
+    "--keep-noise": "keep noise in Python: compress_cube(..., keep_noise=True)",
+    "--lighting": "choose the light in Python: make_room(...).photo(LIGHTINGS[NAME])",
+    "--precision": "a CPU takes float32, a GPU bf16",
+    "--strict": "samples that do not fit the settings are a warning in meta.json",
+    "--scatterers": "leave the residual out in Python: read_cube(..., with_residual=False)",
+}
 
-# options whose values may begin with a minus
-SIGNED = ("--at", "--path", "--heading", "--motion-up", "--radar-pose", "--mesh-eye", "--mesh-look")
-LOG_LEVELS = ("debug", "info", "warning", "error")
-Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
+@options
+class General:
+    """The options of every command."""
 
-class Rare(str):
-    """The help of an option that only --help-all shows."""
+    verbose: bool = option(
+        "print every assumption, and log each stage", default=False, short="-v", group="general", is_setting=False
+    )
+    config: Path | None = option(
+        f"read options from a file, such as the {REQUEST_FILE} of an earlier run; options of the command line go first",
+        "TOML", is_setting=False,
+    )  # fmt: skip
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse that raises InputError instead of exiting, and has a short and a full help."""
+    """argparse that raises InputError instead of exiting."""
 
-    def __init__(self, **options: Any):
-        options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
-        super().__init__(**options, allow_abbrev=False)
-        self.register("action", "help_all", _HelpAllAction)
+    def __init__(self, **settings: Any):
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **settings)
+        self._negative_number_matcher = re.compile(r"-([\d.]|[xyz]$)")  # also -0.5,2 and the axis -z are values
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
@@ -39,275 +114,225 @@ class Parser(argparse.ArgumentParser):
             raise argparse.ArgumentError(action, f"{value!r} is unknown; did you mean {near[0]}?")
         super()._check_value(action, value)
 
-    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse, but what no command knows is said by that command, with the nearest option."""
-        found, unknown = self.parse_known_args(args, namespace)
-        if unknown:
-            command = getattr(found, "parser", self)
-            options = [name for action in command._actions for name in action.option_strings]
-            near = difflib.get_close_matches(unknown[0], options, 1)
-            command.error(
-                f"unrecognized arguments: {' '.join(unknown)}" + "".join(f"; did you mean {one}?" for one in near)
-            )
-        return found
 
-    def format_help(self) -> str:
-        """The help without rare options, and how to see these."""
-        rare = [action for action in self._actions if isinstance(action.help, Rare)]
-        texts = [action.help for action in rare]
-        for action in rare:
-            action.help = argparse.SUPPRESS
-        try:
-            shown = super().format_help()
-        finally:
-            for action, text in zip(rare, texts, strict=True):
-                action.help = text
-        options = "option" if len(rare) == 1 else "options"
-        return f"{shown}\n{len(rare)} more {options}: {self.prog} --help-all\n" if rare else shown
-
-    def format_help_all(self) -> str:
-        """The help with every option."""
-        return super().format_help()
+def add_options(parser: Parser, command: type[General], *, rare: bool) -> None:
+    """Declares the options of a dataclass; the help shows rare ones only if asked to. What is not given is None."""
+    groups: dict[str, Any] = {"": parser}
+    group: Any = parser
+    own = getattr(command, "GROUPS", {})
+    hidden = 0
+    for one in options_of(command):
+        title = own.get(one.name) or one.metadata.get("group")
+        if title:
+            group = groups[title] = groups.get(title) or parser.add_argument_group(title)
+        names, settings = _argument(one)
+        if one.metadata.get("rare") and not rare:
+            settings["help"] = argparse.SUPPRESS
+            hidden += 1
+        group.add_argument(*names, **settings)
+    if hidden:
+        more = f"{hidden} more option{'s' if hidden > 1 else ''}"
+        parser.epilog = f"{parser.epilog}\n{more}: {parser.prog} {HELP_ALL}"
 
 
-class _HelpAllAction(argparse.Action):
-    """Prints the full help and exits."""
-
-    def __init__(self, option_strings: list[str], dest: str, **options: Any):
-        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=options["help"])
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any, **__: Any) -> None:
-        if isinstance(parser, Parser):
-            print(parser.format_help_all(), end="")
-        parser.exit()
-
-
-def glued(argv: list[str]) -> list[str]:
-    """Joins `--at -0.5,2` into one word, because argparse would take the minus for an option.
-
-    >>> glued(["generate", "--at", "-0.5,2", "--frames", "5"])
-    ['generate', '--at=-0.5,2', '--frames', '5']
-    """
-    words: list[str] = []
-    for word in argv:
-        if words and words[-1] in SIGNED and word[:1] == "-" and word[1:2] in "0123456789.xyz":
-            words[-1] = f"{words[-1]}={word}"
-        else:
-            words.append(word)
-    return words
+def _argument(one: "dataclasses.Field[Any]") -> tuple[list[str], dict[str, Any]]:
+    """The names and settings of one argument."""
+    meta, (kind, is_many) = one.metadata, option_kind(one)
+    text = meta["help"].replace("%", "%%")
+    if isinstance(one.default, int | float | str) and not isinstance(one.default, bool) and one.default != "":
+        text += f" (default {one.default})"
+    settings: dict[str, Any] = {"help": text}
+    if kind is bool:
+        settings["action"] = "store_true"
+    else:
+        settings["metavar"], settings["type"] = meta["metavar"], partial(_value, one)
+        if get_origin(kind) is Literal:
+            settings["choices"] = get_args(kind)
+    is_required = one.default is dataclasses.MISSING
+    if meta.get("positional"):
+        counts = {(True, True): "+", (True, False): "*", (False, True): None, (False, False): "?"}
+        return [one.name], settings | {"nargs": counts[is_many, is_required]}
+    if is_many:
+        settings |= {"nargs": "+"} if "nargs" in meta else {"action": "append"}
+    names = [meta["short"]] if "short" in meta else []
+    return [*names, f"--{option_name(one)}"], {**settings, "dest": one.name, "required": is_required, "default": None}
 
 
-# types of values ----------------------------------------------------------------------------------------------------
-def place(word: str) -> tuple[float, float]:
-    """'0.5,2' -> (0.5, 2.0), metres."""
+def _value(one: "dataclasses.Field[Any]", word: str) -> Any:
     try:
-        x, y = (number(part) for part in word.split(","))
-    except (ValueError, argparse.ArgumentTypeError):
-        raise argparse.ArgumentTypeError(f"{word!r} is no place; write x,y in metres, for example 0.5,2") from None
-    return x, y
-
-
-def triple(word: str) -> tuple[float, float, float]:
-    """'0.5,2,1' -> (0.5, 2.0, 1.0)."""
-    try:
-        x, y, z = (number(part) for part in word.split(","))
-    except (ValueError, argparse.ArgumentTypeError):
-        raise argparse.ArgumentTypeError(f"{word!r} is no place; write x,y,z, for example 0.5,2,1.2") from None
-    return x, y, z
-
-
-def points(words: str) -> tuple[tuple[float, float], ...]:
-    """'0,3 0.5,1' -> ((0.0, 3.0), (0.5, 1.0)), metres."""
-    return tuple(place(word) for word in words.split())
-
-
-def landmark(word: str) -> tuple[str, tuple[float, float]]:
-    """'door=0.9,2.8' -> ("door", (0.9, 2.8))."""
-    kind, equals, where = word.partition("=")
-    if not equals:
-        raise argparse.ArgumentTypeError(f"{word!r} is no landmark; write KIND=X,Y in metres, for example door=0.9,2.8")
-    return kind.strip().lower(), place(where)
-
-
-def radar_pose(word: str) -> "RadarPose":
-    """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees."""
-    from mmweaver.core.radar_pose import RadarPose
-
-    try:
-        return RadarPose.of_words(word)
+        return read_word(one, word)
     except InputError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def transmitters(word: str) -> tuple[int, ...]:
-    """'0,2,1' -> (0, 2, 1)."""
-    try:
-        return tuple(int(part) for part in word.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{word!r} is no order of transmitters; write their numbers, for example 0,2,1"
-        ) from None
+def parsed(parser: Parser, commands: "dict[str, tuple[Parser, type[General]]]", argv: list[str]) -> General | None:
+    """The options of a command line, as the dataclass of its command; None where there is no command.
 
-
-def span_m(word: str) -> tuple[float, float]:
-    """'0.3,8' -> (0.3, 8.0), metres."""
-    try:
-        near, far = (float(part) for part in word.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{word!r} is no range; write NEAR,FAR in metres, for example 0.3,8") from None
-    return near, far
-
-
-def span_bins(word: str) -> tuple[int, int]:
-    """'0,127' -> (0, 127)."""
-    try:
-        first, last = (int(part) for part in word.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{word!r} names no bins; write FIRST,LAST, for example 0,127") from None
-    return first, last
-
-
-def whole(word: str) -> int:
-    """A whole number, with a message that says so."""
-    try:
-        value = int(word)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{word!r} is no whole number") from None
-    if abs(value) >= 2**63:
-        raise argparse.ArgumentTypeError(f"{word!r} is too large; the largest is {2**63 - 1}")
-    return value
-
-
-def number(word: str) -> float:
-    """A number, with a message that says so."""
-    try:
-        value = float(word)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{word!r} is no number")
-    return value
-
-
-def source(word: str) -> str:
-    """A file or folder, or a name that is known elsewhere: a preset, a model that comes along, a name on the Hub."""
-    return word
-
-
-# options that several commands share --------------------------------------------------------------------------------
-def help_of(is_rare: bool) -> Callable[[str], str]:
-    """Marks a help text as rare, or leaves it."""
-    return Rare if is_rare else str
-
-
-def add_output_options(parser: Options) -> None:
-    """The options of every command that writes a folder of results."""
-    parser.add_argument("--overwrite", action="store_true", help="replace files of an earlier run in --out")
-    parser.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-
-
-def add_general_options(parser: argparse.ArgumentParser) -> None:
-    """The options of every command."""
-    general = parser.add_argument_group("general")
-    general.add_argument("-v", "--verbose", action="store_true", help="print every assumption, and log each stage")
-    general.add_argument(
-        "--log-level", choices=LOG_LEVELS, help=Rare("what is logged on stderr (default warning; with -v info)")
-    )
-    general.add_argument(
-        "--config", metavar="TOML", help="read options from a file, such as the request.toml of an earlier run; options"
-        " of the command line go first",
-    )  # fmt: skip
-    general.add_argument("--help-all", action="help_all", help="show this help with all options and exit")
-
-
-def add_layout_options(parser: Options, *, rare: bool = False) -> None:
-    """The options that say how a DCA1000 .bin is laid out."""
-    shown = help_of(rare)
-    parser.add_argument(
-        "--iq-order", choices=("iq", "qi", "interleaved"),
-        help=shown(
-            "order of I and Q in the .bin: I I Q Q, Q Q I I or I Q I Q (default: as the .cfg or mmWave Studio file"
-            " says, else iq)"
-        ),
-    )  # fmt: skip
-    parser.add_argument(
-        "--tx-order", type=transmitters, metavar="N,N,N",
-        help=shown("order in which the transmitters fire (default: the radar's)"),
-    )  # fmt: skip
-
-
-def add_sample_options(parser: Options, *, brought: str = "") -> None:
-    """The options that say how raw samples are to be read; `brought`: when they need no --radar."""
-    known = f" ({brought})" if brought else ""
-    parser.add_argument(
-        "--radar", type=source, metavar="NAME|FILE", help=f"preset, TI .cfg or radar.json{known}"
-    )  # fmt: skip
-    parser.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
-    parser.add_argument(
-        "--layout", metavar="NAME",
-        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
-    )  # fmt: skip
-    add_layout_options(parser)
-
-
-def add_range_options(
-    parser: Options, *, rare: bool = False,
-    what: str = "to keep (default: a preset's own window; all of a .cfg, up to 4 MiB a frame)",
-) -> None:  # fmt: skip
-    """The options that choose which ranges a radar keeps, or what is looked at."""
-    shown = help_of(rare)
-    parser.add_argument(
-        "--range", type=span_m, metavar="NEAR,FAR", dest="range_m",
-        help=shown(f"metres {what}"),
-    )  # fmt: skip
-    parser.add_argument("--range-bins", type=span_bins, metavar="FIRST,LAST", help=shown("the same in range bins"))
-
-
-def add_board_options(parser: Options, *, rare: bool = False) -> None:
-    """The options for what a radar's file leaves open; `radar_of` adds them to its name."""
-    shown = help_of(rare)
-    parser.add_argument(
-        "--subframe", type=whole, metavar="N", help=shown("which sub-frame of a .cfg or mmWave Studio file, from 0 on")
-    )
-    parser.add_argument(
-        "--antennas", type=source, metavar="NAME|FILE",
-        help=shown("the board's antennas: isk, boost, boost1642, aop, ods, evm2944, or a JSON with tx and rx in half"
-                   " wavelengths (default: what the .cfg says)"),
-    )  # fmt: skip
-    parser.add_argument(
-        "--lanes", type=whole, metavar="2|4",
-        help=shown("lanes of a DCA1000's .bin: 2 (xWR16xx, 18xx, 68xx) or 4 (xWR12xx, 14xx; default: the radar's)"),
-    )  # fmt: skip
-
-
-def radar_of(arguments: argparse.Namespace, default: str | None = None, *, option: str = "radar") -> str | None:
-    """--radar with --subframe, --antennas and --lanes behind it, as `load_radar` reads them. Raises InputError."""
-    from mmweaver.formats.radar_options import joined_radar
-
-    name = getattr(arguments, option) or default
-    given = {"sub_frame": arguments.subframe, "antennas": arguments.antennas, "lanes": arguments.lanes}
-    if name is None:
-        if any(value is not None for value in given.values()):
-            raise InputError("--subframe, --antennas and --lanes belong to a radar; give --radar, too")
+    Raises InputError for words that are no options of it, and for a file of --config that has others.
+    """
+    argv = _today(argv)
+    own, kind = commands.get(next((word for word in argv if not word.startswith("-")), ""), (parser, General))
+    if any(word.partition("=")[0] == "--config" for word in argv):
+        _relax(own)
+    found, unknown = parser.parse_known_args(argv)
+    given = {
+        name: value for name, value in vars(found).items() if value is not None and value is not False and value != []
+    }
+    if unknown:
+        names = [name for action in own._actions for name in action.option_strings]
+        near = "".join(f"; did you mean {name}?" for name in difflib.get_close_matches(unknown[0], names, 1))
+        own.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+    command = given.pop("command", None)
+    if command is None:
         return None
-    return joined_radar(name, **given)
+    if "config" in given:
+        given = {**_read_file(given["config"], command, kind), **given}
+    missing = [one for one in options_of(kind) if one.default is dataclasses.MISSING and one.name not in given]
+    if missing:
+        own.error(f"the following arguments are required: {', '.join(map(option_name, missing))}")
+    return kind(**given)
 
 
-def add_board_option(parser: Options) -> None:
-    """The option that chooses the board whose errors a signal has."""
-    parser.add_argument(
-        "--board", type=source, metavar="typical|ideal|FILE",
-        help="the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
-        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
-        " default is the recording's own",
-    )  # fmt: skip
+def _relax(parser: Parser) -> None:
+    """What is required may come from a file instead."""
+    for action in parser._actions:
+        action.required = False
+        if not action.option_strings:
+            action.nargs = "*" if action.nargs == "+" else "?"
 
 
-def add_points_option(parser: Options) -> None:
-    """The option that chooses the point cloud."""
-    parser.add_argument(
-        "--points", default="cfar", metavar="cfar|firmware",
-        help="point cloud: cfar, ours (default), or firmware, as TI's out-of-box demo would report it with the"
-        " cfarCfg, peakGrouping, clutterRemoval and multiObjBeamForming of the radar's .cfg",
-    )  # fmt: skip
+def _today(argv: list[str]) -> list[str]:
+    """Words with options of 0.2 replaced by those of today, each with a warning."""
+    words, rest = [], iter(argv)
+    for word in rest:
+        old, equals, value = word.partition("=")
+        if old not in RENAMED:
+            words.append(word)
+            continue
+        new = renamed(old)
+        if new == "PATH":
+            new = equals = ""
+        elif not new:
+            continue
+        if new.endswith("="):
+            words.append(new + (value if equals else next(rest, "")))
+        else:
+            words.append(f"{new}{equals}{value}")
+    return words
+
+
+def renamed(old: str) -> str:
+    """The name today of an option of 0.2, with a warning. Raises InputError for one that is gone."""
+    new = RENAMED[old]
+    if new not in ("", "PATH") and not new.startswith("--"):
+        raise InputError(f"{old} is gone: {new}")
+    print(f"mmweaver: {old} is now {new.rstrip('=') or 'what happens without it'}", file=sys.stderr)
+    return new
+
+
+def check_mode(asked: General, mode: str, uses: dict[str, str]) -> None:
+    """Raises InputError for an option that another mode of a command uses; `uses`: names of fields by mode."""
+    own, others = uses[mode].split(), {name for names in uses.values() for name in names.split()}
+    for one in options_of(asked):
+        if one.name in others and one.name not in own and getattr(asked, one.name) != one.default:
+            is_named = not one.metadata.get("positional")
+            name = f"--{option_name(one)}" if is_named else one.metadata["metavar"]
+            raise InputError(f"{name} is for {' or '.join(key for key in uses if one.name in uses[key].split())},"
+                             f" not for {mode}; leave it out")  # fmt: skip
+
+
+# options from a file ------------------------------------------------------------------------------------------------
+def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
+    """The values of a file. Raises InputError for one that is no TOML, or has an option that the command lacks."""
+    from mmweaver.core.safe_files.safe_text import read_toml
+
+    values = read_toml(file)
+    meant = values.pop("command", command)
+    if meant != command:
+        raise InputError(f"{file} is of mmweaver {meant}, not of mmweaver {command}")
+    known = {option_name(one): one for one in options_of(kind)}
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        key = name.replace("_", "-")
+        if key in IGNORED_IN_FILES:
+            print(f"mmweaver: {file}: {key} has no effect any more", file=sys.stderr)
+            continue
+        if f"--{key}" in RENAMED:
+            key, _, prefix = renamed(f"--{key}")[2:].partition("=")
+            value = f"{prefix}{write_word(value)}" if prefix else value
+        if key not in known:
+            near = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
+            hint = f"did you mean {near[0]!r}?" if near else f"see mmweaver {command} --help-all"
+            raise InputError(f"{file}: mmweaver {command} has no option {name!r}; {hint}")
+        one = known[key]
+        read = _of_file(one, value, file)
+        found[one.name] = [*found.get(one.name, ()), *read] if option_kind(one)[1] else read
+    return found
+
+
+def _of_file(one: "dataclasses.Field[Any]", value: Any, file: Path) -> Any:
+    kind = option_kind(one)[0]
+
+    def beside(each: Any) -> Any:
+        """Paths are relative to the file."""
+        key, equals, name = str(each).rpartition("=") if kind is Setting else ("", "", str(each))
+        is_path = kind is Path or (kind in (Source, Setting) and _is_file(file.parent / name, name))
+        return f"{key}{equals}{file.parent / name}" if is_path and not isinstance(each, bool | dict) else each
+
+    try:
+        return read_value(one, list(map(beside, value)) if isinstance(value, list) else beside(value))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def request_toml(asked: General, **instead: Any) -> str:
+    """The options of a run as TOML, which `--config` reads; `instead` replaces the values of some.
+
+    Files are written as absolute paths; where results go and what is printed is left out.
+    """
+    import tomli_w
+
+    asked = dataclasses.replace(asked, **instead)
+    command = type(asked).__module__.rpartition(".")[2]
+    written: dict[str, Any] = {"command": command}
+    given = given_values(asked)
+    has_option = False
+    for one in options_of(asked):
+        name = option_name(one)
+        has_option = has_option or (name == "out" and not one.metadata.get("positional"))
+        if name not in given and name in ALWAYS_WRITTEN and getattr(asked, one.name) is not None:
+            given[name] = one, [getattr(asked, one.name)]
+        if name not in given or not one.metadata.get("is_setting", True):
+            continue
+        values = [_to_file(one, value) for value in given[name][1]]
+        written[name] = values if option_kind(one)[1] else values[0]
+    again = f"mmweaver {command} --config {REQUEST_FILE} {'--out DIR' if has_option else 'DIR'}"
+    return f"# mmweaver {__version__}; the same again: {again}\n{tomli_w.dumps(written)}"
+
+
+def _to_file(one: "dataclasses.Field[Any]", value: Any) -> Any:
+    """One value as TOML has it."""
+    kind = option_kind(one)[0]
+    key, equals, name = value.rpartition("=") if kind is Setting else ("", "", value)
+    if isinstance(value, Path) or (kind in (Source, Setting) and _is_file(Path(name), name)):
+        return f"{key}{equals}{Path(name).absolute()}"
+    if hasattr(value, "words"):
+        return write_word(value)
+    if isinstance(value, tuple) and not any(isinstance(part, tuple | str) for part in value):
+        return list(value)
+    return value if isinstance(value, bool | int | float) else write_word(value)
+
+
+def _is_file(path: Path, name: str) -> bool:
+    """Whether a `Source` is a file or folder and no name."""
+    from mmweaver.core.presets import PRESETS
+
+    return name not in PRESETS and name not in ("builtin", "small", "ideal", "typical") and path.exists()
+
+
+def write_request(folder: Path, asked: General) -> None:
+    """Writes the options of a run into its folder, whole or not at all."""
+    from mmweaver.core.atomic_files import atomic_file
+
+    with atomic_file(folder / REQUEST_FILE) as partial_file:
+        partial_file.write_text(request_toml(asked), encoding="utf-8")

@@ -1,29 +1,28 @@
 """mmweaver generate --texts: many sequences in one room, which is read once; a folder for each.
 
-Unless --draws free is given, all sentences have the same places, headings, people and lengths (matched draws).
+All sentences have the same places, headings, people and lengths (matched draws).
 """
 
-import argparse
 import json
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.config_file import REQUEST_FILE
+from mmweaver.cli.arguments import REQUEST_FILE
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
     from mmweaver.activity_sets.paired_sampling import Draw, GivenPlacing
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
-    from mmweaver.request import Request
+    from mmweaver.cli.generate import Options
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
+    from mmweaver.weaver.parsed_request import ParsedRequest
 
 LIST, LEAKS = "sequences.json", "leaks.json"
 MAX_TEXTS_BYTES = 16 * 2**20
-MOST = 100_000  # sequences
-FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "path")
+MAX_SEQUENCES = 100_000
+FOR_ONE_SEQUENCE = {"text": "text", "motion_file": "motion", "motion_model": "motion-model", "path_m": "path"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,34 +31,30 @@ class BatchSequence:
 
     folder: Path
     text: str
-    seed: int
-    draw: "Draw | None" = None  # place, heading and person, where they are not chosen by the planner
-    height_m: float | None = None
-
-    def entry(self) -> dict[str, Any]:
-        """What the list of all sequences says of it."""
-        entry: dict[str, Any] = {"folder": self.folder.name, "text": self.text, "seed": self.seed}
-        if self.draw is None:
-            return entry
-        return entry | {
-            "draw": self.draw.index, "at": list(self.draw.start_m), "heading_deg": self.heading_deg,
-            "subject": self.draw.subject,
-        }  # fmt: skip
+    draw: "Draw"  # place, heading, person and seed
+    height_m: float | None
 
     @property
-    def heading_deg(self) -> float | None:
-        """The heading as --heading takes it."""
+    def seed(self) -> int:
+        return self.draw.seed
+
+    def entry(self) -> dict[str, Any]:
+        """What the list of all sequences holds of it."""
         from mmweaver.activity_sets.paired_sampling import heading_deg
 
-        return None if self.draw is None else heading_deg(self.draw)
-
-    def placing(self) -> dict[str, Any]:
-        """The options of `mmweaver generate` that give it its place and person."""
-        if self.draw is None:
-            return {}
         return {
-            "at": [self.draw.start_m], "heading": self.heading_deg, "subject": [self.draw.subject],
-            "height": None if self.height_m is None else [self.height_m],
+            "folder": self.folder.name, "text": self.text, "seed": self.seed, "draw": self.draw.index,
+            "at": list(self.draw.start_m), "heading_deg": heading_deg(self.draw), "subject": self.draw.subject,
+        }  # fmt: skip
+
+    def options(self) -> dict[str, Any]:
+        """The options of `mmweaver generate` that make it alone."""
+        from mmweaver.weaver.request import Heading
+
+        return {
+            "text": [self.text], "texts": None, "per_class": None, "seed": self.seed, "seconds": None,
+            "at": [self.draw.start_m], "heading_rad": Heading(self.draw.heading_rad), "subject": [self.draw.subject],
+            "height_m": None if self.height_m is None else [self.height_m],
         }  # fmt: skip
 
 
@@ -67,28 +62,32 @@ class BatchSequence:
 class Batch:
     """What all sequences of a batch share."""
 
+    asked: "Options"
     weaver: "Weaver"
     room: "Room"
-    requests: "dict[str, Request]"  # by text; the seed is each sequence's own
-    output: dict[str, Any]  # arguments of Generation.save
-    request_toml: Callable[[BatchSequence], str]
-    overwrite: bool
-    quiet: bool
+    requests: "dict[str, ParsedRequest]"  # by text; place, person and seed are each sequence's own
 
-    def run(self, sequences: list[BatchSequence], refused: list[dict[str, Any]] | None = None) -> dict[str, Any]:
+    def run(self, sequences: list[BatchSequence], refused: list[dict[str, Any]]) -> dict[str, Any]:
         """Generates the missing sequences and returns a summary of all of them; `refused` begins the list of those.
 
         A sentence for which the room has no place is skipped and listed as such. Raises InputError where nothing could
         be generated, or, before anything is, where a folder holds something else.
         """
+        from tqdm import tqdm
+
         from mmweaver.core.atomic_files import atomic_file
 
-        out = sequences[0].folder.parent
-        finished = set() if self.overwrite else {one.folder for one in sequences if self._is_finished(one)}
+        out, asked = sequences[0].folder.parent, self.asked
+        finished = set() if asked.overwrite else {one.folder for one in sequences if self._is_finished(one)}
         made: list[dict[str, Any]] = []
-        refused = list(refused or [])
         try:
-            self._run_each(sequences, finished, made, refused)
+            for one in tqdm(sequences, unit="sequence", delay=2, disable=asked.quiet or None):
+                try:
+                    if one.folder not in finished:
+                        self._generate(one)
+                    made.append(one.entry())
+                except _NoPlaceError as error:
+                    refused.append({**one.entry(), "why": str(error)})
         except KeyboardInterrupt:
             kept = f"{len(made)} of {len(sequences)} sequences are finished in {out}"
             raise KeyboardInterrupt(f"{kept}; the same command makes the rest" if made else "") from None
@@ -105,48 +104,31 @@ class Batch:
         return summary
 
     def _leaks(self, sequences: list[BatchSequence]) -> dict[str, Any] | None:
-        """The leak report of matched draws of several sentences."""
-        draws = [one.draw for one in sequences if one.draw is not None]
-        texts = sorted({one.text for one in sequences})
-        if len(draws) < len(sequences) or len(texts) < 2 or len({draw.index for draw in draws}) < 2:
-            return None
+        """The leak report of several draws of several sentences."""
         from mmweaver.activity_sets.paired_sampling import folder_leaks
 
-        folders, requests = [one.folder for one in sequences], [self.requests[text] for text in texts]
-        return folder_leaks(folders, [one.text for one in sequences], draws, requests)
+        draws, texts = [one.draw for one in sequences], sorted({one.text for one in sequences})
+        if len(texts) < 2 or len({draw.index for draw in draws}) < 2:
+            return None
+        requests = [self.requests[text] for text in texts]
+        return folder_leaks([one.folder for one in sequences], [one.text for one in sequences], draws, requests)
 
-    def request(self, one: BatchSequence) -> "Request":
+    def request(self, one: BatchSequence) -> "ParsedRequest":
         """The request of one sequence."""
-        own = self.requests[one.text]
-        if one.draw is None:
-            return replace(own, seed=one.seed)
         from mmweaver.activity_sets.paired_sampling import placed
 
-        return placed(own, one.draw, one.height_m)
-
-    def _run_each(
-        self, sequences: list[BatchSequence], finished: set[Path], made: list[Any], refused: list[Any]
-    ) -> None:
-        from tqdm import tqdm
-
-        for one in tqdm(sequences, unit="sequence", delay=2, disable=self.quiet or None):
-            entry = one.entry()
-            try:
-                if one.folder not in finished:
-                    self._generate(one)
-            except _NoPlaceError as error:
-                refused.append({**entry, "why": str(error)})
-                continue
-            made.append(entry)
+        return placed(self.requests[one.text], one.draw, one.height_m)
 
     def _generate(self, one: BatchSequence) -> None:
+        request = self.request(one)
         try:
-            result = self.weaver.carry_out(self.request(one), self.room)
+            result = self.weaver.carry_out(request, self.room)
         except InputError as error:
             raise _NoPlaceError(str(error)) from None
         # only a damaged folder of the same sequence is there without --overwrite
-        overwrite = self.overwrite or one.folder.exists()
-        result.save(one.folder, overwrite=overwrite, extra={REQUEST_FILE: self.request_toml(one)}, **self.output)
+        overwrite = self.asked.overwrite or one.folder.exists()
+        extra = {REQUEST_FILE: self.asked.request_toml(frames=request.frames, **one.options())}
+        result.save(one.folder, overwrite=overwrite, extra=extra, **self.asked.output)
 
     def _is_finished(self, one: BatchSequence) -> bool:
         """Whether an earlier run made this sequence and it is undamaged. Raises InputError where it made another."""
@@ -156,154 +138,136 @@ class Batch:
         check_output_folder(one.folder, overwrite=True, files=("radar.npz", "meta.json"))
         if not one.folder.exists() or is_empty(one.folder):
             return False
+        request = self.request(one)
+        wanted = {"adc_data.bin": self.asked.keep_adc, "preview.png": not self.asked.no_pictures}
         try:
             found = read_json(one.folder / "meta.json")
-            request = self.request(one)
-            expected = {**self._expected_meta(request), "text": one.text, "seed": one.seed}
-            expected["at"] = None if request.at is None else list(request.at)
-            is_same = self._expected_files() <= set(found["files"])
-            is_same = is_same and all(found[name] == value for name, value in expected.items())
-            placing = {"heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject}
-            is_same = is_same and all(found["placed"][name] == value for name, value in placing.items())
+            is_same = {name for name, is_wanted in wanted.items() if is_wanted} <= set(found["files"])
+            is_same = is_same and all(found[name] == value for name, value in self._expected(one, request).items())
         except (InputError, KeyError, TypeError):
             is_same = False
         if not is_same:
             raise InputError(f"{one.folder} holds something else; choose another --out or allow it with --overwrite")
         return not damages(one.folder)
 
-    def _expected_meta(self, request: "Request") -> dict[str, Any]:
-        from mmweaver.methods import DEFAULT_METHOD
-        from mmweaver.result_folder import plain, radar_meta
+    def _expected(self, one: BatchSequence, request: "ParsedRequest") -> dict[str, Any]:
+        """What meta.json of the same sequence holds."""
+        from mmweaver.formats.result_folder import plain
+        from mmweaver.models.methods import DEFAULT_METHOD
 
         weaver = self.weaver
-        board = weaver.board_of(request, self.room)[0]
-        same = {
-            "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
-            "board": board.meta(),
-        }  # fmt: skip
-        method: dict[str, Any] = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
-        method |= {"radar_pose": request.radar_poses[0]} if request.radar_poses else {}
-        return plain({**same, **method, **radar_meta(request.config)})
-
-    def _expected_files(self) -> set[str]:
-        files = {"adc_data.bin": self.output["adc_data_bin"], "preview.png": self.output["pictures"]}
-        return {name for name, is_wanted in files.items() if is_wanted}
+        same = {"weights": weaver.weights, "inputs": self.room.inputs, "points": weaver.points, "text": one.text}
+        same["board"] = weaver.board_of(request, self.room)[0].meta()
+        if weaver.method_name != DEFAULT_METHOD:
+            same["method"] = weaver.method_name
+        if request.radar_poses:
+            same["radar_pose"] = request.radar_poses[0]
+        return plain(same | request.meta())
 
 
 class _NoPlaceError(Exception):
     """The room has no place for a sentence."""
 
 
+def run_batch(asked: "Options", out: Path) -> int:
+    """Makes what is missing of the sequences and prints which there are. Raises InputError."""
+    from mmweaver.activity_sets.paired_sampling import GivenPlacing, heading_rad
+    from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
+    from mmweaver.core.output_checks import check_output_folder
+
+    check_output_folder(out, overwrite=True, files=[LIST, LEAKS], inputs=asked.inputs)
+    person = asked.of_one_person("--texts makes sequences of one person each")
+    texts = _checked_texts(asked)
+    background = read_background(asked)
+    weaver = weaver_of(asked, radar_of(asked, background))
+    requests = _parsed(asked, weaver, texts)
+    room = room_of(asked, weaver, background)
+    heading = None if asked.heading_rad is None else heading_rad(asked.heading_rad)
+    given = GivenPlacing(
+        start_m=person["at"], heading_deg=heading, height_m=person["height_m"], subject=person["subject"]
+    )
+    sequences, refused = _sequences(asked, texts, requests, room, out, given)
+    summary = Batch(asked=asked, weaver=weaver, room=room, requests=requests).run(sequences, refused)
+    count = len(summary["sequences"])
+    lines = [f"{count} sequence{'s' if count > 1 else ''} in {out}, listed in {LIST}"]
+    lines += [summary["leaks"]] if "leaks" in summary else []
+    return asked.report(
+        summary, *lines, *(f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in refused)
+    )
+
+
 def read_texts(file: Path) -> list[str]:
-    """Sentences, one a line; empty lines and those that begin with # are skipped. Raises InputError."""
+    """Sentences, one per line; empty lines and those that begin with # are skipped. Raises InputError."""
     lines = [line.strip() for line in read_text(file, max_bytes=MAX_TEXTS_BYTES).splitlines()]
     texts = [line for line in lines if line and not line.startswith("#")]
     if not texts:
-        raise InputError(f"{file} holds no sentence; write one a line")
+        raise InputError(f"{file} holds no sentence; write one per line")
     return texts
 
 
-def checked_texts(arguments: argparse.Namespace) -> list[str]:
+def _checked_texts(asked: "Options") -> list[str]:
     """The sentences of --texts. Raises InputError for a bad file, and for options of a single sequence."""
-    for name in FOR_ONE_SEQUENCE:
-        if getattr(arguments, name) is not None:
-            raise InputError(f"--texts makes many sequences; leave out --{name.replace('_', '-')}, or --texts")
-    if len(arguments.radar_pose or ()) > 1:
+    for name, option in FOR_ONE_SEQUENCE.items():
+        if getattr(asked, name) is not None:
+            raise InputError(f"--texts makes many sequences; leave out --{option}, or --texts")
+    if len(asked.radar_poses) > 1:
         raise InputError(
             "--texts takes one --radar-pose; run it once for each radar: the same seeds give the same motions"
         )
-    for name in ("at", "height", "subject"):
-        if len(getattr(arguments, name) or ()) > 1:
-            raise InputError(f"--texts makes sequences of one person each; give --{name} once")
-    texts = read_texts(arguments.texts)
-    if not 1 <= arguments.repeat <= MOST // len(texts):
-        raise InputError(f"--repeat must be 1 to {MOST // len(texts)} for {len(texts)} sentences")
+    assert asked.texts is not None
+    texts = read_texts(asked.texts)
+    if not 1 <= _repeat(asked) <= MAX_SEQUENCES // len(texts):
+        raise InputError(f"--per-class must be 1 to {MAX_SEQUENCES // len(texts)} for {len(texts)} sentences")
     return texts
 
 
-def given_placing(arguments: argparse.Namespace) -> "GivenPlacing":
-    """What the user fixes for all sequences."""
-    from mmweaver.activity_sets.paired_sampling import GivenPlacing
-
-    at, height, subject = ((getattr(arguments, name) or [None])[0] for name in ("at", "height", "subject"))
-    return GivenPlacing(start_m=at, heading_deg=arguments.heading, height_m=height, subject=subject)
+def _repeat(asked: "Options") -> int:
+    return 1 if asked.per_class is None else asked.per_class
 
 
-def parse_texts(
-    weaver: "Weaver", texts: list[str], settings: dict[str, Any], file: Path, *, equally_long: bool
-) -> "dict[str, Request]":
-    """The parsed request of each distinct sentence; `equally_long`: all as long as the longest, if no length is given.
+def _parsed(asked: "Options", weaver: "Weaver", texts: list[str], **length: Any) -> "dict[str, ParsedRequest]":
+    """The parsed request of each distinct sentence, all as long as the longest if no length is given.
 
     Raises InputError for a sentence that cannot be acted out in the time.
     """
     requests = {}
     for text in dict.fromkeys(texts):
+        one = asked.asked(text=text, at=None, heading_rad=None, height_m=None, subject=None, **length)
         try:
-            requests[text] = weaver.request(text, **settings)
+            requests[text] = weaver.parsed(one)
             if not requests[text].people:
                 raise InputError("an empty room is no sequence of a person; generate it alone, with --text")
         except InputError as error:
-            raise InputError(f"{file}, {text[:60]!r}: {error}") from None
+            raise InputError(f"{asked.texts}, {text[:60]!r}: {error}") from None
     longest = max(one.frames for one in requests.values())
-    if equally_long and any(one.frames < longest for one in requests.values()):
-        given = settings | {"frames": longest, "seconds": None}
-        return parse_texts(weaver, texts, given, file, equally_long=False)
+    if any(one.frames < longest for one in requests.values()):
+        return _parsed(asked, weaver, texts, frames=longest, seconds=None)
     return requests
 
 
-def free_sequences(texts: list[str], arguments: argparse.Namespace, out: Path) -> list[BatchSequence]:
-    """All sentences --repeat times, each with its own seed; a larger --repeat continues a smaller one."""
-    every = texts * arguments.repeat
-    return [
-        BatchSequence(folder=out / _name(number, len(every)), text=text, seed=arguments.seed + number)
-        for number, text in enumerate(every)
-    ]
-
-
-def matched_sequences(
-    texts: list[str], requests: "dict[str, Request]", room: "Room", arguments: argparse.Namespace, out: Path
-) -> tuple[list[BatchSequence], list[dict[str, Any]]]:
-    """All sentences at --repeat draws, and those that the room has no place for; a larger --repeat continues a smaller.
+def _sequences(
+    asked: "Options", texts: list[str], requests: "dict[str, ParsedRequest]", room: "Room", out: Path,
+    given: "GivenPlacing",
+) -> tuple[list[BatchSequence], list[dict[str, Any]]]:  # fmt: skip
+    """All sentences --per-class times, and those that the room has no place for; more of each continue fewer.
 
     Raises InputError where no place serves one of them.
     """
     from mmweaver.activity_sets.paired_sampling import sentence_draws, sentence_order
 
-    given = given_placing(arguments)
-    try:
-        draws, why = sentence_draws(requests, room.scene, arguments.repeat, arguments.seed, given)
-    except InputError as error:
-        if given.start_m is not None:  # where it does not serve alone, either
-            raise
-        raise InputError(f"{error}; or give --draws free, which places each sentence by itself") from None
+    repeat, seed = _repeat(asked), asked.seed
+    draws, why = sentence_draws(requests, room.scene, repeat, seed, given)
     made: list[BatchSequence] = []
     refused: list[dict[str, Any]] = []
-    count = len(texts) * arguments.repeat
+    count = len(texts) * repeat
     for number in range(count):
         round_of, within = divmod(number, len(texts))
-        text = sentence_order(texts, round_of, arguments.seed)[within]
+        text = sentence_order(texts, round_of, seed)[within]
+        folder = out / f"{number:0{max(4, len(str(count - 1)))}d}"
         if text in why:
-            folder = out / _name(number, count)
-            refused.append({"folder": folder.name, "text": text, "seed": arguments.seed + round_of, "why": why[text]})
+            refused.append({"folder": folder.name, "text": text, "seed": seed + round_of, "why": why[text]})
         else:
-            draw = draws[round_of][text]
-            folder = out / _name(number, count)
-            made.append(
-                BatchSequence(folder=folder, text=text, seed=draw.seed, draw=draw, height_m=given.height_m)
-            )  # fmt: skip
+            made.append(BatchSequence(folder=folder, text=text, draw=draws[round_of][text], height_m=given.height_m))
     if not made:
         raise InputError(f"none of {count} sequences could be made; the first: {refused[0]['why']}")
     return made, refused
-
-
-def _name(number: int, count: int) -> str:
-    return f"{number:0{max(4, len(str(count - 1)))}d}"
-
-
-def summary_text(summary: dict[str, Any]) -> str:
-    """The summary for people."""
-    count = len(summary["sequences"])
-    lines = [f"{count} sequence{'s' if count > 1 else ''} in {summary['out']}, listed in {LIST}"]
-    lines += [summary["leaks"]] if "leaks" in summary else []
-    lines += [f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in summary["refused"]]
-    return "\n".join(lines)

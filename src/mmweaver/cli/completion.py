@@ -1,9 +1,10 @@
 """mmweaver completion: completion of commands and options for a shell."""
 
-import argparse
-from typing import Any
+from typing import Literal
 
+from mmweaver.cli.arguments import General
 from mmweaver.core.optional_packages import need
+from mmweaver.core.options import MISSING, option, options
 
 EXAMPLES = """examples:
   mmweaver completion bash > ~/.local/share/bash-completion/completions/mmweaver
@@ -12,21 +13,19 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "completion", help="print a shell's completion script", epilog=EXAMPLES,
-        description="Prints a script that completes mmweaver's commands, options and files in a shell.",
-    )  # fmt: skip
-    parser.add_argument("shell", choices=("bash", "zsh", "tcsh"), help="which shell")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(General):
+    """Prints a script that completes mmweaver's commands, options and files in a shell."""
+
+    shell: Literal["bash", "zsh", "tcsh"] = option("which shell", default=MISSING, positional=True)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the script on stdout. Raises InputError where shtab is not installed."""
     need("completion", "completion", "shtab")
     import shtab
 
-    print(shtab.complete(arguments.whole_parser, shell=arguments.shell))
+    from mmweaver.cli.main import build_parser
+
+    print(shtab.complete(build_parser(), shell=asked.shell))
     return 0

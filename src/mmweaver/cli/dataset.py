@@ -1,17 +1,21 @@
-"""mmweaver dataset: procedural rooms, people and motions, and the radar signal of each."""
+"""mmweaver dataset: procedural rooms, people and motions, and the radar signal of each; or a labelled set."""
 
-import argparse
+import sys
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from mmweaver.cli.activity_set import OF_ROOM_SETS, add_activity_options, is_activity_set_asked, run_activity_set
-from mmweaver.cli.arguments import add_board_option, add_board_options, add_range_options, radar_of, source, whole
-from mmweaver.cli.config_file import write_request
+from mmweaver.cli.arguments import write_request
+from mmweaver.cli.option_groups import BoardChoice, Iq, Printed, RadarChoice, Ranges
 from mmweaver.core.errors import InputError
+from mmweaver.core.options import MISSING, option, options
 
-MOST_WORKERS = 1024
+if TYPE_CHECKING:
+    from mmweaver.core.radar_config import RadarConfig
+
+MAX_WORKERS = 1024
 EXAMPLES = """examples:
-  mmweaver dataset set/ --room lab/ --activities activities.toml --each 50     # labelled, in your own room
+  mmweaver dataset set/ --room lab/ --activities activities.toml --per-class 50   # labelled, in your own room
   mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
   mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
   mmweaver dataset light/ --geometry-only       # signals are made while training
@@ -22,142 +26,143 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "dataset",
-        help="generate a data set of rooms, motions and radar signals",
-        epilog=EXAMPLES,
-        description="Generates furnished rooms, renders them from the radar's position, lets people move in them and "
-        "writes radar signals, poses and photos as one Zarr group per room. The same settings give the same bits; "
-        "finished rooms are kept, so it may be stopped and started again.",
-    )
-    parser.add_argument("out", type=Path, metavar="OUT", help="folder of the data set")
-    add_activity_options(parser.add_argument_group("labelled activities in your own rooms"))
-    content = parser.add_argument_group("content")
-    content.add_argument("--rooms", metavar="KIND,...", help="kinds of rooms (default: all)")
-    content.add_argument(
-        "--layouts", type=whole, default=OF_ROOM_SETS["layouts"], help="furniture layouts of each kind (default 10)"
-    )
-    content.add_argument(
-        "--sequences", type=whole, default=OF_ROOM_SETS["sequences"], help="sequences in each room (default 120)"
-    )
-    content.add_argument(
-        "--frames", type=whole, default=OF_ROOM_SETS["frames"], help="radar frames of each sequence (default 20)"
-    )
-    content.add_argument(
-        "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
-    )
-    add_range_options(content)
-    add_board_option(content)
-    add_board_options(content)
-    content.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
-    content.add_argument(
-        "--geometry-only", action="store_true",
-        help="store prepared rooms, motions and visibility, but no signals: mmweaver train makes these as it goes, with"
-        " new micro-motion each time, without a ray caster, on a GPU if there is one",
+@options
+class LabelledSet:
+    """Options that need --activities or --from-results."""
+
+    activities: Path | None = option(
+        'a file with a table [activities] of lines such as: waving = ["a person waves with the left hand"]', "TOML",
+        group="labelled activities in your own rooms",
     )  # fmt: skip
-    running = parser.add_argument_group("running")
-    running.add_argument("--workers", type=whole, default=1, help="parallel processes (default 1)")
-    running.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' starts one")
-    running.add_argument(
-        "--repair", action="store_true",
-        help="check the rooms that are there against their checksums first, and make damaged ones anew",
+    room: list[Path] | None = option(
+        "a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders), views.json, a scan, a"
+        " capture folder, a ROS bag or a mesh; once more for each further room",
+        "DIR",
     )  # fmt: skip
-    running.add_argument("--dry-run", action="store_true", help="print what would be made and its cost, and stop")
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
-    output.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    parser.set_defaults(run=run)
-    return parser
+    from_results: Path | None = option(
+        "instead of making sequences: the result folders in DIR, as mmweaver generate --texts writes them, become one"
+        " set; without --activities each sentence is a label",
+        "DIR",
+    )  # fmt: skip
+    per_class: int | None = option("sequences of each label (default 20)", "N")
+    seconds: float | None = option("length of every sequence (default 3)", "S")
+    subjects: int | None = option("different people (default 10)", "N")
+    split: Literal["subject", "place", "room", "sentence"] | None = option(
+        "what is held out for tests (default subject)"
+    )
+    method: str | None = option("weaver, the network (default), or physics", "NAME")
+    iq: Iq | None = option(
+        "how signals are stored (default float16, an error below 0.05 %); none: joints, points and what signals are"
+        " made from when they are read, in a thirtieth of the space"
+    )
 
 
-def run(arguments: argparse.Namespace) -> int:
+@options
+class RoomSet:
+    """Options of data sets of procedural rooms."""
+
+    rooms: tuple[str, ...] | None = option("kinds of rooms (default: all)", "KIND,...", group="content")
+    layouts: int = option("furniture layouts of each kind", "N", default=10)
+    sequences: int = option("sequences in each room", "N", default=120)
+    frames: int = option("radar frames of each sequence", "N", default=20)
+    geometry_only: bool = option(
+        "store prepared rooms, motions and visibility, but no signals: mmweaver train makes these as it goes, with new"
+        " micro-motion each time, without a ray caster, on a GPU if there is one",
+        default=False,
+    )  # fmt: skip
+    workers: int = option("parallel processes", "N", default=1, group="running", is_setting=False)
+    ray_address: str | None = option("run on this Ray cluster; 'local' starts one", "ADDRESS", is_setting=False)
+    repair: bool = option(
+        "check the rooms that are there against their checksums first, and make damaged ones anew", default=False
+    )
+
+
+@options
+class Options(LabelledSet, RoomSet, RadarChoice, Ranges, BoardChoice, Printed):
+    """Generates furnished rooms, renders them from the radar's position, lets people move in them and writes radar
+    signals, poses and photos as one Zarr group per room. The same settings give the same bits; finished rooms are kept,
+    so it may be stopped and started again.
+    """
+
+    GROUPS: ClassVar[dict[str, str]] = {"radar_set": "content", "json": "output"}
+
+    out: Path = option("folder of the data set", "OUT", default=MISSING, positional=True, is_setting=False)
+    seed: int = option("the same seed gives the same bits", "N", default=0)
+    dry_run: bool = option("print what would be made and its cost, and stop", default=False, is_setting=False)
+
+    def radar_config(self) -> "RadarConfig":
+        """The radar that records. Raises InputError."""
+        from mmweaver.core.range_window import chosen_range
+        from mmweaver.formats.radar_file import load_radar
+
+        return chosen_range(load_radar(self.radar_name("awr1843") or ""), self.range_m, self.range_bins)
+
+
+def run(asked: Options) -> int:
     """Generates what is missing. Raises InputError."""
-    if is_activity_set_asked(arguments):
-        return run_activity_set(arguments)
-    import json
-    import sys
-    from dataclasses import asdict
+    if asked.activities is not None or asked.from_results is not None:
+        from mmweaver.cli.activity_set import run_activity_set
 
+        for one in fields(RoomSet):
+            if getattr(asked, one.name) != one.default:
+                name = one.name.replace("_", "-")
+                raise InputError(f"--{name} is for data sets of rooms; leave it out of a labelled set")
+        return run_activity_set(asked)
+    for name in vars(LabelledSet)["__annotations__"]:
+        if getattr(asked, name) is not None:
+            raise InputError(f"--{name.replace('_', '-')} is for labelled sets; give --activities, too")
+    return _run_rooms(asked)
+
+
+def _run_rooms(asked: Options) -> int:
     from tqdm import tqdm
 
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.core.range_window import chosen_range
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
     from mmweaver.datasets.dataset_plan import MOST, DatasetPlan
     from mmweaver.datasets.dataset_store import PLAN_FILE
     from mmweaver.datasets.generate_rooms import check_packages, generate_dataset
-    from mmweaver.formats.radar_file import load_radar
-
-    workers = arguments.workers
-    for name, most in (("layouts", MOST), ("sequences", MOST), ("frames", MOST), ("workers", MOST_WORKERS)):
-        if not 1 <= getattr(arguments, name) <= most:
-            raise InputError(f"--{name} must be 1 to {most}, not {getattr(arguments, name)}")
-    config = chosen_range(load_radar(radar_of(arguments) or "awr1843"), arguments.range_m, arguments.range_bins)
-    plan = DatasetPlan(
-        kinds=_kinds(arguments.rooms), lightings=_lightings(), num_layouts=arguments.layouts,
-        sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
-        geometry_only=arguments.geometry_only, board=_board(arguments),
-    )  # fmt: skip
-    cost = estimate_cost(plan, config, arguments.out)
-    if arguments.dry_run:
-        print(json.dumps(asdict(cost)) if arguments.json else cost.summary(workers))
-        return 0
-    check_packages(arguments.ray_address)
-    if not (arguments.quiet or arguments.json):
-        print(cost.summary(workers), file=sys.stderr)
-    check_output_folder(arguments.out, overwrite=True, files=[PLAN_FILE])
-    check_for_space(cost, arguments.out)
-    total = len(plan.kinds) * plan.num_layouts
-    try:
-        with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:
-            reports = generate_dataset(
-                arguments.out, plan, config, workers=workers, ray_address=arguments.ray_address,
-                listener=lambda report: bar.update(), repair=arguments.repair,
-            )  # fmt: skip
-    except KeyboardInterrupt:
-        left = estimate_cost(plan, config, arguments.out).rooms
-        kept = f"{total - left} of {total} rooms are finished in {arguments.out}; the same command makes the rest"
-        raise KeyboardInterrupt(kept if arguments.out.exists() else "") from None
-    write_request(arguments.out, arguments)
-    summary = {
-        "out": str(arguments.out),
-        "rooms_made": len(reports),
-        "rooms_already_there": total - len(reports),
-        "sequences_made": sum(report.num_sequences for report in reports),
-        "sequences_refused": sum(len(report.refused) for report in reports),
-    }
-    if arguments.json:
-        print(json.dumps(summary))
-    elif not arguments.quiet:
-        print(
-            f"{summary['sequences_made']} sequences in {len(reports)} new rooms ({summary['rooms_already_there']} were"
-            f" there) in {arguments.out}"
-        )
-    return 0
-
-
-def _board(arguments: argparse.Namespace) -> str:
-    """The board of the plan: a file by its whole path. Raises InputError where it cannot be read."""
-    name = arguments.board or ("ideal" if arguments.geometry_only else "typical")
-    return str(Path(name).absolute()) if Path(name).is_file() else name
-
-
-def _kinds(text: str | None) -> tuple[str, ...]:
+    from mmweaver.scene.procedural.lighting import LIGHTINGS
     from mmweaver.scene.procedural.room_kinds import KINDS
 
-    known = tuple(KINDS)
-    if text is None:
-        return known
-    kinds = tuple(part.strip() for part in text.split(","))
-    for kind in kinds:
-        if kind not in known:
-            raise InputError(f"unknown kind of room {kind!r}; known: {', '.join(known)}")
-    return kinds
-
-
-def _lightings() -> tuple[str, ...]:
-    from mmweaver.scene.procedural.lighting import LIGHTINGS
-
-    return tuple(LIGHTINGS)
+    out, workers = asked.out, asked.workers
+    for name, limit in (("layouts", MOST), ("sequences", MOST), ("frames", MOST), ("workers", MAX_WORKERS)):
+        if not 1 <= getattr(asked, name) <= limit:
+            raise InputError(f"--{name} must be 1 to {limit}, not {getattr(asked, name)}")
+    for kind in asked.rooms or ():
+        KINDS[kind.strip()]
+    config = asked.radar_config()
+    board = asked.board or ("ideal" if asked.geometry_only else "typical")
+    plan = DatasetPlan(
+        kinds=tuple(kind.strip() for kind in asked.rooms or KINDS), lightings=tuple(LIGHTINGS),
+        num_layouts=asked.layouts, sequences_a_room=asked.sequences, num_frames=asked.frames, radar=config.name,
+        seed=asked.seed, geometry_only=asked.geometry_only,
+        board=str(Path(board).absolute()) if Path(board).is_file() else board,
+    )  # fmt: skip
+    cost = estimate_cost(plan, config, out)
+    if asked.dry_run:
+        return asked.report(asdict(cost), cost.summary(workers))
+    check_packages(asked.ray_address)
+    if not (asked.quiet or asked.json):
+        print(cost.summary(workers), file=sys.stderr)
+    check_output_folder(out, overwrite=True, files=[PLAN_FILE])
+    check_for_space(cost, out)
+    total = len(plan.kinds) * plan.num_layouts
+    try:
+        with tqdm(total=total, unit="room", disable=asked.quiet or None) as bar:
+            reports = generate_dataset(
+                out, plan, config, workers=workers, ray_address=asked.ray_address, repair=asked.repair,
+                listener=lambda report: bar.update(),
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        left = estimate_cost(plan, config, out).rooms
+        kept = f"{total - left} of {total} rooms are finished in {out}; the same command makes the rest"
+        raise KeyboardInterrupt(kept if out.exists() else "") from None
+    write_request(out, asked)
+    summary = {
+        "out": str(out), "rooms_made": len(reports), "rooms_already_there": total - len(reports),
+        "sequences_made": sum(report.num_sequences for report in reports),
+        "sequences_refused": sum(len(report.refused) for report in reports),
+    }  # fmt: skip
+    rooms = f"{len(reports)} new rooms ({total - len(reports)} were there)"
+    return asked.report(summary, f"{summary['sequences_made']} sequences in {rooms} in {out}")

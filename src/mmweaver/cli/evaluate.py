@@ -1,65 +1,99 @@
 """mmweaver evaluate: scores what was trained on generated data alone on recordings of real people."""
 
-import argparse
-import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+from mmweaver.cli.option_groups import Printed
 from mmweaver.cli.recognise_text import score_lines
+from mmweaver.core.errors import InputError
+from mmweaver.core.options import MISSING, option, options
 
+FROZEN_POSE = "pose_mars"
 SHIPPED_TASK, SHIPPED_MODEL = "examples/tasks/radhar.toml", "recogniser_radhar"
 
 EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
-  mmweaver evaluate zero-shot-activity --model model/ --recordings recordings/
+  mmweaver evaluate zero-shot-activity --weights model/ --recordings recordings/
+  mmweaver evaluate zero-shot-pose --recordings MARS/ --json
 
-Without --model the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames per
-second, as RadHAR publishes them (.txt, one message per point) or as .npz with frame (point) and pts (point, 8). The
+Without --weights the recogniser is that of examples/tasks/radhar.toml. Recordings are of an IWR1443 at 30 frames a
+second, as RadHAR publishes them (.txt, one message a point) or as .npz with frame (point) and pts (point, 8). The
 activity is the subfolder's name or a word of the file's name: boxing, jack, jump, squats, walk. For other radars and
 activities train a model from a task file: docs/recognise.md.
+Those of zero-shot-pose are MARS, or one of its subjects (radar_data_test.csv, kinect_data_test.csv): docs/pose.md.
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "evaluate", help="score what was trained on generated data on real recordings", epilog=EXAMPLES,
-        description="Trains on generated data alone and scores on recordings of real people.",
-    )  # fmt: skip
-    parser.add_argument("task", choices=("zero-shot-activity",), help="what is scored")
-    parser.add_argument("--recordings", type=Path, required=True, metavar="DIR", help="folder of recordings")
-    parser.add_argument("--model", type=Path, metavar="DIR", help="of `mmweaver recognise train`")
-    parser.add_argument("--json", action="store_true", help="print the scores for machines")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Printed):
+    """Trains on generated data alone and scores on recordings of real people."""
+
+    task: Literal["zero-shot-activity", "zero-shot-pose"] = option("what is scored", default=MISSING, positional=True)
+    recordings: Path = option("folder of recordings", "DIR", default=MISSING)
+    weights: Path | None = option("a folder of mmweaver recognise train or train pose", "DIR")
+    split: Literal["train", "validate", "test"] | None = option("zero-shot-pose: of MARS (default test)")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
-    scores = _activities(arguments)
-    print(json.dumps(scores, indent=2, ensure_ascii=False) if arguments.json else "\n".join(lines(scores)))
-    return 0
+    evaluated, as_lines = TASKS[asked.task]
+    scores = evaluated(asked)
+    return asked.report(scores, *as_lines(scores))
 
 
-def _activities(arguments: argparse.Namespace) -> dict[str, Any]:
+def _activities(asked: Options) -> dict[str, Any]:
     """Scores of a recogniser of a task file, by default of the one that comes with the repository."""
+    if asked.split is not None:
+        raise InputError("--split is for zero-shot-pose; all recordings of activities are scored")
     from mmweaver.core.repository_files import repository_file
     from mmweaver.recognition.point_recordings import read_task_recordings
     from mmweaver.recognition.recogniser import META_FILE, load_recogniser
     from mmweaver.recognition.scoring import score_recordings
 
-    folder = arguments.model or repository_file(
+    folder = asked.weights or repository_file(
         f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
-        "give a model of mmweaver recognise train by --model",
+        "give a model of mmweaver recognise train by --weights",
     ).parent  # fmt: skip
     model = load_recogniser(folder)
     made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
-    scores = score_recordings(model, read_task_recordings(arguments.recordings, model.settings))
-    return {"task": arguments.task, "model": folder.name, **made, **scores}
+    scores = score_recordings(model, read_task_recordings(asked.recordings, model.settings))
+    return {"task": asked.task, "model": folder.name, **made, **scores}
+
+
+def _poses(asked: Options) -> dict[str, Any]:
+    """Scores of a pose network, by default of the frozen one."""
+    from mmweaver.core.repository_files import repository_file
+    from mmweaver.models.weights import WEIGHTS_FILE
+    from mmweaver.recognition.pose_estimator import load_estimator
+    from studies.recognition.score_poses import score_poses
+
+    model = asked.weights
+    if model is None:
+        otherwise = "train some with mmweaver train pose and give them by --weights"
+        model = repository_file(f"{FROZEN_POSE}/{WEIGHTS_FILE}", "the folder of frozen pose networks", otherwise).parent
+    scores = score_poses(load_estimator(model), asked.recordings, asked.split or "test")
+    return {"task": asked.task, "model": model.name, **scores}
 
 
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
     windows = f"trained on {scores['generated_windows']} generated windows"
     return [f"recogniser {scores['model']} of the task file {scores['task_file']}, {windows}", *score_lines(scores)]
+
+
+def pose_lines(scores: dict[str, Any]) -> list[str]:
+    """Errors in cm, by alignment and group of joints."""
+    text = [f"split {scores['split']} of {len(scores['subjects'])} subjects; mean distance of joints in cm"]
+    for method, of_alignment in scores["mean"].items():
+        text.append(f"  {method.replace('_', ' ')}")
+        for alignment, groups in of_alignment.items():
+            words = ", ".join(f"{group} {value:.1f}" for group, value in groups.items())
+            text.append(f"    {alignment:11} {words}")
+    return text
+
+
+TASKS: dict[str, tuple[Callable[[Options], dict[str, Any]], Callable[[dict[str, Any]], list[str]]]] = {
+    "zero-shot-activity": (_activities, lines), "zero-shot-pose": (_poses, pose_lines),
+}  # fmt: skip

@@ -1,86 +1,64 @@
 """mmweaver export: results in the formats of other tools."""
 
-import argparse
 from pathlib import Path
-from typing import Any
+
+from mmweaver.cli.option_groups import Written
+from mmweaver.core.options import option, options
 
 EXAMPLES = """examples:
   mmweaver export walk/ --to mat --out walk_mat/
   mmweaver export walk/ --to ros2 --out walk_bag/
   mmweaver generate --demo --radar hupr --bin --out walk/ && mmweaver export walk/ --to hupr --out hupr/
   mmweaver export set/ --to results --out folders/    # each sequence of a labelled set
-  mmweaver export --list
+  mmweaver export                                     # lists the formats
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "export", help="write results in the formats of other tools", epilog=EXAMPLES,
-        description="Writes result folders (or folders of results, such as --texts makes) for other tools: data-set"
-        " layouts, MATLAB, netCDF, ROS 2, MCAP, Rerun and videos.",
-    )  # fmt: skip
-    parser.add_argument(
-        "folder", type=Path, nargs="?", metavar="DIR", help="a result folder, a folder of them, or a labelled set"
-    )
-    parser.add_argument("--to", metavar="FORMAT", help="the format; --list names them")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files, or one file: walk.mp4")
-    parser.add_argument("--overwrite", action="store_true", help="replace files in --out")
-    parser.add_argument("--list", action="store_true", help="list the formats")
-    parser.add_argument("--json", action="store_true", help="print what was written, or --list, for machines")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Written):
+    """Writes result folders (or folders of results, such as --texts makes) for other tools: data-set layouts, MATLAB,
+    netCDF, ROS 2, MCAP, Rerun and videos. Without a folder it lists the formats.
+    """
+
+    folder: Path | None = option("a result folder, a folder of them, or a labelled set", "DIR", positional=True)
+    to: str | None = option("the format", "FORMAT")
+    out: Path | None = option("folder for the files, or one file: walk.mp4", "DIR")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Exports one result or many. Raises InputError."""
     from mmweaver.core.errors import InputError
     from mmweaver.datasets.room_sequences import is_set
     from mmweaver.exports.export import FORMATS, export_result, export_set, is_of_two_radars
 
-    if arguments.list:
-        return _list(arguments)
-    if arguments.folder is None or arguments.to is None or arguments.out is None:
-        raise InputError("give a result folder, --to FORMAT and --out DIR (the formats: mmweaver export --list)")
-    if arguments.to not in FORMATS:
-        raise InputError(f"unknown format {arguments.to!r}; known: {', '.join(FORMATS)}")
-    if is_set(arguments.folder):
-        every = export_set(arguments.folder, arguments.to, arguments.out, overwrite=arguments.overwrite)
-        return _say({str(out): what for out, what in every}, arguments)
-    together = is_of_two_radars(arguments.folder, arguments.to)
-    results = {arguments.folder: ""} if together else _results(arguments.folder)
+    if asked.folder is None and asked.to is None:
+        return _list(asked)
+    if asked.folder is None or asked.to is None or asked.out is None:
+        raise InputError("give a result folder, --to FORMAT and --out DIR (the formats: mmweaver export)")
+    if asked.to not in FORMATS:
+        raise InputError(f"unknown format {asked.to!r}; known: {', '.join(FORMATS)}")
+    if is_set(asked.folder):
+        every = export_set(asked.folder, asked.to, asked.out, overwrite=asked.overwrite)
+        return _say({str(out): what for out, what in every}, asked)
+    together = is_of_two_radars(asked.folder, asked.to)
+    results = {asked.folder: ""} if together else _results(asked.folder)
     written = {}
     for folder, place in results.items():
-        out = arguments.out / place
-        written[str(out)] = export_result(folder, arguments.to, out, overwrite=arguments.overwrite)
-    return _say(written, arguments)
+        out = asked.out / place
+        written[str(out)] = export_result(folder, asked.to, out, overwrite=asked.overwrite)
+    return _say(written, asked)
 
 
-def _list(arguments: argparse.Namespace) -> int:
-    import json
-
+def _list(asked: Options) -> int:
     from mmweaver.exports.export import FORMATS
 
-    if arguments.json:
-        listed = [
-            {"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()
-        ]
-        print(json.dumps(listed, indent=2))
-    else:
-        for name, one in FORMATS.items():
-            print(f"{name:11s} {one.what}{' (needs samples: --bin)' if one.needs_samples else ''}")
-    return 0
+    listed = [{"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()]
+    notes = {True: " (needs samples: --bin)", False: ""}
+    return asked.report(listed, *(f"{name:11s} {one.what}{notes[one.needs_samples]}" for name, one in FORMATS.items()))
 
 
-def _say(written: dict[str, str], arguments: argparse.Namespace) -> int:
-    import json
-
-    if arguments.json:
-        print(json.dumps(written, indent=2))
-    else:
-        for out, what in written.items():
-            print(f"{out}: {what}")
-    return 0
+def _say(written: dict[str, str], asked: Options) -> int:
+    return asked.report(written, *(f"{out}: {what}" for out, what in written.items()))
 
 
 def _results(folder: Path) -> dict[Path, str]:

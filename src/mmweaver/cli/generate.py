@@ -1,369 +1,379 @@
 """mmweaver generate: photo and sentence in, radar signal out."""
 
-import argparse
-import json
-from dataclasses import replace
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from mmweaver.cli.arguments import radar_of
-from mmweaver.cli.config_file import REQUEST_FILE, request_toml
-from mmweaver.cli.generate_options import (
-    DEMO_OUT,
-    DEMO_TEXT,
-    USAGE,
-    add_generate_options,
-)
-from mmweaver.cli.motion_options import (
-    check_motion_options,
-    motion_of_model,
-    placing_options,
-    read_own_motion,
-)
+from mmweaver.cli.arguments import REQUEST_FILE, request_toml
+from mmweaver.cli.generate_inputs import DEFAULT_RADAR, radar_of, read_background, room_of, weaver_of
+from mmweaver.cli.option_groups import Layout, PointChoice, RadarChoice, Ranges, Written
 from mmweaver.core.errors import InputError
+from mmweaver.core.options import Place, Setting, Source, option, options, read_settings
+from mmweaver.weaver.request import Request
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from mmweaver.core.radar_config import RadarConfig
-    from mmweaver.core.records import RadarCube
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
     from mmweaver.motion.mocap.clip import MotionClip
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
 
-DEFAULT_RADAR = "awr1843"
+DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
+DEMO_OUT = "demo"
 NUM_STAGES = 9
+PICTURES = (".png", ".npy", ".tif", ".tiff", ".webp", ".jpg", ".jpeg")
+USAGE = """mmweaver generate --demo
+       mmweaver generate --rgb PNG --depth FILE --text TEXT --out DIR [options]
+       mmweaver generate --room PATH --text TEXT --out DIR [options]
+       mmweaver generate --config request.toml --out DIR [options]"""
 EXAMPLES = """examples:
   mmweaver generate --demo
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --seconds 8 --radar mmmesh --out drink/ --bin
-  mmweaver generate --views views.json --text "a person walks" --out walk/    # several photos: the whole room
-  mmweaver generate --capture scan/ --further-photos auto --text "a person walks" --out walk/
+  mmweaver generate --room views.json --text "a person walks" --out walk/     # several photos: the whole room
+  mmweaver generate --room scan/ --extra-views auto --text "a person walks" --out walk/
   mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --board ideal --out ideal/               # no errors of a board; --board board.json: of yours
   mmweaver generate --demo --radar-pose 0,0,0,0,0 --radar-pose 1.5,1.5,0,-60,0 --out both/   # two radars at a time
-  mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
+  mmweaver generate --demo --texts sentences.txt --per-class 20 --no-pictures --out set/    # one sentence per line
   mmweaver generate --demo --stream --texts - --out live/                   # sentences from standard input, no end
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
   mmweaver generate --rgb rgb.png --depth depth.png --background empty/ --text "a person walks" --out walk/
-  mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
-  mmweaver generate --demo --motion-model small --motion-model-for all --text "a person waves" --out wave/
+  mmweaver generate --demo --motion walk.bvh --motion-set unit=cm --at 0.2,2.5 --heading 0 --out walk/
+  mmweaver generate --demo --motion-model small --motion-set for=all --text "a person waves" --out wave/
 """
+_MESH_SETTINGS = {"eye": tuple[float, float, float], "look": float, "unit": str, "up": str, "materials": Path}
+_MOTION_SETTINGS = {
+    "fps": float, "unit": str, "up": str, "start": float, "clip": str, "body": Path, "for": str,
+}  # fmt: skip
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "generate", help="generate the signal of a person in the room of a photo", usage=USAGE, epilog=EXAMPLES,
-        description="Generates the signal that a radar at the camera would have recorded of a person doing what the"
-        " text says, in the room that the photo shows.",
+@options
+class RoomInput:
+    """Where the room comes from."""
+
+    demo: bool = option(f"the bundled sample room (and --out {DEMO_OUT})", default=False, group="input")
+    rgb: Path | None = option("colour picture of the room", "PNG")
+    depth: Source | None = option(
+        "its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres; or a metric depth model that"
+        " estimates it: auto (downloaded once), a folder or a Hub name",
+        "FILE|auto|MODEL",
     )  # fmt: skip
-    add_generate_options(parser)
-    parser.set_defaults(run=run)
-    return parser
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
-    texts, out = _check_inputs(arguments)
-    check_motion_options(arguments)
-    if arguments.store or arguments.iq is not None:
-        from mmweaver.cli.batch_store import check_store
-
-        check_store(arguments)
-    if arguments.stream:
-        return _run_stream(arguments, out)
-    if arguments.texts is not None:
-        return _run_batch(arguments, out)
-
-    from mmweaver.cli.progress import StageBar
-    from mmweaver.cli.summary import print_summary
-    from mmweaver.core.output_checks import check_output_file, check_output_folder
-    from mmweaver.request import parse_request
-    from mmweaver.result_folder import FILES
-
-    many = len(arguments.radar_pose or ()) > 1
-    files = [REQUEST_FILE] if many else FILES
-    check_output_folder(out, overwrite=arguments.overwrite, files=files, inputs=_inputs(arguments))
-    if arguments.html is not None:
-        if arguments.radar_pose:
-            raise InputError("--html shows a radar at the camera; leave out --radar-pose, or --html")
-        check_output_file(arguments.html, overwrite=arguments.overwrite, inputs=_inputs(arguments))
-    with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
-        background = _background(arguments)
-        radar = _radar(arguments, background)
-        if texts is None and arguments.motion is None:
-            texts = [DEMO_TEXT]
-        text = texts[0] if texts is not None and len(texts) == 1 else texts
-        if arguments.motion is None and arguments.motion_model is None:  # before PyTorch starts, which takes 2 s
-            parse_request(radar, text, **_settings(arguments), **placing_options(arguments))
-        weaver = _weaver(arguments, radar, bar)
-        motion = read_own_motion(arguments) or _motion_of_model(arguments, weaver, text)
-        placing = placing_options(arguments, of_model=motion if arguments.motion is None else None)
-        request = weaver.request(text, motion=motion, **_settings(arguments), **placing)
-        result = weaver.carry_out(request, _read_room(weaver, arguments, background))
-        written = {REQUEST_FILE: _request_toml(arguments, text=texts, frames=request.frames, seconds=None)}
-        meta = result.save(out, overwrite=arguments.overwrite, extra=written, **_output(arguments))
-        if arguments.html is not None:
-            result.save_html(arguments.html)
-    print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet, verbose=arguments.verbose)
-    return 0
-
-
-def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
-    """One sentence after the other, written as they come."""
-    from mmweaver.cli.stream import check_stream_options, run_stream
-    from mmweaver.core.output_checks import check_output_folder, is_empty
-    from mmweaver.core.staging import sweep
-    from mmweaver.result_folder import plain
-    from mmweaver.stream_folder import PARTS
-
-    check_stream_options(arguments)
-    check_output_folder(out, overwrite=True, inputs=_inputs(arguments))
-    sweep(out / PARTS)
-    if out.is_dir() and not is_empty(out):
-        raise InputError(_why_no_stream_into(out))
-    background = _background(arguments)
-    weaver = _weaver(arguments, _radar(arguments, background))
-    meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out, _board(arguments))
-    if arguments.json:
-        print(json.dumps(plain({"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}), indent=2))
-    elif not arguments.quiet:
-        print(f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
-    return 0
-
-
-def _why_no_stream_into(out: Path) -> str:
-    """What to do where a stream's folder holds something already, an interrupted stream mostly."""
-    from mmweaver.stream_folder import LIST
-
-    if (out / LIST).is_file():
-        return (
-            f"{out} holds a stream already, and streams cannot be continued; choose another --out, or delete that"
-            " folder (`mmweaver verify` checks and `mmweaver compress` reads what it holds, even after an interruption)"
-        )
-    return f"{out} is not empty; a stream needs a folder of its own: choose another --out"
-
-
-def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
-    """Many sequences in one room."""
-    from mmweaver.cli import batch as many
-    from mmweaver.cli.batch_store import run_store
-    from mmweaver.core.output_checks import check_output_folder
-
-    check_output_folder(out, overwrite=True, files=[many.LIST, many.LEAKS], inputs=_inputs(arguments))
-    texts, matched = many.checked_texts(arguments), arguments.draws == "matched"
-    background = _background(arguments)
-    weaver = _weaver(arguments, _radar(arguments, background))
-    settings = _settings(arguments)
-    if not matched:
-        given = many.given_placing(arguments)
-        placing = placing_options(arguments) | {"at": given.start_m, "height_m": given.height_m}
-        settings |= placing | {"subject": given.subject}
-    requests = many.parse_texts(weaver, texts, settings, arguments.texts, equally_long=matched)
-    room = _read_room(weaver, arguments, background)
-    if arguments.store:
-        return run_store(arguments, weaver, room, requests, out)
-    sequences, refused = many.free_sequences(texts, arguments, out), []
-    if matched:
-        sequences, refused = many.matched_sequences(texts, requests, room, arguments, out)
-    batch = many.Batch(
-        weaver=weaver, room=room, requests=requests, output=_output(arguments), overwrite=arguments.overwrite,
-        quiet=arguments.quiet,
-        request_toml=lambda one: _request_toml(
-            arguments, text=[one.text], seed=one.seed, texts=None, repeat=None, frames=requests[one.text].frames,
-            seconds=None, **one.placing(),
-        ),
+    camera: Path | None = option("fx, fy, cx, cy in pixels (default: a RealSense D455's)", "JSON")
+    room: Path | None = option(
+        "instead of --rgb: a folder with rgb.png, depth.png and camera.json; views.json, several photos with depth and"
+        " roughly where each was taken (docs/photos.md); a scan or capture (mmwave-capture-std, Stray Scanner,"
+        " Record3D, Polycam raw data, ScanNet, TUM RGB-D), a ROS bag (RealSense), or a mesh (.glb, .ply, .obj)",
+        "PATH",
     )  # fmt: skip
-    summary = batch.run(sequences, refused)
-    if arguments.json:
-        print(json.dumps(summary, indent=2, ensure_ascii=False))
-    elif not arguments.quiet:
-        print(many.summary_text(summary))
-    return 0
-
-
-def _inputs(arguments: argparse.Namespace) -> list[Path | None]:
-    """Files that an output must not replace."""
-    given = (arguments.rgb, arguments.depth, arguments.background, arguments.motion, arguments.texts)
-    return [None if one is None else Path(one) for one in given]
-
-
-def _request_toml(arguments: argparse.Namespace, **instead: Any) -> str:
-    radar = arguments.radar or (DEFAULT_RADAR if arguments.background is None else None)
-    return request_toml(arguments.parser, arguments, **{"radar": radar, "board": _board(arguments), **instead})
-
-
-def _board(arguments: argparse.Namespace) -> str | None:
-    """The board by name; a typical one with the number of the seed, the same for all sequences of a run.
-
-    None: that of the background recording.
-    """
-    name = arguments.board or ("typical" if arguments.background is None else None)
-    return f"typical:{arguments.seed % 2**31}" if name == "typical" else name
-
-
-def _radar(arguments: argparse.Namespace, background: "RadarCube | None") -> "RadarConfig":
-    """The radar asked for, else that of the background recording, else the default."""
-    from mmweaver.core.range_window import chosen_range
-    from mmweaver.formats.radar_file import load_radar
-
-    radar = (
-        background.config
-        if background and not arguments.radar
-        else load_radar(radar_of(arguments, DEFAULT_RADAR) or "")
-    )
-    radar = chosen_range(radar, arguments.range_m, arguments.range_bins)
-    return radar if arguments.tx_order is None else replace(radar, tx_order=arguments.tx_order)
-
-
-def _weaver(
-    arguments: argparse.Namespace, radar: "RadarConfig", listener: "Callable[[str], object] | None" = None
-) -> "Weaver":
-    from mmweaver.formats.radar_file import load_firmware
-    from mmweaver.formats.ti_calibration import read_ti_calibration
-    from mmweaver.generate import Weaver
-
-    firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
-    return Weaver(
-        method=arguments.method, radar=radar, listener=listener, points=arguments.points, firmware=firmware,
-        weights=arguments.weights, calibration=read_ti_calibration(radar_of(arguments, DEFAULT_RADAR) or ""),
-        bounces=arguments.bounces, clutter=arguments.clutter,
+    background: Path | None = option(
+        "a recording of this room by your radar with nobody present, a folder of mmweaver process or a capture folder:"
+        " its static clutter is used as it is, and the person is added",
+        "DIR|NPZ",
+    )  # fmt: skip
+    classes: Source | None = option(
+        "what each pixel shows, from which materials follow: a picture (COCO-Stuff's numbers), or a model that finds"
+        " it: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or Hub name",
+        "PNG|builtin|MODEL", rare=True,
+    )  # fmt: skip
+    landmark: list[tuple[str, Place]] | None = option(
+        "where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and ahead"
+        " of the radar, for example door=0.9,2.8",
+        "KIND=X,Y", rare=True,
+    )  # fmt: skip
+    photo: int | None = option("which photo of a scan or capture (default 0)", "N", rare=True)
+    extra_views: str | None = option(
+        "further photos of a scan, joined to --photo by its poses, so that walls beside and behind the radar are known:"
+        " numbers, or auto for up to five that show the most",
+        "N,N..|auto", rare=True,
+    )  # fmt: skip
+    mesh_set: list[Setting] | None = option(
+        "of a mesh: eye=X,Y,Z, the radar's place in the mesh's own axes and unit (default: near a wall, with the room"
+        " ahead); look=DEG, degrees from the mesh's x axis, counterclockwise from above (default: most room); unit=m,"
+        " cm, mm, inch or foot (default: what fits a room); up=y or z (default: y for .glb, else by the floor);"
+        ' materials=JSON, what its names are: {"Material.003": "couch", "pane": "glass"}',
+        "KEY=VALUE", rare=True,
     )  # fmt: skip
 
+    def read_room(self, weaver: "Weaver") -> "Room":
+        """The room, reconstructed. Raises InputError for options that another kind of room has."""
+        if self.demo:
+            return weaver.sample_room()
+        how: dict[str, Any] = {}
+        if self.classes is not None:
+            how[_picture_or("segmenter", "classes", self.classes)] = self.classes
+        if self.room is None:
+            assert self.rgb is not None
+            if self.depth is not None:
+                how[_picture_or("depth_model", "depth", self.depth)] = self.depth
+            return weaver.read_room(self.rgb, camera=self.camera, **how)
+        mesh = read_settings(self.mesh_set, _MESH_SETTINGS, "mesh-set")
+        how |= {"look_deg" if name == "look" else name: value for name, value in mesh.items()}
+        how |= {"photo": self.photo, "rgb": self.rgb, "extra_views": _photos(self.extra_views)}
+        return weaver.open_room(self.room, **{name: value for name, value in how.items() if value is not None})
 
-def _settings(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The arguments of `Weaver.request` that every sequence shares."""
-    return {
-        "frames": arguments.frames, "seconds": arguments.seconds, "fps": arguments.fps, "seed": arguments.seed,
-        "keep_adc": arguments.bin, "board": _board(arguments), "radar_poses": arguments.radar_pose or (),
-    }  # fmt: skip
-
-
-def _output(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The arguments of `Generation.save` that say which files are written."""
-    return {
-        "adc_data_bin": arguments.bin, "iq_order": arguments.iq_order, "pictures": not arguments.no_pictures,
-    }  # fmt: skip
-
-
-def _motion_of_model(
-    arguments: argparse.Namespace, weaver: "Weaver", text: str | list[str] | None
-) -> "MotionClip | None":
-    """The motion that --motion-model makes of the text."""
-    if arguments.motion_model is None:
-        return None
-    if isinstance(text, list):
-        raise InputError("--motion-model acts out one text; give --text once")
-    return motion_of_model(arguments, text, _duration_s(arguments, weaver))
-
-
-def _duration_s(arguments: argparse.Namespace, weaver: "Weaver") -> float | None:
-    """The duration that --frames or --seconds fix."""
-    if arguments.frames is None:
-        return arguments.seconds
-    return arguments.frames * (1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s)
-
-
-def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
-    """The texts (None: those of the demo, or a recorded motion alone) and the output folder, if the room is clear."""
-    pictures = (
-        arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
-        arguments.segmenter, arguments.sam, arguments.views, arguments.mesh,
-    )  # fmt: skip
-    if arguments.demo:
-        if any(picture is not None for picture in pictures):
+    def check_room(self) -> None:
+        """Raises InputError where no room is described, or two are."""
+        given = [name for name in ("room", "depth", "camera", "rgb", "classes") if getattr(self, name) is not None]
+        if self.demo and given:
             raise InputError(
-                "--demo brings its own room; leave out --rgb, --depth, --camera and all else that describes a room,"
-                " or leave out --demo"
+                "--demo brings its own room; leave out --room, --rgb, --depth, --camera and all else that describes a"
+                " room, or leave out --demo"
             )
-        return arguments.text, arguments.out or Path(DEMO_OUT)
-    _check_room(arguments, pictures)
-    if any(given is not None for given in (arguments.mesh, arguments.views, arguments.capture)):
-        return _text_and_out(arguments)
-    if arguments.rgb is None and arguments.depth is None:
-        raise InputError("which room? give --rgb and --depth, or try --demo")
-    if arguments.depth is None and arguments.depth_model is None:
-        raise InputError(
-            "--rgb needs --depth too, for the room is built from the distance of each pixel; a metric depth model can"
-            " estimate it: --depth-model auto (downloaded once), DIR or a Hub name"
-        )
-    if arguments.rgb is None:
-        raise InputError("--depth needs --rgb too: the colour picture of the same view")
-    return _text_and_out(arguments)
+        if self.room is not None and (given_too := {"depth", "camera"} & set(given)):
+            raise InputError(f"--room brings the whole room; leave out {' and '.join(f'--{one}' for one in given_too)}")
+        if self.demo or self.room is not None:
+            return
+        if self.rgb is None and self.depth is None:
+            raise InputError("which room? give --rgb and --depth, or --room, or try --demo")
+        if self.rgb is None:
+            raise InputError("--depth needs --rgb too: the colour picture of the same view")
+        if self.depth is None:
+            raise InputError(
+                "--rgb needs --depth too, for the room is built from the distance of each pixel; a metric depth model"
+                " can estimate it: --depth auto (downloaded once), a folder or a Hub name"
+            )
+        if (self.photo, self.extra_views, self.mesh_set) != (None, None, None):
+            raise InputError("--photo, --extra-views and --mesh-set are of a scan or mesh; give --room, too")
 
 
-def _check_room(arguments: argparse.Namespace, pictures: tuple[Any, ...]) -> None:
-    """Raises InputError where a mesh, several photos or a capture come with what describes another room."""
-    is_of_mesh = any(
-        getattr(arguments, f"mesh_{name}") is not None for name in ("eye", "look", "unit", "up", "materials")
+@options
+class MotionInput:
+    """Motions that are not made of one sentence."""
+
+    motion_file: Path | None = option(
+        "a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
+        " joints), .npy (22 joints, HumanML3D)",
+        "FILE", name="motion", group="motion",
+    )  # fmt: skip
+    motion_model: Source | None = option(
+        "a motion model for a --text that the built-in library does not know: MotionGPT (a checkpoint's file, folder or"
+        " name on the Hub, or 'small'; needs the extra 'pretrained'), a plug-in's name, or module:attribute",
+        "PATH|NAME", rare=True,
+    )  # fmt: skip
+    motion_set: list[Setting] | None = option(
+        "of a recorded motion: fps=N, where the file does not say; unit=m, cm, mm, inch or metres in one unit (default:"
+        " by body size); up=y, z, ... (default: where the head is); start=S, the second at which it begins; clip=NAME,"
+        " where a file holds several; body=NPZ, your own SMPL model, for bones in the recorded shape; of a motion"
+        " model: for=all, known sentences, too",
+        "KEY=VALUE", rare=True,
+    )  # fmt: skip
+    texts: Path | None = option(
+        "many sequences, one sentence per line of this file, each in its own folder under --out; the room is read once,"
+        " and finished sequences are kept",
+        "FILE",
+    )  # fmt: skip
+    stream: bool = option(
+        "one recording of one person who does what every --text, line of --texts or of standard input (--texts -) says,"
+        " without a break, written part by part for as long as sentences come",
+        default=False,
+    )  # fmt: skip
+    per_class: int | None = option("with --texts: N of each sentence (default 1), at the same places", "N", rare=True)
+
+
+@options
+class Advanced(Layout):
+    """Which method makes the signal."""
+
+    method: str = option(
+        "which paths make the signal: weaver, those of the trained network (also called auto), or physics, those of the"
+        " ray tracer, at about five times the cost",
+        "NAME", default="auto", group="advanced",
+    )  # fmt: skip
+    weights: Source | None = option(
+        "the network's weights: a file or folder of mmweaver train, or a name on the Hub", "FILE|DIR|HUB"
     )
-    if arguments.mesh is not None:
-        if any(picture is not None for picture in pictures[:-1]):
-            raise InputError("--mesh brings the whole room; leave out --rgb, --depth, --camera and all else that does")
-    elif is_of_mesh:
-        raise InputError("options of a mesh need --mesh FILE")
-    if arguments.further_photos is not None and arguments.capture is None:
-        raise InputError("--further-photos are those of a scan; give --capture, or leave out --further-photos")
-    if arguments.views is not None and any(given is not None for given in (*pictures[:6], arguments.sam)):
-        raise InputError("--views names its own photos; leave out --rgb, --depth, --camera and all else that does")
-    brought = (arguments.depth, arguments.camera, arguments.depth_model)
-    if arguments.capture is not None and any(given is not None for given in brought):
-        raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
 
 
-def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
-    if arguments.text is None and arguments.motion is None and arguments.texts is None:
+@options
+class Results(Written):
+    """Where the files go."""
+
+    out: Path | None = option("folder for the results", "DIR", group="output", is_setting=False)
+    no_pictures: bool = option("leave out preview.png and preview.gif", default=False)
+
+
+@options
+class Options(RoomInput, Request, MotionInput, RadarChoice, Ranges, PointChoice, Advanced, Results):
+    """Generates the signal that a radar at the camera would have recorded of a person doing what the text says, in the
+    room that the photo shows.
+    """
+
+    GROUPS: ClassVar[dict[str, str]] = {"text": "motion", "radar": "radar"}
+
+    def asked(self, **instead: Any) -> Request:
+        """The request of one sequence."""
+        given: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(Request)} | instead
+        for name in ("text", "at", "height_m", "subject"):  # of one person the value, of several a list
+            value, people = given[name], len(given["text"] or [""])
+            if isinstance(value, list) and len(value) == 1 and (name == "text" or people == 1):
+                given[name] = value[0]
+        given["board"] = self.board_name()
+        return Request(**given)
+
+    def of_one_person(self, why: str) -> dict[str, Any]:
+        """Place, height and number of the only person. Raises InputError where several are given."""
+        given: dict[str, Any] = {name: getattr(self, name) for name in ("at", "height_m", "subject")}
+        for name, values in given.items():
+            if len(values or ()) > 1:
+                raise InputError(f"{why}; give --{name.removesuffix('_m')} once")
+        return {name: values[0] if values else None for name, values in given.items()}
+
+    def board_name(self) -> str | None:
+        """The board by name; a typical one with the number of the seed, the same for all sequences of a run.
+
+        None: that of the background recording.
+        """
+        name: Any = self.board or ("typical" if self.background is None else None)
+        return f"typical:{self.seed % 2**31}" if name == "typical" else name and str(name)
+
+    def request_toml(self, **instead: Any) -> str:
+        """The options of one sequence as TOML."""
+        radar = self.radar or (DEFAULT_RADAR if self.background is None else None)
+        return request_toml(self, **{"radar": radar, "board": self.board_name(), **instead})
+
+    @property
+    def inputs(self) -> list[Any]:
+        """Files that an output must not replace."""
+        return [self.rgb, self.depth and Path(self.depth), self.background, self.motion_file, self.texts]
+
+    @property
+    def output(self) -> dict[str, Any]:
+        """The arguments of `Generation.save` that say which files are written."""
+        return {"adc_data_bin": self.keep_adc, "iq_order": self.iq_order, "pictures": not self.no_pictures}
+
+    @property
+    def folder(self) -> Path:
+        """The folder for results. Raises InputError where there is none."""
+        if self.out is None and not self.demo:
+            raise InputError("where to? give --out, a folder for the results")
+        return self.out or Path(DEMO_OUT)
+
+
+def run(asked: Options) -> int:
+    """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
+    asked.check_room()
+    if asked.text is None and asked.motion_file is None and asked.texts is None and not asked.demo:
         raise InputError(
             "what does the person do? give --text, for example --text 'a person walks to the left', or --motion"
         )
-    if arguments.out is None:
-        raise InputError("where to? give --out, a folder for the results")
-    return arguments.text, arguments.out
+    out = asked.folder
+    _check_motion(asked)
+    if asked.stream:
+        from mmweaver.cli.stream import run_stream
+
+        return run_stream(asked, out)
+    if asked.texts is not None:
+        from mmweaver.cli.batch import run_batch
+
+        return run_batch(asked, out)
+    if asked.per_class is not None:
+        raise InputError("--per-class is for many sequences; give --texts FILE, too")
+    return _run_one(asked, out)
 
 
-def _read_room(weaver: "Weaver", arguments: argparse.Namespace, background: "RadarCube | None") -> "Room":
-    room = _photographed_room(weaver, arguments)
-    room = room.with_landmarks(*arguments.landmark) if arguments.landmark else room
-    return room if background is None else room.with_background(background, came_from=arguments.background)
+def _run_one(asked: Options, out: Path) -> int:
+    """One sequence."""
+    from mmweaver.cli.progress import StageBar
+    from mmweaver.cli.summary import machine_summary, summary_lines
+    from mmweaver.core.output_checks import check_output_folder
+    from mmweaver.formats.result_folder import FILES
+    from mmweaver.weaver.parsed_request import parse
+
+    files = [REQUEST_FILE] if len(asked.radar_poses) > 1 else FILES
+    check_output_folder(out, overwrite=asked.overwrite, files=files, inputs=asked.inputs)
+    with StageBar(NUM_STAGES, quiet=asked.quiet or asked.verbose) as bar:
+        background = read_background(asked)
+        radar = radar_of(asked, background)
+        texts = [DEMO_TEXT] if asked.text is None and asked.motion_file is None else asked.text
+        request = asked.asked(text=texts)
+        if asked.motion_file is None and asked.motion_model is None:  # before PyTorch starts, which takes 2 s
+            parse(request, radar)
+        weaver = weaver_of(asked, radar, bar)
+        parsed = weaver.parsed(_with_motion(asked, request, weaver))
+        result = weaver.carry_out(parsed, room_of(asked, weaver, background))
+        written = {REQUEST_FILE: asked.request_toml(text=texts, frames=parsed.frames, seconds=None)}
+        meta = result.save(out, overwrite=asked.overwrite, extra=written, **asked.output)
+    return asked.report(machine_summary(out, meta), *summary_lines(out, meta, verbose=asked.verbose))
 
 
-def _background(arguments: argparse.Namespace) -> "RadarCube | None":
-    """The background recording, if one is given. Raises InputError for what is no recording."""
-    if arguments.background is None:
-        return None
-    from mmweaver.recordings.read_recording import read_recording
-
-    return read_recording(arguments.background, range_m=arguments.range_m, range_bins=arguments.range_bins).cube
+def _picture_or(model: str, picture: str, name: str) -> str:
+    """Which argument of `Weaver.read_room` a name is of: a picture's, or a model's."""
+    return picture if Path(name).suffix.lower() in PICTURES else model
 
 
-def _further(words: str | None) -> list[int] | str:
+def _photos(words: str | None) -> list[int] | str | None:
     if words is None or words == "auto":
-        return words or []
+        return words
     numbers = words.split(",")
     if not all(number.strip().isdigit() for number in numbers):
-        raise InputError(f"--further-photos {words[:40]!r} are no numbers of photos; write 60,120,180, or auto")
+        raise InputError(f"--extra-views {words[:40]!r} are no numbers of photos; write 60,120,180, or auto")
     return [int(number) for number in numbers]
 
 
-def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
-    if arguments.demo:
-        return weaver.sample_room()
-    if arguments.mesh is not None:
-        return weaver.read_mesh(
-            arguments.mesh, eye=arguments.mesh_eye, look_deg=arguments.mesh_look, unit=arguments.mesh_unit,
-            up=arguments.mesh_up, materials=arguments.mesh_materials,
-        )  # fmt: skip
-    labels = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}
-    if arguments.capture is not None:
-        return weaver.read_capture(
-            arguments.capture, photo=arguments.photo, rgb=arguments.rgb, further=_further(arguments.further_photos),
-            **labels,
-        )  # fmt: skip
-    if arguments.views is not None:
-        return weaver.read_views(arguments.views, segmenter=arguments.segmenter)
-    return weaver.read_room(
-        arguments.rgb, arguments.depth, arguments.camera, depth_model=arguments.depth_model, **labels
-    )
+# a motion that is not made of a sentence ----------------------------------------------------------------------------
+def _check_motion(asked: Options) -> None:
+    """Raises InputError for options that contradict each other."""
+    settings = read_settings(asked.motion_set, _MOTION_SETTINGS, "motion-set")
+    if asked.motion_file is not None and asked.motion_model is not None:
+        raise InputError("--motion is a recorded motion, --motion-model makes one of --text; give one of them")
+    if asked.motion_model is not None and asked.text is None and not asked.demo:
+        raise InputError("--motion-model acts out a text; give --text")
+    if asked.motion_model is not None and asked.text is not None and len(asked.text) > 1:
+        raise InputError("--motion-model acts out one text; give --text once")
+    if asked.motion_file is not None:
+        if asked.path_m is not None:
+            raise InputError("--path is for a sentence; a recorded --motion has its own path, leave one of them out")
+        if asked.as_recorded and not (asked.at is None and asked.heading_rad is None):
+            raise InputError("--as-recorded moves nothing; leave out --at and --heading, or leave out --as-recorded")
+    elif asked.as_recorded:
+        raise InputError("--as-recorded is about a recorded motion; give --motion too")
+    elif settings and (asked.motion_model is None or set(settings) - {"for"}):
+        raise InputError("--motion-set is about a recorded motion; give --motion too")
+
+
+def _with_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
+    """The request with the recorded motion, or with that which a model makes of its text."""
+    from dataclasses import replace
+
+    settings = read_settings(asked.motion_set, _MOTION_SETTINGS, "motion-set")
+    if asked.motion_file is not None:
+        from mmweaver.motion.mocap.read_motion import read_motion
+
+        names = {"fps": "fps", "unit": "unit", "up": "up", "clip": "clip", "body": "body_model"}
+        how = {new: settings[name] for name, new in names.items() if name in settings}
+        clip = read_motion(asked.motion_file, **how)
+        return replace(request, motion=clip.after(settings["start"]) if "start" in settings else clip)
+    if asked.motion_model is None:
+        return request
+    clip = _motion_of_model(asked, request, settings.get("for") == "all", weaver)
+    if clip is None or not request.path_m:
+        return replace(request, motion=clip)
+    from mmweaver.motion.motion_models import heading_of
+
+    path_m = tuple(request.path_m)
+    return replace(request, motion=clip, at=path_m[0], path_m=None, heading_rad=heading_of(path_m, clip))
+
+
+def _motion_of_model(asked: Options, request: Request, is_of_all: bool, weaver: "Weaver") -> "MotionClip | None":
+    """The motion that --motion-model makes of the text; None of a text that the library knows."""
+    from mmweaver.motion.language.sentence_parser import parse_sentence
+    from mmweaver.motion.motion_models import MotionTask, clip_of, load_motion_model
+
+    assert isinstance(request.text, str)
+    assert asked.motion_model is not None
+    if not is_of_all:
+        try:
+            parse_sentence(request.text)
+            return None
+        except InputError:
+            pass
+    seconds = request.seconds
+    if request.frames is not None:
+        seconds = request.frames * (1 / request.fps if request.fps else weaver.radar.frame_period_s)
+    path_m = tuple(request.path_m or ())
+    start_m: Any = path_m[0] if path_m else request.at
+    task = MotionTask(
+        sentence=request.text, start_m=start_m, path_m=path_m, seconds=seconds, seed=request.seed
+    )  # fmt: skip
+    return clip_of(load_motion_model(asked.motion_model), task)

@@ -1,9 +1,10 @@
 """mmweaver info: what a .mmw file holds."""
 
-import argparse
-import json
 from pathlib import Path
 from typing import Any
+
+from mmweaver.cli.option_groups import Printed
+from mmweaver.core.options import MISSING, option, options
 
 FLOAT32_STEP_DB = -110.0  # over the peak: the finest that levels can have, see `SegmentEncoder.finest_step`
 EXAMPLES = """examples:
@@ -12,30 +13,21 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "info", help="print what a .mmw or .mmwl file holds", epilog=EXAMPLES,
-        description="Reads all of a .mmw file, checks it, and says what is in it.",
-    )  # fmt: skip
-    parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw or .mmwl file")
-    parser.add_argument("--json", action="store_true", help="print it for machines")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Printed):
+    """Reads all of a .mmw file, checks it, and says what is in it."""
+
+    file: Path = option("a .mmw or .mmwl file", "FILE", default=MISSING, positional=True)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the description on stdout. Raises InputError where the file is damaged."""
     from mmweaver.compression.lossless_file import describe_lossless, is_lossless_file
     from mmweaver.compression.mmw_codec import describe_mmw
 
-    is_raw = is_lossless_file(arguments.file)
-    facts = describe_lossless(arguments.file) if is_raw else describe_mmw(arguments.file)
-    if arguments.json:
-        print(json.dumps(facts, indent=2))
-    else:
-        print("\n".join(_lines_of_samples(facts) if is_raw else _lines(facts)))
-    return 0
+    is_raw = is_lossless_file(asked.file)
+    facts = describe_lossless(asked.file) if is_raw else describe_mmw(asked.file)
+    return asked.report(facts, *(_lines_of_samples(facts) if is_raw else _lines(facts)))
 
 
 def _lines_of_samples(facts: dict[str, Any]) -> list[str]:

@@ -3,8 +3,8 @@
 import sys
 
 
-def set_up_log(level: str | None, *, verbose: bool) -> None:
-    """Sends the log of mmweaver from this level on (default: warning, info if `verbose`) to stderr."""
+def set_up_log(*, verbose: bool) -> None:
+    """Sends warnings of mmweaver to stderr; with `verbose` each stage, too."""
     import logging
 
     logger = logging.getLogger("mmweaver")
@@ -14,4 +14,4 @@ def set_up_log(level: str | None, *, verbose: bool) -> None:
     handler.set_name("mmweaver")
     handler.setFormatter(logging.Formatter("%(levelname)-7s %(name)s: %(message)s"))
     logger.addHandler(handler)
-    logger.setLevel((level or ("info" if verbose else "warning")).upper())
+    logger.setLevel("INFO" if verbose else "WARNING")

@@ -12,14 +12,35 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
 
 if TYPE_CHECKING:
-    from mmweaver.cli.arguments import Parser
+    from mmweaver.cli.arguments import General, Parser
 
-# in the order of the help; their modules are imported where an interruption is handled already
-COMMANDS = (
-    "generate", "sample", "studio", "view", "plot", "export", "process", "compare", "calibrate", "points", "pose",
-    "radar", "compress", "decompress", "info", "rooms", "motions", "motion", "recognise", "evaluate", "dataset",
-    "train", "verify", "completion",
-)  # fmt: skip
+# in the order of the help; each is a module with Options, run and EXAMPLES, imported where it is needed
+COMMANDS = {
+    "generate": "generate the signal of a person in the room of a photo",
+    "sample": "write files to try the other commands with",
+    "studio": "make and watch radar data in the browser",
+    "view": "play a result folder in the browser",
+    "plot": "draw the features of a signal, as recognisers take them",
+    "export": "write results in the formats of other tools",
+    "process": "take a recording through the same processing",
+    "compare": "compare two signals, recorded or simulated",
+    "calibrate": "find the errors of your board in its recordings",
+    "points": "read a point cloud of a board or a data set",
+    "pose": "estimate the poses of a person from a radar's points",
+    "radar": "print a radar's chirp, resolutions and limits",
+    "compress": "store a recording in few bytes",
+    "decompress": "read a .mmw file back into radar.npz",
+    "info": "print what a .mmw or .mmwl file holds",
+    "rooms": "generate furnished rooms with photo, depth and ground truth",
+    "motions": "list what a person can do, with example sentences",
+    "motion": "try a sentence: how it is read, and the moving skeleton on an empty floor",
+    "recognise": "train a recogniser of activities on generated data, score it, run it",
+    "evaluate": "score what was trained on generated data on real recordings",
+    "dataset": "generate a data set of rooms, motions and radar signals",
+    "train": "train the network on a data set",
+    "verify": "check that nothing is damaged or missing",
+    "completion": "print a shell's completion script",
+}
 DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
 EXAMPLES = """examples:
   mmweaver generate --demo
@@ -74,36 +95,48 @@ def _status(argv: list[str]) -> int:
 
 def build_parser() -> "Parser":
     """The whole command line."""
-    return _parser_and_commands()[0]
+    return parser_of(*COMMANDS, rare=True)[0]
 
 
-def _parser_and_commands() -> "tuple[Parser, dict[str, Parser]]":
-    from mmweaver.cli.arguments import Parser, add_general_options
+def parser_of(*names: str, rare: bool = False) -> "tuple[Parser, dict[str, tuple[Parser, type[General]]]]":
+    """The parser, which knows the options of these commands, and each one's own parser and options.
+
+    `rare`: the help shows rare options, too.
+    """
+    from mmweaver.cli.arguments import Parser, add_options
 
     parser = Parser(prog="mmweaver", description=DESCRIPTION, epilog=EXAMPLES)
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
-    for name in COMMANDS:
-        command = import_module(f"mmweaver.cli.{name}").add_command(commands)
-        add_general_options(command)
-        command.set_defaults(parser=command, whole_parser=parser)
-    return parser, commands.choices
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
+    commands = {}
+    for name, text in COMMANDS.items():
+        if name not in names:
+            subparsers.add_parser(name, help=text)
+            continue
+        module = import_module(f"mmweaver.cli.{name}")
+        command = subparsers.add_parser(
+            name, help=text, epilog=module.EXAMPLES, usage=getattr(module, "USAGE", None),
+            description=" ".join((module.Options.__doc__ or "").split()),
+        )  # fmt: skip
+        add_options(command, module.Options, rare=rare)
+        commands[name] = command, module.Options
+    return parser, commands
 
 
 def _run(argv: list[str]) -> int:
-    from mmweaver.cli.arguments import glued
-    from mmweaver.cli.config_file import with_config
+    from mmweaver.cli.arguments import HELP_ALL, parsed
     from mmweaver.cli.log import set_up_log
     from mmweaver.core.atomic_files import forget_written
 
-    parser, commands = _parser_and_commands()
-    arguments = parser.parse_args(with_config(glued(argv), commands))
-    if arguments.command is None:
+    parser, commands = parser_of(*argv[:1], rare=HELP_ALL in argv)
+    argv = ["--help" if word == HELP_ALL else word for word in argv]
+    options = parsed(parser, commands, argv)
+    if options is None:
         parser.print_help()
         return BAD_INPUT
     forget_written()
-    set_up_log(arguments.log_level, verbose=arguments.verbose)
-    return arguments.run(arguments)
+    set_up_log(verbose=options.verbose)
+    return import_module(type(options).__module__).run(options)
 
 
 def _fail(message: str) -> int:

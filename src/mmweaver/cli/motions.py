@@ -1,8 +1,9 @@
 """mmweaver motions: what a sentence may ask for, with an example of each."""
 
-import argparse
-import json
 from typing import Any
+
+from mmweaver.cli.option_groups import Printed
+from mmweaver.core.options import options
 
 EXAMPLES = """examples:
   mmweaver motions
@@ -10,42 +11,29 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "motions", help="list what a person can do, with example sentences", epilog=EXAMPLES,
-        description="Lists every activity that a sentence may name, with an example and its natural time.",
-    )  # fmt: skip
-    parser.add_argument("--json", action="store_true", help="print them for machines")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Printed):
+    """Lists every activity that a sentence may name, with an example and its natural time."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the table of activities on stdout."""
     from mmweaver.motion.language.activities import BY_KEY
     from mmweaver.motion.register_activity import load_activity_plugins
 
     load_activity_plugins()
-    body, hands = ([one for one in BY_KEY.values() if one.hands == is_hands] for is_hands in (False, True))
-    if arguments.json:
-        rows = [
-            {
-                "activity": activity.key,
-                "name": activity.name,
-                "example": activity.example,
-                "part": "hands" if activity.hands else "body",
-                "shortest_s": activity.least_s,
-                "natural_s": activity.natural_s,
-                "can_be_counted": activity.counted_s is not None,
-            }
-            for activity in (*body, *hands)
-        ]
-        print(json.dumps(rows, indent=2))
-        return 0
-    for title, activities in (("the body", body), ("hands and head, over any of these", hands)):
-        print(f"{title}:")
-        for activity in activities:
-            print(f"  {activity.name:24s} {activity.natural_s:3.1f} s   {activity.example}")
-    print("joined by 'and', 'then', 'while', with sides, directions, speeds and counts: see docs/motion.md")
-    return 0
+    activities = sorted(BY_KEY.values(), key=lambda one: one.hands)
+    rows: list[dict[str, Any]] = [
+        {
+            "activity": one.key, "name": one.name, "example": one.example, "part": "hands" if one.hands else "body",
+            "shortest_s": one.least_s, "natural_s": one.natural_s, "can_be_counted": one.counted_s is not None,
+        }
+        for one in activities
+    ]  # fmt: skip
+    lines: dict[str, list[str]] = {"body": [], "hands": []}
+    for row in rows:
+        lines[row["part"]].append(f"  {row['name']:24s} {row['natural_s']:3.1f} s   {row['example']}")
+    return asked.report(
+        rows, "the body:", *lines["body"], "hands and head, over any of these:", *lines["hands"],
+        "joined by 'and', 'then', 'while', with sides, directions, speeds and counts: see docs/motion.md",
+    )  # fmt: skip

@@ -1,9 +1,9 @@
 """mmweaver pose: joints of a person from a radar's points, by a network trained on generated people."""
 
-import argparse
-import json
 from pathlib import Path
-from typing import Any
+
+from mmweaver.cli.option_groups import Written
+from mmweaver.core.options import MISSING, option, options
 
 EXAMPLES = """examples:
   mmweaver train pose examples/tasks/mars_poses.toml --out model/
@@ -11,24 +11,18 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "pose", help="estimate the poses of a person from a radar's points", epilog=EXAMPLES,
-        description="Estimates 22 joints for every frame of a point cloud, in the radar's level axes, and writes"
-        " pose.npz with a picture. The network is one of mmweaver train pose.",
-    )  # fmt: skip
-    parser.add_argument("model", type=Path, metavar="MODEL", help="folder of mmweaver train pose, or its weights")
-    parser.add_argument("--points", type=Path, required=True, metavar="FILE", help="a recording of one person")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for pose.npz and pose.png")
-    parser.add_argument("--overwrite", action="store_true", help="replace files of an earlier run")
-    parser.add_argument("--json", action="store_true", help="print a summary for machines")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Written):
+    """Estimates 22 joints for every frame of a point cloud, in the radar's level axes, and writes pose.npz with a
+    picture. The network is one of mmweaver train pose.
+    """
+
+    model: Path = option("folder of mmweaver train pose, or its weights", "MODEL", default=MISSING, positional=True)
+    points: Path = option("a recording of one person", "FILE", default=MISSING)
+    out: Path = option("folder for pose.npz and pose.png", "DIR", default=MISSING)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Writes the poses. Raises InputError."""
     from mmweaver.core.atomic_files import atomic_file
     from mmweaver.core.output_checks import check_output_folder
@@ -38,24 +32,21 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.recognition.pose_estimator import load_estimator
 
     files = ("pose.npz", "pose.png")
-    check_output_folder(arguments.out, overwrite=arguments.overwrite, files=files, inputs=[arguments.points])
-    estimator = load_estimator(arguments.model)
-    recording = read_task_recording(arguments.points, estimator.settings)
+    check_output_folder(asked.out, overwrite=asked.overwrite, files=files, inputs=[asked.points])
+    estimator = load_estimator(asked.model)
+    recording = read_task_recording(asked.points, estimator.settings)
     pose = estimator.estimate(recording.cloud, recording.num_frames)
-    with atomic_file(arguments.out / files[0]) as temporary:
+    with atomic_file(asked.out / files[0]) as temporary:
         write_pose_npz(temporary, pose)
     rate_hz = estimator.settings.frame_rate_hz
     title = f"{recording.name}: as the radar sees the person; left limbs blue, right limbs red"
-    draw_pose_strips([(title, pose.joints_m, None)], arguments.out / files[1], frame_rate_hz=rate_hz)
+    draw_pose_strips([(title, pose.joints_m, None)], asked.out / files[1], frame_rate_hz=rate_hz)
     seen = len(set(recording.cloud.frame.tolist()))
     summary = {
-        "out": str(arguments.out), "frames": recording.num_frames, "frames_with_points": seen,
+        "out": str(asked.out), "frames": recording.num_frames, "frames_with_points": seen,
         "seconds": recording.num_frames / rate_hz,
     }  # fmt: skip
-    if arguments.json:
-        print(json.dumps(summary))
-    elif not arguments.quiet:
-        text = f"wrote {arguments.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s"
-        guessed = recording.num_frames - seen
-        print(text + (f"; {guessed} frames have no points, their poses are guessed" if guessed else ""))
-    return 0
+    guessed = recording.num_frames - seen
+    note = f"; {guessed} frames have no points, their poses are guessed" if guessed else ""
+    text = f"wrote {asked.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s{note}"
+    return asked.report(summary, text)

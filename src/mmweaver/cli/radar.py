@@ -1,10 +1,9 @@
 """mmweaver radar: the presets, or the chirp, the resolutions and the limits of one radar."""
 
-import argparse
 import json
-from typing import Any
 
-from mmweaver.cli.arguments import add_board_options, add_range_options, radar_of
+from mmweaver.cli.option_groups import RadarSettings, Ranges
+from mmweaver.core.options import Source, option, options
 
 EXAMPLES = """examples:
   mmweaver radar                                # lists the presets
@@ -13,32 +12,26 @@ EXAMPLES = """examples:
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "radar", help="print a radar's chirp, resolutions and limits", epilog=EXAMPLES,
-        description="Prints the chirp, the resolutions and the limits of a radar; without one, lists the presets.",
-    )  # fmt: skip
-    parser.add_argument(
-        "radar", nargs="?", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: list the presets)"
+@options
+class Options(Ranges, RadarSettings):
+    """Prints the chirp, the resolutions and the limits of a radar; without one, lists the presets."""
+
+    radar: Source | None = option(
+        "preset, TI .cfg or radar.json (default: list the presets)", "NAME|FILE", positional=True
     )
-    add_range_options(parser)
-    add_board_options(parser)
-    parser.add_argument("--json", action="store_true", help="print what --radar reads back; of all presets by name")
-    parser.set_defaults(run=run)
-    return parser
+    json: bool = option("print what --radar reads back; of all presets by name", default=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Prints the radar on stdout. Raises InputError."""
     from mmweaver.core.range_window import chosen_range
     from mmweaver.formats.radar_file import describe_radar, load_radar
 
-    if arguments.radar is None:
-        print(_presets(as_json=arguments.json))
+    if asked.radar is None:
+        print(_presets(as_json=asked.json))
         return 0
-    config = chosen_range(load_radar(radar_of(arguments) or ""), arguments.range_m, arguments.range_bins)
-    text = config.to_json() if arguments.json else describe_radar(config)
+    config = chosen_range(load_radar(asked.radar_name() or ""), asked.range_m, asked.range_bins)
+    text = config.to_json() if asked.json else describe_radar(config)
     print(text.rstrip("\n"))
     return 0
 

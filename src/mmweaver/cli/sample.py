@@ -1,51 +1,41 @@
 """mmweaver sample: files to try the other commands with."""
 
-import argparse
-import json
 from pathlib import Path
-from typing import Any
 
-from mmweaver.cli.arguments import add_output_options
+from mmweaver.cli.option_groups import Written
+from mmweaver.core.options import MISSING, option, options
 
 EXAMPLES = """examples:
   mmweaver sample room/ && cd room/
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json --text "a person walks" --out walk/
   mmweaver process empty.bin --radar profile.cfg --out empty/
   mmweaver dataset set/ --room . --activities activities.toml
-  mmweaver recognise train TASK.toml --quick --out model/
+  mmweaver recognise train TASK.toml --sequences 8 --out model/
 """
 PICTURE, RADAR, RECORDING = "rgb.png", "profile.cfg", "empty.bin"
 RECORDED_S, SEED, BOARD = 3.0, 0, "typical:1"
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "sample", help="write files to try the other commands with", epilog=EXAMPLES,
-        description="Writes the bundled room (rgb.png, depth.png, camera.json), a simulated recording of it with nobody"
-        " in it (empty.bin) and its radar (profile.cfg), activities for a data set (activities.toml) and for a"
-        " recogniser (TASK.toml). README.txt says what each file is. The files are always the same.",
-    )  # fmt: skip
-    parser.add_argument("out", type=Path, metavar="DIR", help="folder for the files, new or empty")
-    add_output_options(parser)
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(Written):
+    """Writes the bundled room (rgb.png, depth.png, camera.json), a simulated recording of it with nobody in it
+    (empty.bin) and its radar (profile.cfg), activities for a data set (activities.toml) and for a recogniser
+    (TASK.toml). README.txt says what each file is. The files are always the same.
+    """
+
+    out: Path = option("folder for the files, new or empty", "DIR", default=MISSING, positional=True, is_setting=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Writes all files or none. Raises InputError."""
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.scene.sample_photo import SAMPLE_FOLDER
 
     bundled = sorted(file.name for file in SAMPLE_FOLDER.iterdir() if file.is_file() and file.suffix != ".webp")
     names = sorted([*bundled, PICTURE, RECORDING])
-    check_output_folder(arguments.out, overwrite=arguments.overwrite, files=names)
-    _write(arguments.out, SAMPLE_FOLDER, bundled, overwrite=arguments.overwrite)
-    if arguments.json:
-        print(json.dumps({"out": str(arguments.out), "files": names}, indent=2))
-    elif not arguments.quiet:
-        print(f"wrote {arguments.out}: {', '.join(names)}")
-    return 0
+    check_output_folder(asked.out, overwrite=asked.overwrite, files=names)
+    _write(asked.out, SAMPLE_FOLDER, bundled, overwrite=asked.overwrite)
+    return asked.report({"out": str(asked.out), "files": names}, f"wrote {asked.out}: {', '.join(names)}")
 
 
 def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> None:
@@ -66,7 +56,7 @@ def _write(out: Path, source: Path, bundled: list[str], *, overwrite: bool) -> N
 def _record_empty_room(folder: Path) -> None:
     """Simulates RECORDED_S seconds of the bundled room with nobody in it, by the radar that lies in the folder."""
     from mmweaver.formats.dca1000 import write_bin
-    from mmweaver.generate import Weaver
+    from mmweaver.weaver.front_door import Weaver
 
     weaver = Weaver("physics", radar=folder / RADAR)
     found = weaver.generate(

@@ -1,93 +1,93 @@
 """mmweaver generate --stream: one sentence after the other without a break, written part by part."""
 
-import argparse
-import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from mmweaver.generate import Weaver
-    from mmweaver.generation import Room
+    from mmweaver.cli.generate import Options
 
 PART_FRAMES = 20  # what a kill may lose
+OF_SENTENCE = ("text", "refused", "plan", "clauses")
 STANDARD_INPUT = "-"
-NOT_OF_STREAMS = ("motion", "motion_model", "path", "html", "seconds", "radar_pose")
+NOT_OF_STREAMS = {
+    "motion_file": "motion", "motion_model": "motion-model", "path_m": "path", "seconds": "seconds",
+    "radar_poses": "radar-pose", "per_class": "per-class",
+}  # fmt: skip
 
 
-def check_stream_options(arguments: argparse.Namespace) -> None:
-    """Raises InputError for options that streams do not have, or where nothing is said."""
-    for name in NOT_OF_STREAMS:
-        if getattr(arguments, name, None) is not None:
-            raise InputError(f"--stream takes sentences; leave out --{name.replace('_', '-')}, or --stream")
-    for name in ("at", "height", "subject"):
-        if len(getattr(arguments, name, None) or ()) > 1:
-            raise InputError(f"--stream is of one person; give --{name} once")
-    if arguments.repeat != 1:
-        raise InputError("--stream says every sentence once; leave out --repeat")
-    if (arguments.text is None) == (arguments.texts is None):
-        raise InputError("--stream needs sentences: --text for each, --texts FILE, or --texts - for standard input")
+def run_stream(asked: "Options", out: Path) -> int:
+    """Writes the stream into `out` until sentences end, --frames are reached or Ctrl+C. Raises InputError."""
+    from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
+    from mmweaver.core.output_checks import check_output_folder, is_empty
+    from mmweaver.core.staging import sweep
+    from mmweaver.formats.result_folder import META_VERSION, radar_meta
+    from mmweaver.formats.stream_folder import LIST, PARTS, StreamFolder
 
-
-def sentences(arguments: argparse.Namespace) -> Iterable[str]:
-    """The sentences, from the command line, a file, or standard input as they come."""
-    from mmweaver.cli.batch import read_texts
-    from mmweaver.stream_folder import sentences_of
-
-    if arguments.text is not None:
-        return arguments.text
-    return sentences_of(sys.stdin) if str(arguments.texts) == STANDARD_INPUT else read_texts(arguments.texts)
-
-
-def run_stream(
-    arguments: argparse.Namespace, weaver: "Weaver", room: "Room", out: Path, board: str | None
-) -> dict[str, Any]:
-    """Writes the stream into `out` until sentences end, --frames are reached or Ctrl+C; returns meta.json."""
-    from mmweaver.result_folder import META_VERSION, radar_meta
-    from mmweaver.stream_folder import StreamFolder
-
-    heading = None if arguments.heading is None else math.radians(arguments.heading) - math.pi / 2
-    placing = {
-        "at": _only(arguments.at), "heading_rad": heading,
-        "height_m": _only(arguments.height), "subject": _only(arguments.subject),
-    }  # fmt: skip
-    most = arguments.frames
+    _check(asked)
+    person = asked.of_one_person("--stream is of one person")
+    check_output_folder(out, overwrite=True, inputs=asked.inputs)
+    sweep(out / PARTS)
+    if (out / LIST).is_file():
+        raise InputError(
+            f"{out} holds a stream already, and streams cannot be continued; choose another --out, or delete that"
+            " folder (`mmweaver verify` checks and `mmweaver compress` reads what it holds, even after an interruption)"
+        )
+    if out.is_dir() and not is_empty(out):
+        raise InputError(f"{out} is not empty; a stream needs a folder of its own: choose another --out")
+    background = read_background(asked)
+    weaver = weaver_of(asked, radar_of(asked, background))
+    room = room_of(asked, weaver, background)
+    limit = asked.frames
     folder: StreamFolder | None = None
     interrupted = False
     chunks = weaver.stream(
-        room, sentences(arguments), seed=arguments.seed, fps=arguments.fps, keep_adc=arguments.bin, board=board,
-        chunk_frames=PART_FRAMES if most is None else min(PART_FRAMES, most), **placing,
+        room, _sentences(asked), seed=asked.seed, fps=asked.fps, keep_adc=asked.keep_adc, board=asked.board_name(),
+        chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit), heading_rad=asked.heading_rad, **person,
     )  # fmt: skip
     try:
         for chunk in chunks:
             if folder is None:
-                meta = {
-                    "schema_version": META_VERSION, "made_by": "mmweaver generate --stream", **chunk.meta,
-                    **radar_meta(chunk.cube.config),
-                }  # fmt: skip
-                for of_sentence in ("text", "refused", "plan", "clauses"):
-                    meta.pop(of_sentence, None)
-                folder = StreamFolder(out, meta, iq_order=arguments.iq_order)
+                shared = {name: chunk.meta[name] for name in chunk.meta if name not in OF_SENTENCE}
+                meta = {"schema_version": META_VERSION, "made_by": "mmweaver generate --stream", **shared}
+                meta |= radar_meta(chunk.cube.config)
+                folder = StreamFolder(out, meta, iq_order=asked.iq_order)
             if chunk.refused:
                 print(f"skipped: {chunk.refused}", file=sys.stderr)
-            left = chunk.num_frames if most is None else min(most - folder.frames, chunk.num_frames)
+            left = chunk.num_frames if limit is None else min(limit - folder.frames, chunk.num_frames)
             chunk = chunk if left == chunk.num_frames else chunk.first(left)
-            said = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}
-            folder.add(chunk.cube, chunk.points, chunk.poses, chunk.adc, said)
-            if most is not None and folder.frames >= most:
+            sentence = {name: chunk.meta[name] for name in ("text", "refused", "clauses", "assumed")}
+            folder.add(chunk.cube, chunk.points, chunk.poses, chunk.adc, sentence)
+            if limit is not None and folder.frames >= limit:
                 break
     except KeyboardInterrupt:
         interrupted = True
     if folder is None:
-        raise InputError("nothing was said; give at least one sentence")
+        raise InputError("there is no sentence; give at least one")
     meta = folder.finish()
     if interrupted:
         raise KeyboardInterrupt(f"{folder.frames} frames are in {out}")
-    return meta
+    summary = {"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}
+    return asked.report(summary, f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
 
 
-def _only(values: Any) -> Any:
-    return values[0] if isinstance(values, list) and values else values
+def _check(asked: "Options") -> None:
+    """Raises InputError for options that streams do not have, or where there is no sentence."""
+    for name, option in NOT_OF_STREAMS.items():
+        if getattr(asked, name):
+            raise InputError(f"--stream takes sentences; leave out --{option}, or --stream")
+    if (asked.text is None) == (asked.texts is None):
+        raise InputError("--stream needs sentences: --text for each, --texts FILE, or --texts - for standard input")
+
+
+def _sentences(asked: "Options") -> Iterable[str]:
+    """The sentences, from the command line, a file, or standard input as they come."""
+    from mmweaver.cli.batch import read_texts
+    from mmweaver.formats.stream_folder import sentences_of
+
+    if asked.texts is None:
+        return asked.text or ()
+    return sentences_of(sys.stdin) if str(asked.texts) == STANDARD_INPUT else read_texts(asked.texts)

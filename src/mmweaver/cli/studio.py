@@ -1,66 +1,56 @@
 """mmweaver studio: a page in the browser on which radar data is made, watched and exported."""
 
-import argparse
 from functools import partial
 from pathlib import Path
-from typing import Any
 
+from mmweaver.cli.arguments import General
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
+from mmweaver.core.options import option, options
 
 EXAMPLES = """examples:
   mmweaver studio                                   # the bundled room, at http://127.0.0.1:8765
   mmweaver studio --room living_room/ --room lab/   # folders with rgb.png, depth.png and camera.json
-  mmweaver studio --recording capture/ --recording walk/   # recordings and results to watch and compare with
+  mmweaver studio capture/ walk/       # recordings and results to watch and compare with
   mmweaver studio --host 0.0.0.0                    # for others, who need the token that it prints
 """
-DEFAULT_PORT = 8765
-LOOPBACK = "127.0.0.1"
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "studio", help="make and watch radar data in the browser", epilog=EXAMPLES,
-        description="Serves a page on which a sentence makes radar data at once: the room in 3D, maps, micro-Doppler,"
-        " comparison and export. Nothing is fetched from outside. Needs the extra: pip install 'mmweaver[studio]'.",
+@options
+class Options(General):
+    """Serves a page on which a sentence makes radar data at once: the room in 3D, maps, micro-Doppler, comparison and
+    export. Nothing is fetched from outside. Needs the extra: pip install 'mmweaver[studio]'.
+    """
+
+    paths: list[Path] | None = option(
+        "to watch and compare with: result folders, streams, captures, .dat, folders with a .bin and its .cfg; or a"
+        " folder of mmweaver recognise train, whose labels Live shows",
+        "PATH", positional=True,
     )  # fmt: skip
-    parser.add_argument(
-        "--room", type=Path, action="append", default=[], metavar="DIR",
-        help="a folder with rgb.png, depth.png and camera.json; once more for each further room",
-    )  # fmt: skip
-    parser.add_argument(
-        "--recording", type=Path, action="append", default=[], metavar="PATH",
-        help="a result folder, a stream, a capture, a .dat, or a folder with a .bin and its .cfg;"
-        " once more for each further one",
-    )  # fmt: skip
-    parser.add_argument(
-        "--recogniser", type=Path, action="append", default=[], metavar="DIR",
-        help="a folder of mmweaver recognise train, whose labels Live shows; once more for each further one",
-    )  # fmt: skip
-    parser.add_argument(
-        "--host", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine only)"
+    room: list[Path] | None = option(
+        "a folder with rgb.png, depth.png and camera.json; once more for each further room", "DIR"
     )
-    parser.add_argument(
-        "--port", type=int, default=DEFAULT_PORT, help=f"port (default {DEFAULT_PORT}; 0: any free one)"
-    )
-    parser.add_argument("--workers", type=int, metavar="N", help="sequences made at a time (default: one per core)")
-    parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
-    parser.set_defaults(run=run)
-    return parser
+    host: str = option("address to listen on; the default is this machine only", "ADDRESS", default="127.0.0.1")
+    port: int = option("port; 0 is any free one", "N", default=8765)
+    workers: int | None = option("sequences made at a time (default: one per core)", "N")
+    no_browser: bool = option("do not open a browser", default=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(asked: Options) -> int:
     """Serves until interrupted. Raises InputError for a port that is taken or a room that is none."""
-    if not 0 <= arguments.port <= 65535:
-        raise InputError(f"the port must be 0 to 65535, not {arguments.port}")
-    if arguments.workers is not None and not 1 <= arguments.workers <= 64:
-        raise InputError(f"--workers must be 1 to 64, not {arguments.workers}")
+    if not 0 <= asked.port <= 65535:
+        raise InputError(f"the port must be 0 to 65535, not {asked.port}")
+    if asked.workers is not None and not 1 <= asked.workers <= 64:
+        raise InputError(f"--workers must be 1 to 64, not {asked.workers}")
     need("studio", "the studio")
+    from mmweaver.recognition.recogniser import TREES_FILE
     from mmweaver.studio.serve import serve
 
+    paths = asked.paths or []
+    recognisers = [path for path in paths if (path / TREES_FILE).is_file()]
+    recordings = [path for path in paths if path not in recognisers]
     serve(
-        arguments.room, arguments.recording, arguments.recogniser, host=arguments.host, port=arguments.port,
-        workers=arguments.workers, announce=partial(print, flush=True), open_browser=not arguments.no_browser,
+        asked.room or [], recordings, recognisers, host=asked.host, port=asked.port,
+        workers=asked.workers, announce=partial(print, flush=True), open_browser=not asked.no_browser,
     )  # fmt: skip
     return 0

@@ -1,20 +1,11 @@
 """The summary that a command prints at the end, for people or machines."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 from mmweaver.core.assumptions import UsualAssumption
 
 MADE_BY = {"weaver": "weaver, the network", "physics": "physics"}
-
-
-def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet: bool, verbose: bool = False) -> None:
-    """Prints where the files are, what was assumed and how long it took."""
-    if as_json:
-        print(json.dumps(machine_summary(out, meta), indent=2, ensure_ascii=False))
-    elif not quiet:
-        print("\n".join(summary_lines(out, meta, verbose=verbose)))
 
 
 def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:

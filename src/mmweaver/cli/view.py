@@ -1,72 +1,50 @@
 """mmweaver view: a result folder as one HTML file that plays in any browser."""
 
-import argparse
-import subprocess
-import sys
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.core.errors import InputError
-from mmweaver.core.optional_packages import need
+from mmweaver.cli.arguments import General
+from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
+    from mmweaver.formats.stored_result import StoredResult
     from mmweaver.playback.sequence import Playback
-    from mmweaver.stored_result import StoredResult
 
 EXAMPLES = """examples:
   mmweaver view walk/                       # writes walk/view.html and opens it
   mmweaver view walk/ -o walk.html --no-browser
-  mmweaver view rerun/result.rrd            # of mmweaver export --to rerun: opens Rerun's viewer
 """
 
 
-def add_command(commands: Any) -> argparse.ArgumentParser:
-    """Declares the command and its options."""
-    parser = commands.add_parser(
-        "view", help="play a result folder in the browser", epilog=EXAMPLES,
-        description="Writes one HTML file with the result inside: people, points and maps over time. It needs no"
-        " server and no network connection, so it can be sent to others.",
-    )  # fmt: skip
-    parser.add_argument(
-        "folder", type=Path, metavar="DIR|RRD",
-        help="a folder of mmweaver generate or mmweaver process, or a Rerun recording of mmweaver export",
-    )  # fmt: skip
-    parser.add_argument("-o", "--out", type=Path, metavar="HTML", help="the file (default: view.html in the folder)")
-    parser.add_argument("--overwrite", action="store_true", help="replace the file where it exists")
-    parser.add_argument("--no-browser", action="store_true", help="do not open it")
-    parser.set_defaults(run=run)
-    return parser
+@options
+class Options(General):
+    """Writes one HTML file with the result inside: people, points and maps over time. It needs no server and no network
+    connection, so it can be sent to others.
+    """
+
+    folder: Path = option("a folder of mmweaver generate or mmweaver process", "DIR", default=MISSING, positional=True)
+    out: Path | None = option("the file (default: view.html in the folder)", "HTML", short="-o")
+    overwrite: bool = option("replace the file where it exists", default=False)
+    no_browser: bool = option("do not open it", default=False)
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Writes the page, or opens Rerun's viewer. Raises InputError for a folder that holds no result."""
-    if arguments.folder.suffix == ".rrd" and not arguments.folder.is_dir():
-        return _open_rerun(arguments)
-    out = arguments.out or arguments.folder / "view.html"
-    check_output_file(out, overwrite=arguments.overwrite)
+def run(asked: Options) -> int:
+    """Writes the page. Raises InputError for a folder that holds no result."""
+    out = asked.out or asked.folder / "view.html"
+    check_output_file(out, overwrite=asked.overwrite)
+    from mmweaver.formats.stored_result import read_result
     from mmweaver.playback.html_page import write_page
     from mmweaver.playback.sequence import make_playback
-    from mmweaver.stored_result import read_result
 
-    stored = read_result(arguments.folder)
+    stored = read_result(asked.folder)
     sequence = make_playback(stored.cube, stored.points, stored.poses, stored.meta)
     write_page(out, sequence, _room(stored), stored.title)
     print(out)
-    if not arguments.no_browser:
+    if not asked.no_browser:
         webbrowser.open(out.resolve().as_uri())
     return 0
-
-
-def _open_rerun(arguments: argparse.Namespace) -> int:
-    """Rerun's own viewer, of the installed package; nothing is fetched."""
-    if arguments.out is not None or arguments.no_browser:
-        raise InputError(f"{arguments.folder} is opened in Rerun's viewer; leave out --out and --no-browser")
-    if not arguments.folder.is_file():
-        raise InputError(f"{arguments.folder} does not exist; make one: mmweaver export DIR --to rerun --out OUT")
-    need("rerun", "Rerun's viewer", "rerun")
-    return subprocess.run([sys.executable, "-m", "rerun", str(arguments.folder)], check=False).returncode
 
 
 def _room(stored: "StoredResult") -> "Playback | None":
@@ -74,9 +52,9 @@ def _room(stored: "StoredResult") -> "Playback | None":
     inputs = stored.meta.get("inputs")
     if not stored.poses or not isinstance(inputs, dict):
         return None
-    from mmweaver.generate import Weaver
     from mmweaver.playback.html_page import OFFLINE_ROOM_POINTS
     from mmweaver.playback.room import room_playback
+    from mmweaver.weaver.front_door import Weaver
 
     weaver = Weaver(method="physics")
     if "sample" in inputs:

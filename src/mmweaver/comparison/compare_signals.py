@@ -25,8 +25,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.core.version import __version__
+from mmweaver.formats.result_folder import plain
 from mmweaver.recordings.read_recording import RawReading
-from mmweaver.result_folder import plain
 
 MIN_RECORDINGS = 4  # as units of the spread; of fewer their frames are
 CLEAR_EFFECT = 1.0

@@ -14,9 +14,9 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.capture_std import is_capture
+from mmweaver.formats.stored_result import ADC_FILE, StoredResult, read_result
+from mmweaver.formats.stream_folder import is_stream
 from mmweaver.recordings.read_recording import RawReading, read_recording
-from mmweaver.stored_result import ADC_FILE, StoredResult, read_result
-from mmweaver.stream_folder import is_stream
 
 CUBE, POINTS = "radar.npz", "points.npz"
 RAW_SUFFIXES = (".bin", ".npy", ".npz", ".pcap", ".pcapng")

@@ -127,7 +127,7 @@ class LosslessFile(CheckedFile):
     """A .mmwl file: header and places of the blocks are read and checked at once, blocks on demand."""
 
     MAGIC, SUFFIX, READABLE = MAGIC, ".mmwl", (VERSION,)
-    MADE_BY = "mmweaver compress ADC_DATA.bin --radar RADAR --lossless -o OUT.mmwl"
+    MADE_BY = "mmweaver compress ADC_DATA.bin --radar RADAR --quality lossless -o OUT.mmwl"
 
     @property
     def num_frames(self) -> int:

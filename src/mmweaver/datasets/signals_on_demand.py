@@ -31,7 +31,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_sequence
 from mmweaver.datasets.zarr_arrays import put_array, put_photo, put_sequences, stored_photo
-from mmweaver.methods import METHODS, Method
+from mmweaver.models.methods import METHODS, Method
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 

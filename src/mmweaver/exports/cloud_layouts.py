@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
 from mmweaver.exports.formats import export_format
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 START_S = 1_500_000_000  # of the stamps: a result has no date
 KINECT_JOINTS = {

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.conversions import to_dataset
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.zarr_arrays import consolidate
 from mmweaver.exports.formats import export_format
+from mmweaver.formats.conversions import to_dataset
 from mmweaver.formats.npz_files import POINT_COLUMNS
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 MAX_NETCDF_BYTES = 2_000_000_000  # of a variable of netCDF 3
 

@@ -12,8 +12,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.exports import cloud_layouts, containers, rerun_file, robotics, tensor_layouts, videos  # noqa: F401
 from mmweaver.exports.formats import FORMATS
 from mmweaver.exports.set_results import results_of_set
-from mmweaver.result_folder import radar_folder
-from mmweaver.stored_result import StoredResult, read_result
+from mmweaver.formats.result_folder import radar_folder
+from mmweaver.formats.stored_result import StoredResult, read_result
 
 
 def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 Write = Callable[[StoredResult, Path], str]  # writes into a folder, and reports what
 WritePair = Callable[[StoredResult, StoredResult, Path], str]

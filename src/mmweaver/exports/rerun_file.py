@@ -10,7 +10,7 @@ from mmweaver.core.optional_packages import need
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.exports.formats import export_format
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 
 @export_format("rerun", "Rerun recording (.rrd)", ending=".rrd")

@@ -15,7 +15,7 @@ from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import BONES
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.exports.formats import export_format
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 FRAME = "radar"
 POINT_FIELDS = ("x", "y", "z", "velocity", "snr_db")

@@ -13,8 +13,8 @@ from mmweaver.core.version import __version__
 from mmweaver.datasets.room_sequences import read_labelled
 from mmweaver.exports.formats import export_format
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
-from mmweaver.result_folder import FILES, META_VERSION, plain, radar_meta
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.result_folder import FILES, META_VERSION, plain, radar_meta
+from mmweaver.formats.stored_result import StoredResult
 
 OF_SEQUENCE = ("label_name", "split", "room", "place", "draw")
 

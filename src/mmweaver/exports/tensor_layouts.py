@@ -11,10 +11,10 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.shapes import Array
 from mmweaver.core.skeleton import joint
+from mmweaver.dsp.features import dynamic_range_angle
 from mmweaver.exports.formats import export_format
-from mmweaver.features import dynamic_range_angle
 from mmweaver.formats.peer_arrays import BOTH_ROWS, HUPR_FIRST_CHANNEL, HUPR_SHAPE, UPPER_TX
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 HUPR_JOINTS = (
     "right_hip",

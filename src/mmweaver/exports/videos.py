@@ -11,7 +11,7 @@ from mmweaver.core.safe_files.safe_pictures import read_animation
 from mmweaver.exports.formats import export_format
 from mmweaver.figures.animation import render_pictures
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.stored_result import StoredResult
+from mmweaver.formats.stored_result import StoredResult
 
 CODECS = {"mp4": ("libx264", {"crf": "23", "preset": "medium"}), "webm": ("libvpx-vp9", {"crf": "33", "b:v": "0"})}
 

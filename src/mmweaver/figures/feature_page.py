@@ -1,4 +1,4 @@
-"""Pictures of features: the arrays of `mmweaver.features` with their axes, on one scale of decibels."""
+"""Pictures of features: the arrays of `mmweaver.dsp.features` with their axes, on one scale of decibels."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,8 +10,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.virtual_array import resolves_elevation
-from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
-from mmweaver.features import (
+from mmweaver.dsp.features import (
     DRAI_SIZE,
     dynamic_range_angle,
     micro_doppler_db,
@@ -19,6 +18,7 @@ from mmweaver.features import (
     range_doppler_db,
     range_elevation_db,
 )
+from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
 from mmweaver.figures.figure_data import Fan, FigureData
 from mmweaver.figures.panels import VELOCITY, draw_points_top, velocity_bar
 from mmweaver.figures.power_scale import PowerScale

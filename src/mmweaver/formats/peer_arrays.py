@@ -49,7 +49,7 @@ def detect_layout(path: Path) -> str:
     if len(shape) == 2 and shape[1] == POINT_COLUMNS:
         raise InputError(f"{path} has shape {shape}: points of a cloud, not samples; give the recording they came from")
     raise InputError(
-        f"{path} has shape {shape}: name its axes, for example --axes frame,loop,tx,rx,sample, or whose"
+        f"{path} has shape {shape}: name its axes, for example --layout frame,loop,tx,rx,sample, or whose"
         f" array it is with --layout {', '.join(LAYOUTS)}"
     )
 

@@ -24,7 +24,7 @@ class RadarOptions:
     def applied(self, config: RadarConfig) -> RadarConfig:
         """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
         if self.sub_frame is not None:
-            raise InputError(f"radar {config.name!r} has no sub-frames; leave out --subframe")
+            raise InputError(f"radar {config.name!r} has no sub-frames; leave out --radar-set subframe=N")
         if self.lanes is not None:
             config = replace(config, lvds_lanes=self.lanes)
         table = self.antennas

@@ -82,9 +82,9 @@ class TiSetup:
         """Index of the frame that is meant. Raises InputError where it has to be chosen, or there is none such."""
         count = len(self.frames)
         if not self.has_sub_frames and sub_frame is not None:
-            raise InputError("it has one plain frame and no sub-frames; leave out --subframe")
+            raise InputError("it has one plain frame and no sub-frames; leave out --radar-set subframe=N")
         if sub_frame is None and count > 1:
-            raise InputError(f"it has {count} sub-frames; choose one with --subframe 0 to {count - 1}")
+            raise InputError(f"it has {count} sub-frames; choose one of 0 to {count - 1}: --radar-set subframe=N")
         if not 0 <= (sub_frame or 0) < count:
             raise InputError(f"it has sub-frames 0 to {count - 1}, not {sub_frame}")
         return sub_frame or 0
@@ -214,7 +214,7 @@ def _weights(tx_mask: int, chirps: list[TiChirp], profile: TiProfile, board: Ant
         if mask == 0 or mask >> num_tx:
             raise InputError(
                 f"a chirp with transmitter mask {mask} must fire some of the {num_tx} transmitters of board"
-                f" {board.name!r}; another board: --antennas"
+                f" {board.name!r}; another board: --radar-set antennas=NAME"
             )
         if mask & ~tx_mask:
             raise InputError(

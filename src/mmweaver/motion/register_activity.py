@@ -18,7 +18,7 @@ GROUP = "mmweaver.activities"
 def register_activity(
     key: str, *, verbs: tuple[str, ...], perform: Callable[..., Any], hands: bool = False, **described: Any
 ) -> None:
-    """Adds an activity; the same once more changes nothing. See `mmweaver.register.activity`."""
+    """Adds an activity; the same once more changes nothing. See `mmweaver.weaver.register.activity`."""
     registry: Any = GESTURES if hands else POSTURES
     meaning = ("", key) if hands else (key, "")
     activity = Activity(key=key, hands=hands, **described)
@@ -42,7 +42,7 @@ def register_activity(
 def load_activity_plugins() -> int:
     """Calls the functions that installed packages offer in the group mmweaver.activities, once; how many there are.
 
-    Each calls `mmweaver.register.activity`. Raises InputError for one that cannot be imported.
+    Each calls `mmweaver.weaver.register.activity`. Raises InputError for one that cannot be imported.
     """
     found = plugins(GROUP)
     for plugin in found.values():

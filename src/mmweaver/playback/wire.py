@@ -13,7 +13,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
-from mmweaver.result_folder import plain
+from mmweaver.formats.result_folder import plain
 
 TYPES = {"u1": "uint8", "i2": "int16", "i4": "int32", "f4": "float32"}
 

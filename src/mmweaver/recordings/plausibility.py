@@ -94,7 +94,7 @@ def _number_type(path: Path | None) -> Iterator[str]:
         if len(size) >= 0.25 * max(len(values), 1) and is_sane.mean() > 0.999:  # a quarter: parts may be 0
             yield (
                 f"the file seems to hold numbers of type {name}, but was read as int16; load it with numpy, save it as"
-                " .npy and give --axes"
+                " .npy and give --layout"
             )
             return
 
@@ -224,7 +224,7 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
     if boards and boards[board] > max(found[best] + BETTER_BOARD, FITTING):
         yield (
             f"static echoes fit the antennas of board {board} to {boards[board]:.2f}, those of this radar to"
-            f" {found[own]:.2f}; try --antennas {board}, or another --radar"
+            f" {found[own]:.2f}; try --radar-set antennas={board}, or another --radar"
         )
         return
     if found and found[best] > max(found[own] + BETTER_ORDER, MIN_ORDER):

@@ -17,14 +17,15 @@ from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.previews import PREVIEWS
 from mmweaver.figures.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.formats.dca_packets import PacketCapture
 from mmweaver.formats.npz_files import write_npz
 from mmweaver.formats.radar_file import load_firmware
+from mmweaver.formats.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
-from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
 
 
@@ -55,7 +56,7 @@ class ProcessedRecording:
             overwrite=overwrite,
             stages=self.stages,
             extra=extra,
-            pictures=pictures,
+            pictures=PREVIEWS if pictures else None,
             more=partial(self._write_analysis, title, pictures),
         )
 
@@ -179,7 +180,7 @@ def _warnings(recording: Recording, strict: bool) -> list[str]:
     times_s = None if recording.packets is None else recording.packets.frame_time_s
     found = implausible(recording.adc, recording.cube, file, iq_order=recording.iq_order, frame_time_s=times_s)
     if found and strict:
-        raise InputError(f"{recording.path}: {'; '.join(found)} (--strict)")
+        raise InputError(f"{recording.path}: {'; '.join(found)} (strict)")
     return found
 
 

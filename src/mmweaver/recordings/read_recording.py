@@ -30,10 +30,10 @@ from mmweaver.formats.npz_files import read_radar_npz
 from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.formats.stream_folder import is_stream, read_stream_cube
 from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.formats.ti_cfg import refuse_headers
 from mmweaver.paths.board_correction import corrected
-from mmweaver.stream_folder import is_stream, read_stream_cube
 
 CUBE = "radar.npz"
 PACKET_SUFFIXES = (".pcap", ".pcapng")

@@ -30,7 +30,7 @@ def wrong_lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
     if _occupied(_again(two, iq_order, iq_order, lanes=other)) < SCATTERED * _occupied(two):
         yield (
             f"read as {other} lanes the echoes of a chirp gather at fewer ranges than as {config.lvds_lanes}; try"
-            f" --lanes {other}, or another --radar"
+            f" --radar-set lanes={other}, or another --radar"
         )
 
 

@@ -76,7 +76,7 @@ def read_photo(
         depth_m = estimated.depth_m
     if depth_m is None:
         raise InputError(
-            f"{rgb} has no depth: give --depth, or a model that estimates it: --depth-model auto ({EXAMPLE}, downloaded"
+            f"{rgb} has no depth: give --depth, or a model that estimates it: --depth auto ({EXAMPLE}, downloaded"
             " once), a folder or another Hub name"
         )
     depth_m, fill_notes = fill_scattered_holes(depth_m)
@@ -99,9 +99,9 @@ def classes_of(
 ) -> ClassMask | None:
     """The class mask of a photo, from a file or by a model; None where neither is given."""
     if classes is not None and (segmenter or sam):
-        raise InputError("--classes already gives the classes; leave out --segmenter and --sam")
+        raise InputError("classes already gives the classes; leave out segmenter and sam")
     if sam is not None and segmenter is None:
-        raise InputError("--sam finds edges, not classes; give --segmenter too")
+        raise InputError("sam finds edges, not classes; give segmenter too")
     if classes is not None:
         return read_class_file(_existing(classes, "--classes"), photo.intrinsics.width, photo.intrinsics.height)
     if segmenter == BUILTIN:

@@ -12,9 +12,10 @@ from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.regular_files import read_bytes
 from mmweaver.exports.export import FORMATS, export_result
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.previews import PREVIEWS
 from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
+from mmweaver.formats.result_folder import save_results
 from mmweaver.playback.html_page import write_page
-from mmweaver.result_folder import save_results
 from mmweaver.studio.sessions import Result
 
 MAX_EXPORT_BYTES = 4_000_000_000
@@ -94,7 +95,7 @@ def _save(result: Result, folder: Path, *, pictures: bool = True) -> None:
         result.generation.save(folder, pictures=pictures)
         return
     view = FigureData(title=result.title, cube=_cube(result), points=result.points, poses=result.poses)
-    save_results(folder, view, result.meta, pictures=pictures)
+    save_results(folder, view, result.meta, pictures=PREVIEWS if pictures else None)
 
 
 def _zipped(folder: Path) -> Path:

@@ -5,16 +5,18 @@ from collections.abc import Iterator
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
 from mmweaver.playback.sequence import make_playback
 from mmweaver.playback.wire import pack
+from mmweaver.recognition.live_recogniser import LiveRecogniser
 from mmweaver.recognition.recogniser import Recogniser
-from mmweaver.streaming import StreamChunk
-from mmweaver.studio.asked import DEFAULT_BOARD, Asked
-from mmweaver.studio.live_labels import LiveLabels
+from mmweaver.studio.schemas import DEFAULT_BOARD, Form
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.streaming import StreamChunk
 
 CHUNK_FRAMES = 10
 
@@ -26,18 +28,19 @@ class Live:
         self,
         weaver: Weaver,
         room: Room,
-        asked: Asked,
+        asked: Form,
         board: Board | str = DEFAULT_BOARD,
         recogniser: Recogniser | None = None,
     ):
-        if len(asked.text) > 1:
+        sentences = asked.text or []
+        if len(sentences) > 1:
             raise InputError("Live has one person; leave the second sentence empty")
-        self._sentences: deque[str] = deque(asked.text)
+        self._sentences: deque[str] = deque(sentences)
         self._chunks: Iterator[StreamChunk] = weaver.stream(
             room,
             self._next_sentence(),
             seed=asked.seed,
-            at=asked.at,
+            at=asked.request.at,
             chunk_frames=CHUNK_FRAMES,
             board=board,
             fps=None if recogniser is None else recogniser.settings.frame_rate_hz,
@@ -77,3 +80,25 @@ class Live:
 
     def _meta(self, chunk: StreamChunk) -> dict[str, Any]:
         return {"text": chunk.text, **chunk.meta}
+
+
+class LiveLabels:
+    """The label of the last complete window of a stream, by a recogniser of `mmweaver recognise train`."""
+
+    def __init__(self, model: Recogniser):
+        self._live = LiveRecogniser(model)
+        self._last: dict[str, Any] | None = None
+
+    def push(self, chunk: StreamChunk) -> dict[str, Any] | None:
+        """Takes a chunk's frames; label, its share of the votes, and whether its window is unlike all that is known.
+
+        None before the first window is complete.
+        """
+        points = chunk.points
+        columns = (points.x_m, points.y_m, points.z_m, points.radial_velocity_mps, points.snr_db)
+        table = np.stack(columns, axis=-1)
+        for frame in range(chunk.num_frames):
+            for found in self._live.push(table[points.frame == frame]):
+                share = found.votes[found.label]
+                self._last = {"label": found.label, "share": share, "is_outside": found.is_outside}
+        return self._last

@@ -10,7 +10,7 @@ import uvicorn
 
 from mmweaver.core.errors import InputError
 from mmweaver.studio.server import LOOPBACK, StudioServer
-from mmweaver.studio.workshop import Workshop
+from mmweaver.studio.service import Service
 
 
 class _Announcing(uvicorn.Server):
@@ -50,7 +50,7 @@ def serve(
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     address = f"http://{shown}:{port}/" + ("" if token is None else f"?token={token}")
     try:
-        studio = StudioServer(Workshop(rooms, recordings, recognisers), workers=workers)
+        studio = StudioServer(Service(rooms, recordings, recognisers), workers=workers)
         config = uvicorn.Config(
             studio.app(hosts=set(names), token=token), log_level="warning", ws_max_size=1 << 20,
             timeout_graceful_shutdown=2, limit_concurrency=400,

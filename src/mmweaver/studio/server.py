@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 import hmac
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, TypeVar
@@ -23,15 +23,16 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.playback.html_page import page_file
 from mmweaver.studio import exports, uploads
-from mmweaver.studio.asked import Asked
 from mmweaver.studio.jobs import BusyError, Jobs
+from mmweaver.studio.schemas import Form
+from mmweaver.studio.service import Service
 from mmweaver.studio.sessions import Session
-from mmweaver.studio.workshop import Workshop
 
 T = TypeVar("T")
+Work = Callable[[Session, dict[str, Any]], Any]
 LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 MAX_JSON_BYTES = 100_000
-MOST_IN_FLIGHT = 2  # chunks of a live stream that the page has not taken yet
+MAX_IN_FLIGHT = 2  # chunks of a live stream that the page has not taken yet
 SECURITY = {
     "content-security-policy": "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:;"
     " connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
@@ -83,8 +84,8 @@ class Door:
 class StudioServer:
     """The calls of the page. Everything that takes time goes through the one queue."""
 
-    def __init__(self, workshop: Workshop, *, workers: int | None = None):
-        self.workshop = workshop
+    def __init__(self, service: Service, *, workers: int | None = None):
+        self.service = service
         self.jobs = Jobs(workers)
 
     def app(self, *, hosts: set[str] | None = None, token: str | None = None) -> Starlette:
@@ -93,25 +94,19 @@ class StudioServer:
             Route("/", self._index),
             Route("/page/mmweaver.js", self._script),
             Route("/api/session", self._open, methods=["POST"]),
-            Route("/api/room/{name}", self._room),
-            Route("/api/generate", self._generate, methods=["POST"]),
             Route("/api/upload", self._upload, methods=["POST"]),
-            Route("/api/depth/{name}", self._depth, methods=["POST"]),
-            Route("/api/recording/{name}", self._recording, methods=["POST"]),
-            Route("/api/result/{name}", self._result),
-            Route("/api/keep/{name}", self._keep, methods=["POST"]),
-            Route("/api/compare/{a}/{b}", self._compare),
             Route("/api/export/{name}/{kind}", self._export),
             WebSocketRoute("/api/presence", self._presence),
             WebSocketRoute("/api/live", self._live),
+            *(Route(f"/api/{path}", self._call(work), methods=[how]) for path, (how, work) in self._calls().items()),
         ]
 
         @contextlib.asynccontextmanager
         async def lifespan(_: Starlette) -> AsyncIterator[None]:
-            await self.jobs.run(self.workshop.warm_up)
+            await self.jobs.run(self.service.warm_up)
             yield
             self.jobs.stop()
-            self.workshop.sessions.end_all()
+            self.service.sessions.end_all()
 
         return Starlette(
             routes=routes, lifespan=lifespan, exception_handlers={InputError: _refused, BusyError: _busy},
@@ -127,44 +122,32 @@ class StudioServer:
 
     # its calls -------------------------------------------------------------------------------------------------------
     async def _open(self, _: Request) -> Response:
-        session = self.workshop.sessions.open()
-        offered = self.workshop.offer()
+        session = self.service.sessions.open()
+        offered = self.service.offer()
         kinds = [(kind, label) for kind, (label, _) in exports.EXPORTS.items()]
         return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": True, **offered})
 
-    async def _room(self, request: Request) -> Response:
-        session = self._session(request)
-        name, radar = request.path_params["name"], request.query_params.get("radar", "awr1843")
-        return _packed(await self._do(request, lambda: self.workshop.room_bytes(session, name, radar)))
+    def _calls(self) -> dict[str, tuple[str, Work]]:
+        """What the page asks for, by path: a session and what was asked of it -> bytes for the page, or JSON."""
+        service = self.service
+        return {
+            "room/{name}": ("GET", lambda own, got: service.room_bytes(own, got["name"], got.get("radar", "awr1843"))),
+            "generate": ("POST", lambda own, got: service.generate(own, got["body"])),
+            "depth/{name}": ("POST", lambda own, got: uploads.room_with_estimated_depth(own, got["name"])),
+            "recording/{name}": ("POST", lambda own, got: service.recording(own, got["name"])),
+            "result/{name}": ("GET", lambda own, got: service.result_bytes(own, got["name"])),
+            "keep/{name}": ("POST", lambda own, got: own.keep(got["name"])),
+            "compare/{a}/{b}": ("GET", lambda own, got: service.compare(own, got["a"], got["b"])),
+        }
 
-    async def _generate(self, request: Request) -> Response:
-        session = self._session(request)
-        body = await _json(request)
-        return _packed(await self._do(request, lambda: self.workshop.generate(session, body)))
+    def _call(self, work: Work) -> Callable[[Request], Awaitable[Response]]:
+        async def answer(request: Request) -> Response:
+            session = self._session(request)
+            got = {**request.query_params, **request.path_params, "body": await _json(request)}
+            found = await self._do(request, lambda: work(session, got))
+            return _packed(found) if isinstance(found, bytes) else JSONResponse(found)
 
-    async def _result(self, request: Request) -> Response:
-        session = self._session(request)
-        name = request.path_params["name"]
-        return _packed(await self._do(request, lambda: self.workshop.result_bytes(session, name)))
-
-    async def _recording(self, request: Request) -> Response:
-        session, name = self._session(request), request.path_params["name"]
-        return _packed(await self._do(request, lambda: self.workshop.recording(session, name)))
-
-    async def _keep(self, request: Request) -> Response:
-        """Holds a result as long as others are compared with it; "none" lets go."""
-        session, name = self._session(request), request.path_params["name"]
-        session.pinned = None if name == "none" or not session.result(name) else name
-        return JSONResponse({})
-
-    async def _compare(self, request: Request) -> Response:
-        session, asked = self._session(request), request.path_params
-        return JSONResponse(await self._do(request, lambda: self.workshop.compare(session, asked["a"], asked["b"])))
-
-    async def _depth(self, request: Request) -> Response:
-        """A room of a photo that came without depth, which a depth model estimates."""
-        session, name = self._session(request), request.path_params["name"]
-        return JSONResponse(await self._do(request, lambda: uploads.room_with_estimated_depth(session, name)))
+        return answer
 
     async def _export(self, request: Request) -> Response:
         session = self._session(request)
@@ -182,12 +165,12 @@ class StudioServer:
         async with request.form(max_files=uploads.MAX_FILES, max_fields=4) as form:
             radar = form.get("radar")
             files = [sent for sent in form.getlist("files") if isinstance(sent, UploadFile)]
-            names = uploads.said_names(form.get("paths"), [one.filename for one in files])
+            names = uploads.file_names(form.get("paths"), [one.filename for one in files])
             for sent, said in zip(files, names, strict=True):
                 with uploads.place_of(folder, said).open("wb") as file:
                     while part := await sent.read(1 << 20):
                         file.write(part)
-        chosen = self.workshop.radar_of(session, radar if isinstance(radar, str) else "awr1843")
+        chosen = self.service.radar_of(session, radar if isinstance(radar, str) else "awr1843")
         return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
 
     async def _presence(self, socket: WebSocket) -> None:
@@ -198,7 +181,7 @@ class StudioServer:
         with contextlib.suppress(WebSocketDisconnect):
             while True:
                 await socket.receive_text()
-        self.workshop.end(session)
+        self.service.end(session)
 
     async def _live(self, socket: WebSocket) -> None:
         """Sentences come, chunks go; a chunk is made when the page has taken the one before the last."""
@@ -206,15 +189,15 @@ class StudioServer:
         if session is None:
             return
         try:
-            live = self.workshop.live(session, parse_json(await socket.receive_text(), "the request"))
+            live = self.service.live(session, parse_json(await socket.receive_text(), "the request"))
             in_flight = 0
             while True:
-                if in_flight >= MOST_IN_FLIGHT:
+                if in_flight >= MAX_IN_FLIGHT:
                     said = parse_json(await socket.receive_text(), "the request")
                     if isinstance(said, dict) and "ack" in said:
                         in_flight -= 1
                     else:
-                        live.say(Asked.of(said).text[0])
+                        live.say(Form.of(said).sentences[0])
                     continue
                 await socket.send_bytes(await self.jobs.run(live.next_chunk))
                 in_flight += 1
@@ -227,7 +210,7 @@ class StudioServer:
     async def _accepted(self, socket: WebSocket) -> Session | None:
         """The session that the socket names; where there is none, the socket is closed."""
         try:
-            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
+            session = self.service.sessions.get(socket.query_params.get("session", ""))
         except InputError:
             await socket.close(code=1008)
             return None
@@ -236,7 +219,7 @@ class StudioServer:
 
     # what they share -------------------------------------------------------------------------------------------------
     def _session(self, request: Request) -> Session:
-        return self.workshop.sessions.get(request.headers.get("x-session", ""))
+        return self.service.sessions.get(request.headers.get("x-session", ""))
 
     async def _do(self, request: Request, work: Callable[[], T]) -> T:
         """Queues `work`; where the client leaves first, nobody waits for it."""
@@ -256,7 +239,7 @@ async def _json(request: Request) -> Any:
         body += part
         if len(body) > MAX_JSON_BYTES:
             raise InputError("this request is too long")
-    return parse_json(bytes(body), "the request")
+    return parse_json(bytes(body), "the request") if body else None
 
 
 def _packed(content: bytes) -> Response:

@@ -5,7 +5,8 @@ import shutil
 import tempfile
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from time import monotonic
@@ -13,11 +14,11 @@ from time import monotonic
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
-from mmweaver.generation import Generation, Room
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.playback.points_playback import point_log_playback
 from mmweaver.playback.sequence import Playback, make_playback
+from mmweaver.weaver.generation import Generation, Room
 
 MAX_SESSIONS = 100
 MAX_RESULTS = 6  # of one session; the oldest go first
@@ -35,10 +36,8 @@ class Result:
     meta: dict
     frame_period_s: float = 0.1
     radar: str = ""
-    scene: Scene | None = None
     generation: Generation | None = None
     with_samples: Callable[[], Generation] | None = None  # generates the same again, keeping its ADC samples
-    asked: dict = field(default_factory=dict)  # the request, with `command` and `python`
 
     @property
     def num_bytes(self) -> int:
@@ -60,14 +59,19 @@ class Result:
         return make_playback(self.cube, self.points, self.poses, self.meta)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True, eq=False)
 class BroughtRoom:
-    """A room that a session brought: its options of `mmweaver generate`, and the call of `Weaver` that reads it."""
+    """A room, its options of `mmweaver generate`, and the call of `Weaver` that reads it."""
 
     label: str
-    room: Room
     options: tuple[str, ...]
     call: str
+    read: Callable[[], Room]
+
+    @cached_property
+    def room(self) -> Room:
+        """The room, read at its first use. Raises InputError."""
+        return self.read()
 
 
 class Session:
@@ -104,6 +108,11 @@ class Session:
             raise InputError("this result is no longer kept; generate it again")
         return self.results[name]
 
+    def keep(self, name: str) -> dict[str, str]:
+        """Holds a result as long as others are compared with it; "none" lets go."""
+        self.pinned = None if name == "none" or not self.result(name) else name
+        return {}
+
     def end(self) -> None:
         """Removes the session's folder; its rooms and results go with it."""
         self.is_open = False
@@ -138,11 +147,6 @@ class Sessions:
             raise InputError("this session has ended; load the page again")
         session.used_s = monotonic()
         return session
-
-    def all(self) -> list[Session]:
-        """Those that are open."""
-        with self._lock:
-            return list(self._open.values())
 
     def end(self, session: Session) -> None:
         """Ends a session."""

@@ -10,16 +10,15 @@ from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.formats.radar_file import load_radar
-from mmweaver.generate import Weaver
-from mmweaver.generation import Room
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.scene.photo.estimated_depth import AUTO
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
 from mmweaver.scene.scan_folders import scan_kind
-from mmweaver.studio.recorded import SETTINGS, read_recorded
-from mmweaver.studio.recovery_options import NoWayError
-from mmweaver.studio.rooms import read_room
+from mmweaver.studio.recordings import SETTINGS, read_recorded
+from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import BroughtRoom, Session
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Room
 
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 200
@@ -35,17 +34,18 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
 
     Names were chosen by the server (`place_of`), so nothing outside the folder is ever opened.
     """
-    folder = _without_wrappers(folder)
+    folder = _unwrapped(folder)
     files = {file.name.lower(): file for file in sorted(folder.iterdir()) if file.is_file()}
     if scan_kind(folder) is not None:
-        return _room(session, Weaver(method="physics").read_capture(folder), capture=folder)
+        return _room(session, _weaver().open_room(folder), room=folder)
     recorded = read_recorded(folder, radar)
     if recorded is not None:
         has_room = bool(recorded.poses)
         return {"kind": "result", "id": session.add(recorded), "label": recorded.title, "has_room": has_room}
     motion = next((file for name, file in files.items() if name.endswith(".bvh")), None)
     if motion is not None or (len(files) == 1 and next(iter(files)).endswith(MOTIONS)):
-        return _motion(session, motion or next(iter(files.values())))
+        file = motion or next(iter(files.values()))
+        return _named(session.motions, "motion", file, read_motion(file))
     mesh = next((file for name, file in files.items() if name.endswith(MESHES)), None)
     if mesh is not None:
         return _mesh(session, mesh, files)
@@ -61,7 +61,7 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     )
 
 
-def said_names(listed: Any, names: list[str | None]) -> list[str]:
+def file_names(listed: Any, names: list[str | None]) -> list[str]:
     """The names of files as the page said them: JSON with a path of each within what was dropped, else plain names."""
     paths = parse_json(listed, "the paths") if isinstance(listed, str) else None
     if isinstance(paths, list) and len(paths) == len(names) and all(isinstance(one, str) for one in paths):
@@ -92,14 +92,18 @@ def room_with_estimated_depth(session: Session, name: str) -> dict[str, Any]:
     if name not in session.photos:
         raise InputError("this photo is no longer kept; open its file again")
     photo = session.photos[name]
-    return _room(session, Weaver(method="physics").read_room(photo, depth_model=AUTO), rgb=photo, depth_model=AUTO)
+    return _room(session, _weaver().read_room(photo, depth_model=AUTO), rgb=photo, depth=AUTO)
 
 
-def _without_wrappers(folder: Path) -> Path:
+def _weaver() -> Weaver:
+    return Weaver(method="physics")
+
+
+def _unwrapped(folder: Path) -> Path:
     """The folder that was dropped, where it is all that was."""
     inside = list(folder.iterdir())
     is_wrapper = len(inside) == 1 and inside[0].is_dir() and scan_kind(folder) is None
-    return _without_wrappers(inside[0]) if is_wrapper else folder
+    return _unwrapped(inside[0]) if is_wrapper else folder
 
 
 def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, Any]:
@@ -116,57 +120,55 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
     return _photographed(session, RoomFiles(rgb=colour[0], depth=depth[0], camera=camera))
 
 
-def _without_depth(session: Session, photo: Path) -> NoWayError:
+def _without_depth(session: Session, photo: Path) -> RecoverableError:
     """Offers to estimate the depth where the package for it is installed, else says what to install."""
     name = secrets.token_urlsafe(6)
     session.photos[name] = photo
     said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
     if not is_installed("transformers"):
-        return NoWayError(f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [])
-    return NoWayError(said, [{"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}])
+        return RecoverableError(f"{said}; or pip install 'mmweaver[pretrained]', and a model will estimate it", [])
+    button = {"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}
+    return RecoverableError(said, [button])
 
 
 def _photographed(session: Session, files: RoomFiles) -> dict[str, Any]:
-    return _room(session, read_room(files), rgb=files.rgb, depth=files.depth, camera=files.camera)
+    room = _weaver().read_room(files.rgb, files.depth, files.camera)
+    return _room(session, room, rgb=files.rgb, depth=files.depth, camera=files.camera)
 
 
 def _mesh(session: Session, mesh: Path, files: dict[str, Path]) -> dict[str, Any]:
     """A scan or model, with the JSON of its materials where one came along."""
     materials = next((file for name, file in files.items() if name.endswith(".json")), None)
-    room = Weaver(method="physics").read_mesh(mesh, materials=materials)
-    return _room(session, room, mesh=mesh, mesh_materials=materials)
+    return _room(session, _weaver().read_mesh(mesh, materials=materials), room=mesh, materials=materials)
 
 
-def _room(session: Session, room: Room, **given: Path | str | None) -> dict[str, Any]:
+def _room(session: Session, found: Room, /, **given: Path | str | None) -> dict[str, Any]:
     """Keeps a room; `given` are the options of `mmweaver generate` that read it, with names for files."""
     words = {name: Path(value).name for name, value in given.items() if value is not None}
-    options = [word for name, value in words.items() for word in (f"--{name.replace('_', '-')}", value)]
+    pairs = [
+        ("mesh-set", f"materials={value}") if name == "materials" else (name, value) for name, value in words.items()
+    ]
+    options = tuple(word for name, value in pairs for word in (f"--{name}", value))
+    is_model = words.get("depth") == AUTO
+    words = {"depth_model" if is_model and name == "depth" else name: value for name, value in words.items()}
     first, *more = words.items()
-    read = {"mesh": "read_mesh", "capture": "read_capture"}.get(first[0], "read_room")
-    arguments = [repr(first[1]), *(f"{name.removeprefix('mesh_')}={value!r}" for name, value in more)]
-    name = secrets.token_urlsafe(6)
-    label = f"your room {len(session.rooms) + 1}"
-    call = f"{read}({', '.join(arguments)})"
-    session.rooms[name] = BroughtRoom(label=label, room=room, options=tuple(options), call=call)
+    arguments = [repr(first[1]), *(f"{name}={value!r}" for name, value in more)]
+    call = f"{'open_room' if first[0] == 'room' else 'read_room'}({', '.join(arguments)})"
+    name, label = secrets.token_urlsafe(6), f"your room {len(session.rooms) + 1}"
+    session.rooms[name] = BroughtRoom(label=label, options=options, call=call, read=lambda: found)
     return {"kind": "room", "id": name, "label": label}
 
 
 def _radar_or_board(session: Session, file: Path) -> dict[str, Any]:
+    is_json = file.suffix.lower() == ".json"
+    content = read_json(file) if is_json else None
+    if isinstance(content, dict) and "board_version" in content:
+        return _named(session.boards, "board", file, read_board(file))
+    return _named(session.radars, "radar", file, load_radar(str(file)))
+
+
+def _named(kept: dict[str, Any], kind: str, file: Path, value: Any) -> dict[str, Any]:
+    """Keeps what a file holds with the file's name, by a new id."""
     name = secrets.token_urlsafe(6)
-    if file.suffix.lower() == ".json" and "board_version" in _keys(file):
-        session.boards[name] = (file.name, read_board(file))
-        return {"kind": "board", "id": name, "label": file.name}
-    config = load_radar(str(file))
-    session.radars[name] = (file.name, config)
-    return {"kind": "radar", "id": name, "label": file.name}
-
-
-def _keys(file: Path) -> set[str]:
-    content = read_json(file)
-    return set(content) if isinstance(content, dict) else set()
-
-
-def _motion(session: Session, file: Path) -> dict[str, Any]:
-    clip, name = read_motion(file), secrets.token_urlsafe(6)
-    session.motions[name] = (file.name, clip)
-    return {"kind": "motion", "id": name, "label": file.name}
+    kept[name] = file.name, value
+    return {"kind": kind, "id": name, "label": file.name}

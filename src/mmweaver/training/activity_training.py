@@ -97,7 +97,7 @@ def activity_examples(
 def _more(data: LabelledData) -> str:
     """How to make sequences of every split."""
     if isinstance(data, ActivitySet):
-        return "each split needs people of its own: make the set with three --subjects or more, or another --split-by"
+        return "each split needs people of its own: make the set with three --subjects or more, or another --split"
     return "make more with: mmweaver dataset"
 
 

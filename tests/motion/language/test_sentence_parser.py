@@ -2,9 +2,9 @@
 
 import pytest
 
-from mmweaver import request
 from mmweaver.motion.language import timing
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.weaver import request
 
 
 def test_another_parser_takes_the_place_of_the_grammar(monkeypatch: pytest.MonkeyPatch):

@@ -18,7 +18,7 @@ def test_units_are_read_off_the_body(unit: str):
 
 def test_what_could_be_anything_is_asked_for():
     for scale in (10.0, 3.0, 1e5):
-        with pytest.raises(InputError, match="--motion-unit"):
+        with pytest.raises(InputError, match="--motion-set unit="):
             unit_of(walk() * scale, None, "walk")
     assert unit_of(walk(), "0.056444", "walk") == (0.056444, "")
     for said in ("furlong", "-1", "0", "nan"):
@@ -40,7 +40,7 @@ def test_up_is_where_the_head_is(up: str):
 
 def test_who_lies_is_asked_about():
     lying = walk() @ np.array([[1.0, 0, 0], [0, 0.7071, 0.7071], [0, -0.7071, 0.7071]])
-    with pytest.raises(InputError, match="--motion-up"):
+    with pytest.raises(InputError, match="--motion-set up="):
         up_of(lying, None, "walk")
     assert up_of(lying, "y", "walk") == ("y", "")
     with pytest.raises(InputError, match="one of y, z"):

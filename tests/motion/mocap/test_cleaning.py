@@ -69,7 +69,7 @@ def test_a_t_pose_that_is_left_by_moving_stays_and_is_said():
     lowered = np.stack([lowered[..., 0], -lowered[..., 2], lowered[..., 1]], axis=-1)
     joints, notes = cut_t_pose(lowered, FPS, "arms")
     assert len(joints) == 90
-    assert "--motion-start" in notes[0]
+    assert "--motion-set start=" in notes[0]
     assert cut_t_pose(walk(), FPS, "walk") == (pytest.approx(walk()), ())
 
 

@@ -67,7 +67,7 @@ def test_a_collection_of_clips(tmp_path: Path):
         assert (len(raw.positions), raw.fps, raw.up) == (40, 120.0, "y")
         hand = raw.positions[:, raw.names.index("left_hand")]
         np.testing.assert_allclose(hand, y_up(walk())[:40, joint("left_wrist")], atol=2e-3)
-    with pytest.raises(InputError, match="--clip a/walk"):
+    with pytest.raises(InputError, match="--motion-set clip=a/walk"):
         read_npz(tmp_path / "cmu.npz")
     for said, count in (("_1", 2), ("swim", 0)):
         with pytest.raises(InputError, match=f"names {count} of its 2"):

@@ -101,11 +101,11 @@ def test_what_cannot_be_read_is_refused_in_one_line(tmp_path: Path):
     for path, options, message in (
         ("none.bvh", {}, r"there is no motion file \S+none.bvh; give .*\.bvh"),
         ("walk.fbx", {}, r"read from \.bvh"),
-        ("walk.npy", {}, "--motion-fps"),
-        ("walk.npy", {"fps": 0.0}, "frames per second"),
-        ("walk.npy", {"fps": float("nan")}, "frames per second"),
+        ("walk.npy", {}, "--motion-set fps="),
+        ("walk.npy", {"fps": 0.0}, "frames a second"),
+        ("walk.npy", {"fps": float("nan")}, "frames a second"),
         ("walk.npy", {"fps": 20.0, "unit": "yard"}, "unit of length"),
-        ("walk.npy", {"fps": 20.0, "clip": "b"}, "--clip"),
+        ("walk.npy", {"fps": 20.0, "clip": "b"}, "--motion-set clip="),
         ("short.npy", {"fps": 20.0}, "1 frames"),
     ):
         with pytest.raises(InputError, match=message) as caught:

@@ -19,7 +19,7 @@ def any_segmenter(transformers, config):
 
 def error(source: str) -> str:
     with pytest.raises(InputError) as raised:
-        load_pretrained(source, "--segmenter", any_segmenter)
+        load_pretrained(source, "--classes", any_segmenter)
     assert "\n" not in str(raised.value)
     return str(raised.value)
 

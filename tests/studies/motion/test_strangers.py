@@ -2,7 +2,7 @@
 
 import pytest
 
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 from studies.motion.strangers import DRAWS, outcome, result_row
 
 

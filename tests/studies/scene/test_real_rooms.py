@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from mmweaver.generate import Weaver
+from mmweaver.weaver.front_door import Weaver
 from studies.scene.real_rooms import agreement
 
 

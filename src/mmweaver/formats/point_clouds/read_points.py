@@ -69,5 +69,5 @@ def points_kind(path: Path) -> str:
     """As `recognised_kind`. Raises InputError where none does."""
     if (kind := recognised_kind(path)) is None:
         known = "; ".join(one.what for one in FORMATS.values())
-        raise InputError(f"{path} is no point cloud that is known: {known}; name its kind with --kind")
+        raise InputError(f"{path} is no point cloud that is known: {known}; name its kind with --layout")
     return kind

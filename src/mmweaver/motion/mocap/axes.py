@@ -32,7 +32,7 @@ def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, sourc
         return metres, f"lengths of {source} are taken as {name}: the body is then {size * metres:.2f} m tall"
     raise InputError(
         f"{source}: the body is {size:.4g} units tall, which in no unit ({', '.join(UNITS_M)}) is a person of"
-        f" {low:g} to {high:g} m; give --motion-unit, a name or the metres in one unit"
+        f" {low:g} to {high:g} m; give --motion-set unit=UNIT, a name or the metres in one unit"
     )
 
 
@@ -67,7 +67,7 @@ def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) ->
     axis = int(np.abs(stands).argmax())
     if abs(stands[axis]) < CLEAR:
         raise InputError(
-            f"{source}: the upward axis cannot be estimated, because the body does not stand; give --motion-up y or z"
+            f"{source}: the upward axis cannot be estimated, as the body does not stand; give --motion-set up=y or up=z"
         )
     up = ("-" if stands[axis] < 0 else "") + "xyz"[axis]
     return up, f"{up} is taken as the upward axis of {source}, because the head is there"

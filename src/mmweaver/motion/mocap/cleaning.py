@@ -83,7 +83,7 @@ def cut_t_pose(
     if len(jumps) and len(joints_m) - jumps[-1] > 2:
         first = int(jumps[-1]) + 1
         return joints_m[first:], (f"{_count(first)} of T-pose at the start of {source} cut off",)
-    return joints_m, (f"{source} begins in a T-pose, which is shown; --motion-start leaves it out",)
+    return joints_m, (f"{source} begins in a T-pose, which is shown; --motion-set start=S leaves it out",)
 
 
 def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:

@@ -60,7 +60,7 @@ class MotionClip:
         if not 0 <= first <= len(self.joints_m) - 2:
             raise InputError(
                 f"{self.label} lasts {self.duration_s:.2f} s, so it cannot start at {start_s:g} s; choose an earlier"
-                " --motion-start"
+                " --motion-set start=S"
             )
         return replace(self, joints_m=self.joints_m[first:], first_frame=self.first_frame + first) if first else self
 

@@ -208,5 +208,5 @@ def _no_room(
     size = f"{free.sum() * floor.cell_m**2:.1f} m2 of floor are free in the picture and the radar's window"
     return (
         f"there is no room for {clip.label}{asked}: its track is {longest:.1f} m across, {size}; try fewer --frames,"
-        " another --motion-start, --at or --heading, a smaller --height, or --as-recorded"
+        " another --motion-set start=S, --at or --heading, a smaller --height, or --as-recorded"
     )

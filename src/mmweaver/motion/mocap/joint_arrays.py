@@ -41,7 +41,9 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
     if {"names", "lengths", "pos", "parents"} <= set(arrays):
         return _read_cmu(arrays, path, clip)
     if clip is not None:
-        raise InputError(f"{path} holds a single motion, so there is no clip {clip!r}; leave out --clip")
+        raise InputError(
+            f"{path} holds a single motion, so there is no clip {clip!r}; leave out --motion-set clip=NAME"
+        )
     if is_smpl(arrays):
         return read_smpl(arrays, path, body_model)
     key = next((name for name in JOINT_KEYS if name in arrays), None)
@@ -108,7 +110,7 @@ def _read_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMoti
     ):
         raise InputError(f"{path}: names, lengths and pos do not fit each other or the 38 joints of CMU's skeleton")
     if clip is None and len(names) > 1:
-        raise InputError(f"{path} holds {len(names)} motions; choose one with --clip, for example --clip {names[0]}")
+        raise InputError(f"{path} holds {len(names)} motions; choose one, for example --motion-set clip={names[0]}")
     hits = [k for k, name in enumerate(names) if clip is None or name == clip]
     hits = hits or [k for k, name in enumerate(names) if clip is not None and clip in name]
     if len(hits) != 1:

@@ -56,7 +56,9 @@ def read_motion(
         raise InputError(f"there is no motion file {path}; give {KINDS}")
     kind = path.suffix.lower()
     if clip is not None and kind != ".npz":
-        raise InputError(f"{path} holds a single motion, so there is no clip {clip!r}; leave out --clip")
+        raise InputError(
+            f"{path} holds a single motion, so there is no clip {clip!r}; leave out --motion-set clip=NAME"
+        )
     if kind == ".bvh":
         raw = read_bvh(path)
     elif kind == ".npy":
@@ -103,9 +105,9 @@ def to_clip(
 def _rate(fps: float | None, label: str) -> float:
     low, high = FPS_LIMITS
     if fps is None:
-        raise InputError(f"{label} states no frame rate; give --motion-fps (HumanML3D and MotionGPT: 20)")
+        raise InputError(f"{label} states no frame rate; give --motion-set fps=N (HumanML3D and MotionGPT: 20)")
     if not (math.isfinite(fps) and low <= fps <= high):
-        raise InputError(f"a motion has {low:g} to {high:g} frames per second, not {fps:g}; give --motion-fps")
+        raise InputError(f"a motion has {low:g} to {high:g} frames per second, not {fps:g}; give --motion-set fps=N")
     return float(fps)
 
 

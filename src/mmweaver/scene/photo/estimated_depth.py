@@ -40,13 +40,13 @@ def estimate_depth(
     from PIL import Image
 
     source = EXAMPLE if source == AUTO else source
-    config, processor, model = load_pretrained(source, "--depth-model", _depth_class)
+    config, processor, model = load_pretrained(source, "--depth", _depth_class)
     height, width = rgb.shape[:2]
     prompt: dict[str, Any] = {}
     if measured_m is not None:
         if config.model_type != PROMPTED:
             raise InputError(
-                f"--depth-model {source} takes no measured depth; leave out one of --depth and --depth-model, or give a"
+                f"--depth {source} takes no measured depth; leave out the depth or the model, or give a"
                 " Prompt Depth Anything"
             )
         prompt = {"prompt_depth": np.nan_to_num(measured_m).astype(np.float32), "prompt_scale_to_meter": 1.0}
@@ -57,11 +57,11 @@ def estimate_depth(
         said = processor.post_process_depth_estimation(outputs, target_sizes=[(height, width)])[0]
         found, focal = said["predicted_depth"], said.get("focal_length")
     except (ValueError, TypeError, RuntimeError) as error:
-        raise InputError(f"--depth-model {source} cannot process this picture ({error}); try another model") from None
+        raise InputError(f"--depth {source} cannot process this picture ({error}); try another model") from None
     depth_m = np.asarray(found.cpu().numpy(), dtype=float).reshape(height, width)
     measured = np.isfinite(depth_m) & (depth_m > 0.05)
     if not measured.any():
-        raise InputError(f"--depth-model {source} gives no depth for this picture; try another model")
+        raise InputError(f"--depth {source} gives no depth for this picture; try another model")
     focal_px = None if focal is None else float(focal)
     if focal_px is not None and not 0.2 * width <= focal_px <= 10 * width:
         focal_px = None
@@ -83,8 +83,8 @@ def _depth_class(transformers: Any, config: Any) -> Any:
     kind = config.model_type
     is_metric = kind in ALWAYS_METRIC or getattr(config, "depth_estimation_type", "") == "metric"
     if kind in SOMETIMES_METRIC and not is_metric:
-        raise InputError(f"--depth-model: this {kind} model gives relative depth; use a metric one, such as {EXAMPLE}")
+        raise InputError(f"--depth: this {kind} model gives relative depth; use a metric one, such as {EXAMPLE}")
     if kind not in ALWAYS_METRIC | SOMETIMES_METRIC:
         known = ", ".join(sorted(ALWAYS_METRIC | SOMETIMES_METRIC))
-        raise InputError(f"--depth-model: a {kind} model gives no metric depth; known: {known}; for example {EXAMPLE}")
+        raise InputError(f"--depth: a {kind} model gives no metric depth; known: {known}; for example {EXAMPLE}")
     return transformers.AutoModelForDepthEstimation

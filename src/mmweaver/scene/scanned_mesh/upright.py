@@ -60,7 +60,7 @@ def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str 
     if named and not up and level["z"] > CLEARLY_MORE * level["y"]:
         notes = [
             "y was taken as upwards, as glTF says, though more of the mesh is level with z up: if the room lies on its"
-            " side, z is up (--mesh-up z)."
+            " side, z is up (--mesh-set up=z)."
         ]
     moved = replace(mesh, vertices=unit_m * (turned - np.array([0.0, 0.0, floor])))
     return UprightMesh(

@@ -30,7 +30,7 @@ def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
     """
     import torch
 
-    config, processor, model = load_pretrained(source, "--segmenter", _segmenter_class)
+    config, processor, model = load_pretrained(source, "--classes", _segmenter_class)
     look_up = _look_up(source, config.id2label)
     height, width = rgb.shape[:2]
     inputs = _prepared(processor, rgb, source)
@@ -51,7 +51,7 @@ def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
     """SAM's masks at a grid of points, the most certain one of each, the largest first."""
     import torch
 
-    _, processor, model = load_pretrained(source, "--sam", _sam_class)
+    _, processor, model = load_pretrained(source, "sam", _sam_class)
     height, width = rgb.shape[:2]
     inputs = _prepared(processor, rgb, source)
     down = max(1, round(POINTS_ACROSS * height / width))
@@ -107,13 +107,13 @@ def _segmenter_class(transformers: Any, config: Any) -> Any:
     if config.model_type in SEMANTIC:
         return transformers.AutoModelForSemanticSegmentation
     known = ", ".join(sorted(UNIVERSAL | SEMANTIC))
-    raise InputError(f"--segmenter: a {config.model_type} model does not segment; known: {known}")
+    raise InputError(f"--classes: a {config.model_type} model does not segment; known: {known}")
 
 
 def _sam_class(transformers: Any, config: Any) -> Any:
     if config.model_type in SAM:
         return transformers.AutoModelForMaskGeneration
-    raise InputError(f"--sam: a {config.model_type} model is not a SAM; known: {', '.join(sorted(SAM))}")
+    raise InputError(f"sam: a {config.model_type} model is not a SAM; known: {', '.join(sorted(SAM))}")
 
 
 def _look_up(source: str, labels: dict[int, str]) -> UInt8[Array, " label"]:

@@ -28,7 +28,7 @@ from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.staging import sync
 from mmweaver.formats.dca1000 import words_of
 from mmweaver.formats.npz_files import read_radar_npz, write_points_npz, write_pose_npz, write_radar_npz
-from mmweaver.result_folder import plain
+from mmweaver.formats.result_folder import plain
 
 PARTS, LIST, BIN, META = "parts", "parts.jsonl", "adc_data.bin", "meta.json"
 LARGEST_BYTES = 8_000_000_000  # of a cube that is read at once

@@ -1,17 +1,18 @@
-"""What is asked of `Weaver.generate`: checked, parsed and scheduled once, then handed on as one record."""
+"""A request, checked, parsed and scheduled once: what the motion planner and the methods take."""
 
 import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from mmweaver.core.board import Board
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
+from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
+from mmweaver.formats.result_folder import radar_meta
 from mmweaver.motion.empty_scene import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence
@@ -19,10 +20,11 @@ from mmweaver.motion.language.step_names import add_shown_text
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
-from mmweaver.motion.multi_person import MOST_PEOPLE, Place
+from mmweaver.motion.multi_person import MOST_PEOPLE
 from mmweaver.motion.people import check_subject
 from mmweaver.motion.planning.targets import SHORTEST_PATH_M
 from mmweaver.motion.register_activity import load_activity_plugins
+from mmweaver.weaver.request import Request
 
 MAX_FRAMES = 2000
 NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
@@ -44,8 +46,8 @@ class PersonRequest:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request:
-    """A valid request for one sequence; made by `parse_request`."""
+class ParsedRequest:
+    """A valid request for one sequence; made by `parse`."""
 
     people: tuple[PersonRequest, ...]  # none: an empty room
     config: RadarConfig  # at the requested frame rate
@@ -67,6 +69,14 @@ class Request:
         """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
         near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
         return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
+
+    def meta(self) -> dict[str, Any]:
+        """What meta.json holds of the request."""
+        placed = {name: getattr(self, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
+        return {
+            "seed": self.seed, "frames": self.frames, "fps": 1 / self.config.frame_period_s, "at": self.at,
+            "placed": placed, **radar_meta(self.config),
+        }  # fmt: skip
 
     @property
     def board_without_background(self) -> Board:
@@ -94,93 +104,76 @@ class Request:
         return _one_or_all([person.height_m for person in self.people])
 
 
-def parse_request(
-    radar: RadarConfig,
-    text: str | Sequence[str] | None = None,
-    *,
-    motion: MotionClip | None = None,
-    frames: int | None = None,
-    seconds: float | None = None,
-    fps: float | None = None,
-    seed: int = 0,
-    at: Place | Sequence[Place | None] | None = None,
-    heading_rad: float | None = None,
-    path_m: Sequence[Place] | None = None,
-    height_m: float | Sequence[float | None] | None = None,
-    subject: int | Sequence[int | None] | None = None,
-    as_recorded: bool = False,
-    keep_adc: bool = False,
-    radar_poses: Sequence[RadarPose] = (),
-    needs_adc: bool = False,
-    board: str | Path | Board | None = None,
-) -> Request:
-    """Checks a request and parses its sentences; takes milliseconds, so it is called before any long work.
+def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> ParsedRequest:
+    """Checks the request and parses its sentences; takes milliseconds, so it is called before any long work.
 
-    The arguments are those of `Weaver.generate`; `needs_adc` says that ADC samples are held in memory although they
-    are not returned. Raises InputError for texts, frames, seconds, fps or places outside their limits, for a frame rate
-    that the chirps do not fit into, for more samples than memory holds, for a text that is not understood or of which
-    nothing fits the time, and for a recorded motion that is shorter than what is asked for.
+    Args:
+        asked: what is asked for.
+        radar: the radar, at its own frame rate.
+        needs_adc: ADC samples are held in memory although they are not returned.
+
+    Raises:
+        InputError: for texts, frames, seconds, fps or places outside their limits, a frame rate that the chirps do
+            not fit into, more samples than memory holds, a text that is not understood or of which nothing fits
+            the time, and a recorded motion that is shorter than what is asked for.
     """
-    if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
-        raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
-    if seed < 0:
-        raise InputError(f"the seed must be 0 or above, not {seed}")
-    texts = [text or ""] if text is None or isinstance(text, str) else list(text)
+    if asked.fps is not None and not FPS_LIMITS[0] <= asked.fps <= FPS_LIMITS[1]:
+        raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {asked.fps:g}")
+    if asked.seed < 0:
+        raise InputError(f"the seed must be 0 or above, not {asked.seed}")
+    texts, motion = asked.sentences, asked.motion
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
-    is_empty = _asks_for_nobody(texts, motion, at, heading_rad, path_m, height_m, subject)
-    starts = _starts(at, len(texts))
-    check_poses(tuple(radar_poses))
-    config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
-    has_adc = keep_adc or needs_adc
-    asked = _frames_asked_for(frames, seconds, config)
-    if asked is not None:
-        _check_size(config, asked, has_adc)
-    parsed: list[MotionPlan | None] = [
+    is_empty = _asks_for_nobody(asked)
+    starts = _starts(asked.at, len(texts))
+    check_poses(tuple(asked.radar_poses))
+    config = radar if asked.fps is None else replace(radar, frame_period_s=1 / asked.fps)
+    has_adc = asked.keep_adc or needs_adc
+    count = _frames_asked_for(asked, config)
+    if count is not None:
+        _check_size(config, count, has_adc)
+    plans: list[MotionPlan | None] = [
         None if is_empty or (motion is not None and index == 0) else parsed_text(one) for index, one in enumerate(texts)
     ]
-    if path_m is not None:
-        parsed[0] = _along(parsed[0], path_m)
-    count = asked or min(_frames_needed(parsed, motion, config), _most_frames(config, has_adc))
+    if asked.path_m is not None:
+        plans[0] = _along(plans[0], asked.path_m)
+    count = count or min(_frames_needed(plans, motion, config), _most_frames(config, has_adc))
+    duration_s = count * config.frame_period_s
     if motion is not None:
-        check_lasts(motion, count * config.frame_period_s)
-    heights, subjects = _one_each(height_m, len(texts), "height"), _one_each(subject, len(texts), "subject")
-    people = (
-        ()
-        if is_empty
-        else tuple(
-            PersonRequest(
-                text=text,
-                plan=_scheduled(plan, count * config.frame_period_s),
-                start_m=start,
-                height_m=None if height is None else float(height),
-                subject=None if who is None else check_subject(who),
-            )
-            for text, plan, start, height, who in zip(texts, parsed, starts, heights, subjects, strict=True)
+        check_lasts(motion, duration_s)
+    heights = _one_each(asked.height_m, len(texts), "height")
+    subjects = _one_each(asked.subject, len(texts), "subject")
+    people = tuple(
+        PersonRequest(
+            text=text, plan=_scheduled(plan, duration_s), start_m=start,
+            height_m=None if height is None else float(height), subject=None if who is None else check_subject(who),
         )
-    )
-    return Request(
-        people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
-        as_recorded=as_recorded, keep_adc=keep_adc, board=None if board is None else find_board(board, config, seed),
-        radar_poses=tuple(radar_poses),
+        for text, plan, start, height, who in zip(texts, plans, starts, heights, subjects, strict=True)
+    )  # fmt: skip
+    return ParsedRequest(
+        people=() if is_empty else people, config=config, frames=count, seed=asked.seed, motion=motion,
+        heading_rad=asked.heading_rad, as_recorded=asked.as_recorded, keep_adc=asked.keep_adc,
+        board=None if asked.board is None else find_board(asked.board, config, asked.seed),
+        radar_poses=tuple(asked.radar_poses),
     )  # fmt: skip
 
 
-def _asks_for_nobody(texts: Sequence[str], motion: MotionClip | None, *placing: Any) -> bool:
+def _asks_for_nobody(asked: Request) -> bool:
     """Whether an empty room is asked for. Raises InputError where somebody is to be in it all the same."""
-    if motion is not None or not any(says_nobody(one) for one in texts):
+    if asked.motion is not None or not any(says_nobody(one) for one in asked.sentences):
         return False
-    if len(texts) > 1:
+    if len(asked.sentences) > 1:
         raise InputError(f"{NOBODY!r} is an empty room; leave it out where others are in it, or give it alone")
-    if any(one is not None for one in placing):
+    if any(one is not None for one in (asked.at, asked.heading_rad, asked.path_m, asked.height_m, asked.subject)):
         raise InputError(
             f"{NOBODY!r} is an empty room: leave out place, heading, path, height and subject, or say what is done"
         )
     return True
 
 
-def _frames_asked_for(frames: int | None, seconds: float | None, config: RadarConfig) -> int | None:
-    """The number of frames where frames or seconds are given. Raises InputError for both, or outside the limits."""
+def _frames_asked_for(asked: Request, config: RadarConfig) -> int | None:
+    """The number of frames if frames or seconds are given. Raises InputError for both, or outside the limits."""
+    frames, seconds = asked.frames, asked.seconds
     if frames is not None and seconds is not None:
         raise InputError("frames and seconds both say how long it lasts; give one of them")
     if seconds is not None:
@@ -189,8 +182,8 @@ def _frames_asked_for(frames: int | None, seconds: float | None, config: RadarCo
         frames = max(1, math.ceil(seconds / config.frame_period_s - 1e-6))
         if frames > MAX_FRAMES:
             raise InputError(
-                f"{seconds:g} s are {frames} frames at {1 / config.frame_period_s:.3g} a second; at most {MAX_FRAMES}"
-                f" ({MAX_FRAMES * config.frame_period_s:.4g} s) are made"
+                f"{seconds:g} s are {frames} frames at {1 / config.frame_period_s:.3g} a second; at most"
+                f" {MAX_FRAMES} ({MAX_FRAMES * config.frame_period_s:.4g} s) are made"
             )
     if frames is not None and not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
@@ -255,8 +248,12 @@ def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
 
 def _most_frames(config: RadarConfig, has_adc: bool) -> int:
     """The most frames that limits and memory allow."""
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    return max(1, min(MAX_FRAMES, MAX_BYTES // (8 * numbers), int(MAX_SECONDS / config.frame_period_s)))
+    return max(1, min(MAX_FRAMES, MAX_BYTES // _frame_bytes(config, has_adc), int(MAX_SECONDS / config.frame_period_s)))
+
+
+def _frame_bytes(config: RadarConfig, has_adc: bool) -> int:
+    """Bytes of a frame of the largest array, complex64."""
+    return 8 * config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
 
 
 def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
@@ -264,12 +261,11 @@ def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
         raise InputError(
             f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
         )
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
-    most = MAX_BYTES // (8 * numbers)
-    if frames > most:
+    size = _frame_bytes(config, has_adc)
+    if frames > MAX_BYTES // size:
         raise InputError(
-            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
-            f" {most} are made at a time"
+            f"{frames} frames of radar {config.name!r} fill {frames * size / 1e9:.1f} GB of memory; at most"
+            f" {MAX_BYTES // size} are made at a time"
         )
 
 

@@ -21,37 +21,37 @@ from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
+from mmweaver.core.options import keywords_of
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
+from mmweaver.core.radar_pose import AT_CAMERA
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
+from mmweaver.formats.result_folder import META_VERSION, file_digest
 from mmweaver.formats.ti_calibration import read_ti_calibration
-from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal, with_propagation
+from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.multi_person import Place, compose_people
+from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
-from mmweaver.request import Request, parse_request
-from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
-from mmweaver.room_reader import RoomReader
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
-from mmweaver.streaming import (
+from mmweaver.weaver.generation import Generation, Room
+from mmweaver.weaver.parsed_request import ParsedRequest, parse
+from mmweaver.weaver.request import Request
+from mmweaver.weaver.room_reader import RoomReader
+from mmweaver.weaver.streaming import (
     CHUNK_FRAMES,
     StreamChunk,
     Streamer,
-    check_chunk_frames,
     check_streams,
-    point_detector,
     takes_argument,
 )
 
@@ -68,8 +68,7 @@ class Weaver(RoomReader):
     `calibration`: the channel errors that the radar's firmware compensates (default: those of its .cfg); ADC samples
     are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
     `mmweaver train`, or a Hub name, for the network, which then makes all signals;
-    `from_pretrained` is the short form. `bounces`: 2 (default), paths over body and room, too, or 1, those of first
-    order; `clutter`: "all" (default) or "resolved", that of photo and mesh alone. Raises InputError for unknown names.
+    `from_pretrained` is the short form. Raises InputError for unknown names.
     """
 
     def __init__(
@@ -82,8 +81,6 @@ class Weaver(RoomReader):
         firmware: FirmwareSettings | None = None,
         weights: str | Path | None = None,
         calibration: ChannelCalibration | None = None,
-        bounces: int | None = None,
-        clutter: str | None = None,
     ):
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
@@ -95,8 +92,6 @@ class Weaver(RoomReader):
         else:
             self.method_name = method if file is None else "weaver"
             self.method = METHODS[method]() if file is None else Learned(file)
-        if bounces is not None or clutter is not None:
-            self.method = with_propagation(self.method, bounces, clutter)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         is_named = not isinstance(radar, RadarConfig)
@@ -146,110 +141,85 @@ class Weaver(RoomReader):
         """A recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md."""
         return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
 
-    def request(self, text: str | Sequence[str] | None = None, **asked: Any) -> Request:
+    @keywords_of(Request, "text")
+    def request(self, text: str | Sequence[str] | None = None, **asked: Any) -> ParsedRequest:
         """A checked and parsed request, with the arguments of `generate`. Cheap: no room is needed.
 
-        Raises InputError for a request that cannot be met.
+        Raises:
+            InputError: for a request that cannot be met.
         """
-        return parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
+        return self.parsed(Request(text=text, **asked))
 
-    def generate(
-        self,
-        room: Room,
-        text: str | Sequence[str] | None = None,
-        *,
-        motion: MotionClip | None = None,
-        frames: int | None = None,
-        seconds: float | None = None,
-        fps: float | None = None,
-        seed: int = 0,
-        at: Place | Sequence[Place | None] | None = None,
-        heading_rad: float | None = None,
-        path_m: Sequence[Place] | None = None,
-        height_m: float | Sequence[float | None] | None = None,
-        subject: int | Sequence[int | None] | None = None,
-        as_recorded: bool = False,
-        keep_adc: bool = False,
-        board: str | Path | Board | None = None,
-        radar_poses: Sequence[RadarPose] = (),
-    ) -> Generation:
-        """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
+    def parsed(self, request: Request) -> ParsedRequest:
+        """The same of a record. Raises InputError for a request that cannot be met."""
+        return parse(request, self.radar, needs_adc=needs_adc(self.points))
 
-        "nobody" is a text, too, given alone: the room is empty, and there are no poses.
-
-        A `motion` comes from `read_motion` or a motion model; it is the first person's, and the first text only names
-        it. `heading_rad` (from +x towards +y) is where the first body faces first, `path_m` the corners (x, y) of its
-        walk; `as_recorded` takes a motion's positions as the radar's own. `height_m` is the body's height, for several
-        people a list; a recorded body is scaled to it. `subject` chooses the person by number (0 to 9999: skin, build,
-        habits, usual height), for several people a list; drawn by the seed where it is not given.
+    @keywords_of(Request, "text")
+    def generate(self, room: Room, text: str | Sequence[str] | None = None, **asked: Any) -> Generation:
+        """The signal of people doing in the room what the text says, or what a recorded motion shows.
 
         The sentence decides how long it takes (at least two seconds), and a recorded motion lasts as long as it is;
-        `frames` or `seconds` fix it: a sentence is then fitted, repeated or cut, which `meta` says.
-        `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
-        y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
-        half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory; the
-        cube is the same without. `board`, whose errors the signal has: "typical" (sampled by the
-        seed; the default, but with a background the one that recorded it), "typical:N", "ideal", a board.json or a
-        `Board` (docs/board.md); for another board the room is prepared anew. The same seed gives the same bits. Raises
-        InputError for a request that cannot be met.
+        `frames` or `seconds` fix it: a sentence is then fitted, repeated or cut, which `meta` says. People keep half a
+        metre apart. The same seed gives the same bits.
+
+        Args:
+            room: of `read_room`, `open_room` or `sample_room`; used as often as you like.
+            text: what the person does, or a list with a text for each person; "nobody" alone: the room is empty.
+            motion: a recorded motion of `read_motion` or a motion model for the first person, whose text names it.
+            frames, seconds: how many radar frames, or how long (default: as the sentence needs).
+            fps: frames per second (default: the radar's own, 10 for the awr1843).
+            seed: of everything that is sampled.
+            at: where the person starts, (x right, y away from the radar) in metres; chosen if not given.
+            heading_rad: where the first body faces first, from +x towards +y.
+            path_m: corners (x, y) of the first person's walk.
+            height_m: the body's height; a recorded body is scaled to it.
+            subject: the person by number, 0 to 9999: skin, build, habits, usual height; by default sampled by the seed.
+            as_recorded: a motion's positions are the radar's own.
+            keep_adc: also return raw samples, several times the cube's memory; the cube is the same without.
+            board: whose errors the signal has: "typical" (sampled by the seed; the default, but with a background the
+                one that recorded it), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
+            radar_poses: a `RadarPose` for each radar that records the scene (default: one at the camera).
+
+        Of several people `at`, `height_m` and `subject` are lists.
+
+        Raises:
+            InputError: for a request that cannot be met.
         """
-        request = self.request(
-            text, motion=motion, frames=frames, seconds=seconds, fps=fps, seed=seed, at=at,
-            heading_rad=heading_rad, path_m=path_m, height_m=height_m, subject=subject,
-            as_recorded=as_recorded, keep_adc=keep_adc, board=board, radar_poses=radar_poses,
-        )  # fmt: skip
-        return self.carry_out(request, room)
+        return self.carry_out(self.request(text, **asked), room)
 
     def stream(
-        self,
-        room: Room,
-        sentences: Iterable[str | None],
-        *,
-        seed: int = 0,
-        at: Place | None = None,
-        heading_rad: float | None = None,
-        height_m: float | None = None,
-        subject: int | None = None,
-        fps: float | None = None,
-        chunk_frames: int = CHUNK_FRAMES,
-        keep_adc: bool = False,
-        board: str | Path | Board | None = None,
+        self, room: Room, sentences: Iterable[str | None], *, chunk_frames: int = CHUNK_FRAMES, **asked: Any
     ) -> Iterator[StreamChunk]:
         """The signal of one person who does what one sentence after the other says, without a break between them.
 
-        `sentences` is any iterable, a live one too: it is asked for the next sentence when the last is done. None or
-        "" says that there is nothing new: one more chunk of the last activity, or of holding the posture. Each sentence
-        begins where the person is, in the posture that they are in, and takes as long as it needs; its last chunk may
-        have fewer than `chunk_frames` frames. A sentence that is not understood, or has no room, is skipped and said in
-        `StreamChunk.refused`; for the first it is an InputError.
+        Each sentence begins where the person is, in the posture that they are in, and takes as long as it needs; its
+        last chunk may have fewer than `chunk_frames` frames. A sentence that is not understood, or has no room, is
+        skipped and reported in `StreamChunk.refused`; for the first it is an InputError. The same seed and sentences
+        give the same bits, whatever `chunk_frames` is, unless sentences are None, each of which lasts a chunk. Memory
+        does not grow with the length of the stream.
 
-        The same seed and sentences give the same bits, whatever `chunk_frames` is, unless sentences are None, each of
-        which lasts a chunk. Other arguments as for `generate`. Memory does not grow with the length of the stream.
+        Args:
+            room: as for `generate`.
+            sentences: any iterable, a live one too: it is asked for the next sentence when the last is done. None or ""
+                says that there is nothing new: one more chunk of the last activity, or of holding the posture.
+            chunk_frames: radar frames of a chunk.
+            asked: `seed`, `at`, `heading_rad`, `height_m`, `subject`, `fps`, `keep_adc` and `board` as for `generate`.
+
+        Raises:
+            InputError: for a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
-        request = self.request(
-            "a person stands", frames=1, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
-            subject=subject, keep_adc=keep_adc, board=board,
-        )  # fmt: skip
+        request = self.request("a person stands", frames=1, **asked)
+        (person,) = request.people
         motion = ContinuousMotion(
-            room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m, seed=seed,
-            farthest_m=request.config.farthest_bin_m, start_m=request.people[0].start_m, heading_rad=heading_rad,
-            height_m=height_m, subject=subject,
+            room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m,
+            seed=request.seed, farthest_m=request.config.farthest_bin_m, start_m=person.start_m,
+            heading_rad=request.heading_rad, height_m=person.height_m, subject=person.subject,
         )  # fmt: skip
-        own, given = self.board_of(request, room)
-        meta = {
-            "seed": seed, "points": self.points, "weights": self.weights, "inputs": room.inputs, "board": own.meta(),
-        }  # fmt: skip
-        streamer = Streamer(
-            room=room, config=request.config, method=self.method, method_name=self.method_name,
-            detect_points=point_detector(self.points, self._firmware_of(own)), motion=motion, seed=seed,
-            chunk_frames=check_chunk_frames(chunk_frames), needs_adc=needs_adc(self.points), keep_adc=keep_adc,
-            meta=meta, board=given,
-        )  # fmt: skip
-        return streamer.chunks(sentences)
+        return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
     @single_precision()
-    def carry_out(self, request: Request, room: Room, people: tuple[Motion, ...] | None = None) -> Generation:
+    def carry_out(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...] | None = None) -> Generation:
         """What `generate` does with a request that is already parsed, or whose motions are composed already (`people`).
 
         Raises InputError where the room has no place.
@@ -265,7 +235,7 @@ class Weaver(RoomReader):
         results = [self._recorded(request, replace(room, scene=scene), people, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 
-    def _recorded(self, request: Request, room: Room, people: tuple[Motion, ...], stages: Stages) -> Generation:
+    def _recorded(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...], stages: Stages) -> Generation:
         """What one radar records; `room` is in its frame, the people in the camera's."""
         pose = room.scene.radar_pose
         motions = people_seen_from(tuple(person.pose for person in people), pose)
@@ -276,7 +246,7 @@ class Weaver(RoomReader):
             **given,
         )  # fmt: skip
         with stages("point cloud"):
-            points = detect(signal.cube, signal.adc, self.points, self._firmware_of(board))
+            points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
@@ -291,7 +261,7 @@ class Weaver(RoomReader):
             motions=motions, scene=room.scene, meta=meta, stages=stages, board=board,
         )  # fmt: skip
 
-    def board_of(self, request: Request, room: Room) -> tuple[Board, dict[str, Any]]:
+    def board_of(self, request: ParsedRequest, room: Room) -> tuple[Board, dict[str, Any]]:
         """The board of a signal, and the method's argument for it: none for an ideal one.
 
         What the radar's own .cfg compensates is no error of the signal. Raises InputError for a method that knows no
@@ -313,12 +283,12 @@ class Weaver(RoomReader):
             raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
         return IDEAL_BOARD, {}
 
-    def _firmware_of(self, board: Board) -> FirmwareSettings | None:
+    def firmware_of(self, board: Board) -> FirmwareSettings | None:
         """The settings of TI's point cloud, with the threshold of the board that was calibrated."""
         return None if self.firmware is None else self.firmware.with_threshold(board.cfar_threshold)
 
     def _meta(
-        self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
+        self, request: ParsedRequest, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
         signal: Signal, board: Board,
     ) -> dict[str, Any]:  # fmt: skip
         """What meta.json says of a sequence: all that is needed to make it again."""
@@ -327,25 +297,20 @@ class Weaver(RoomReader):
             "made_by": "mmweaver generate",
             "version": __version__,
             "text": request.text or people[0].plan.text,
-            "seed": request.seed, "frames": request.frames, "fps": 1 / request.config.frame_period_s, "at": request.at,
+            **request.meta(),
             "method": signal.method or self.method_name,
             "weights": self.weights,
             "board": board.meta(),
             "points": self.points,
-            "firmware": self._firmware_of(board) if self.points == "firmware" else None,
-            **radar_meta(request.config),
+            "firmware": self.firmware_of(board) if self.points == "firmware" else None,
             "inputs": room.inputs | _motion_input(request.motion),
-            "placed": {
-                "heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject,
-                "as_recorded": request.as_recorded,
-            },
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),
         }  # fmt: skip
 
 
-def compose_request(request: Request, scene: Scene) -> tuple[Motion, ...]:
+def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
     """The motion of each person, the first one's from the recording where there is one.
 
     Raises InputError where the room has no place for it.

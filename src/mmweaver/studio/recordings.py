@@ -1,4 +1,4 @@
-"""Recordings and results in folders: those offered on the command line, and those that a session brought."""
+"""Recordings and results in files and folders: those that the command line offers, and those that a session brought."""
 
 from pathlib import Path
 
@@ -8,9 +8,9 @@ from mmweaver.core.safe_files.regular_files import check_regular
 from mmweaver.formats.capture_std import is_capture
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.formats.radar_file import load_radar
+from mmweaver.formats.stored_result import read_result
+from mmweaver.formats.stream_folder import is_stream
 from mmweaver.recordings.processing import process_recording
-from mmweaver.stored_result import read_result
-from mmweaver.stream_folder import is_stream
 from mmweaver.studio.sessions import Result
 
 PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg
@@ -19,37 +19,16 @@ ALONE = (".dat", ".npy", ".npz")  # files that can be read without a .cfg
 NONE_FOUND = "holds no recording: no radar.npz, .bin with its .cfg, capture, stream or .dat"
 
 
-class OfferedRecordings:
-    """Folders and files that every session may watch and compare with, by name.
-
-    They are read when somebody asks for them. Raises InputError where one holds nothing that can be read.
-    """
-
-    def __init__(self, paths: list[Path]):
-        self._paths: dict[str, Path] = {}
-        for path in paths:
-            _check_offered(path)
-            name = path.resolve().name
-            while name in self._paths:
-                name += "-2"
-            self._paths[name] = path
-
-    @property
-    def names(self) -> list[str]:
-        """All names in the order of the command line."""
-        return list(self._paths)
-
-    def get(self, name: str) -> Result:
-        """A recording, read anew. Raises InputError where there is none of that name, or it cannot be read."""
-        if name not in self._paths:
-            raise InputError("this recording is not known here; choose another one")
-        found = read_recorded(self._paths[name])
-        if found is None:
-            raise InputError(f"{name} {NONE_FOUND}")
-        return found
+def read_offered(path: Path) -> Result:
+    """A recording, read anew. Raises InputError where there is none, or it cannot be read."""
+    found = read_recorded(path)
+    if found is None:
+        raise InputError(f"{path} {NONE_FOUND}")
+    return found
 
 
-def _check_offered(path: Path) -> None:
+def check_offered(path: Path) -> None:
+    """Raises InputError where a path holds nothing that can be read."""
     if path.is_dir():
         if not _is_result_or_capture(path) and not any(_samples_or_log(path)):
             raise InputError(f"{path} {NONE_FOUND}")

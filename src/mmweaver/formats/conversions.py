@@ -8,7 +8,7 @@ import numpy as np
 from mmweaver.core.optional_packages import need
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.result_folder import plain
+from mmweaver.formats.result_folder import plain
 
 if TYPE_CHECKING:
     from torch import Tensor

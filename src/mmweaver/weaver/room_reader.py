@@ -8,8 +8,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
-from mmweaver.generation import Room
-from mmweaver.result_folder import file_digest
+from mmweaver.formats.result_folder import file_digest
 from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
@@ -21,6 +20,7 @@ from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, refuse_unread, scan_kind
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES as MESH_SUFFIXES
+from mmweaver.weaver.generation import Room
 
 VIEWS_FILE = "views.json"
 
@@ -66,17 +66,17 @@ class RoomReader:
 
     def read_capture(
         self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None,
-        further: Sequence[int] | str = (), **seen: Any,
+        extra_views: Sequence[int] | str = (), **seen: Any,
     ) -> Room:  # fmt: skip
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
         Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a ROS bag.
 
-        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `further`: numbers of
-        further photos of a scan that show more of the room, or "auto". `seen`: `classes`, `segmenter` and `sam` as in
-        `read_room`.
+        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `extra_views`: numbers
+        of further photos of a scan that show more of the room, or "auto". `seen`: `classes`, `segmenter` and `sam` as
+        in `read_room`.
         """
-        if further and (scan_kind(Path(capture)) is None or rgb is not None):
+        if extra_views and (scan_kind(Path(capture)) is None or rgb is not None):
             raise InputError("only scans with poses are joined of several photos: Stray Scanner, Record3D, Polycam, "
                              "ScanNet, TUM RGB-D")  # fmt: skip
         stages = Stages(self._listener)
@@ -86,7 +86,7 @@ class RoomReader:
             if is_bag(Path(capture)) and rgb is None:
                 found = read_bag_photo(Path(capture), photo)
             elif scan_kind(Path(capture)) is not None and rgb is None:
-                found = read_scan_photo(Path(capture), photo, further)
+                found = read_scan_photo(Path(capture), photo, extra_views)
             else:
                 found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
             inputs = {"photo": photo, **{name: file_digest(path) for name, path in found.files.items()}}
@@ -116,24 +116,31 @@ class RoomReader:
             inputs |= {name: how[name] for name in settings if how.get(name) is not None}
         return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
 
-    def open_room(self, path: str | Path) -> Room:
-        """The room of whatever lies there: a folder with rgb.png and depth.png (and camera.json), views.json or a
-        folder with it, a scan or a capture folder (its first photo), a ROS bag (RealSense), or a mesh.
+    def open_room(self, path: str | Path, **how: Any) -> Room:
+        """The room of whatever lies at a path.
 
-        Raises InputError for anything else.
+        Args:
+            path: a folder with rgb.png and depth.png (and camera.json), views.json or a folder with it, a scan or a
+                capture folder, a ROS bag (RealSense), or a mesh.
+            how: what `read_mesh`, `read_views`, `read_capture` or `read_room` takes besides files of the folder.
+
+        Raises:
+            InputError: for anything else, and for a keyword that such a room has no use for.
         """
         place = Path(path)
-        if place.suffix.lower() in MESH_SUFFIXES:
-            return self.read_mesh(place)
-        for views in (place, place / VIEWS_FILE):
-            if views.name == VIEWS_FILE and views.is_file():
-                return self.read_views(views)
+        views = next((one for one in (place, place / VIEWS_FILE) if one.name == VIEWS_FILE and one.is_file()), None)
         is_capture = any(place.glob(f"*/{DEPTH}")) or (place / DEPTH).is_file()
+        if place.suffix.lower() in MESH_SUFFIXES:
+            return self.read_mesh(place, **_known(how, "a mesh", "eye", "look_deg", "unit", "up", "materials"))
+        if views is not None:
+            return self.read_views(views, **_known(how, "views.json", "segmenter"))
         if is_bag(place) or is_capture or scan_kind(place) is not None:
-            return self.read_capture(place)
+            known = _known(how, "a scan", "photo", "rgb", "extra_views", "classes", "segmenter", "sam")
+            return self.read_capture(place, **known)
         refuse_unread(place)
         files = RoomFiles.find(place)
-        return self.read_room(files.rgb, files.depth, files.camera)
+        known = _known(how, "a photo", "classes", "segmenter", "sam")
+        return self.read_room(files.rgb, files.depth, files.camera, **known)
 
     def sample_room(self) -> Room:
         """The bundled sample room."""
@@ -150,3 +157,10 @@ class RoomReader:
         with stages("reconstruct the room"):
             scene = reconstruct(photo, others, assumptions=assumptions)
         return Room(scene=scene, inputs=inputs, seconds=stages.seconds, views=tuple(others))
+
+
+def _known(how: dict[str, Any], what: str, *names: str) -> dict[str, Any]:
+    """Raises InputError for an option that a kind of room does not have."""
+    if unknown := [name for name in how if name not in names]:
+        raise InputError(f"{unknown[0].removesuffix('_deg')} says nothing of a room from {what}; leave it out")
+    return how

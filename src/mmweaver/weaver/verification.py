@@ -20,7 +20,7 @@ from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
 from mmweaver.datasets.dataset_plan import check_plan, command_of, room_name, shell_words
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
-from mmweaver.stream_folder import LIST, PARTS, is_stream, listed_parts
+from mmweaver.formats.stream_folder import LIST, PARTS, is_stream, listed_parts
 
 REQUEST = "request.toml"
 BATCH_LIST = "sequences.json"

@@ -15,8 +15,9 @@ from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, 
 from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_preview
+from mmweaver.figures.previews import PREVIEWS
+from mmweaver.formats.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import add_landmarks
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 
@@ -160,7 +161,7 @@ class Generation(ShownByFacts):
         `cube` has the dimensions frame_time (s), range (m), radial_velocity (m/s) and antenna, `joints`
         person, frame_time, joint and axis; columns of the point cloud have the dimension point.
         """
-        from mmweaver.conversions import to_dataset
+        from mmweaver.formats.conversions import to_dataset
 
         return to_dataset(self.cube, self.points, self.poses, self.adc, self.meta)
 
@@ -171,7 +172,7 @@ class Generation(ShownByFacts):
         `radial_velocity_mps`, `antenna_position_m`; `joints_m` (person, frame, 22, 3); `points` (point, 6): frame,
         x_m, y_m, z_m, radial_velocity_mps, snr_db; `adc` (frame, loop, tx, rx, sample) where there are samples.
         """
-        from mmweaver.conversions import to_tensors
+        from mmweaver.formats.conversions import to_tensors
 
         return to_tensors(self.cube, self.points, self.poses, self.adc)
 
@@ -227,7 +228,7 @@ class Generation(ShownByFacts):
             extra = {BOARD_FILE: self.board.to_json(), **(extra or {})}
         return save_results(
             out, self.figure_data, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order,
-            overwrite=overwrite, stages=self.stages, pictures=pictures, extra=extra,
+            overwrite=overwrite, stages=self.stages, pictures=PREVIEWS if pictures else None, extra=extra,
         )  # fmt: skip
 
     def _save_each(

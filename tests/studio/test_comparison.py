@@ -7,7 +7,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.studio import sessions
-from mmweaver.studio.compared import compared
+from mmweaver.studio.service import comparison
 from mmweaver.studio.sessions import Result, Session
 
 NOTHING = PointCloud(
@@ -24,7 +24,7 @@ def noise(seed: int, factor: float = 1.0) -> Result:
 
 
 def test_noise_ten_decibels_louder_is_said():
-    found = compared(noise(1), noise(2, 10**0.5))
+    found = comparison(noise(1), noise(2, 10**0.5))
     level = found["values"]["features"]["noise_level"]
     assert level["b"]["value"]["median"] - level["a"]["value"]["median"] == pytest.approx(10, abs=0.5)
     row = next(one for one in found["rows"] if "oise" in one["title"])
@@ -34,7 +34,7 @@ def test_noise_ten_decibels_louder_is_said():
 
 def test_points_alone_have_no_numbers():
     with pytest.raises(InputError, match="B is a point cloud alone"):
-        compared(noise(1), Result(cube=None, points=NOTHING, poses=(), meta={}))
+        comparison(noise(1), Result(cube=None, points=NOTHING, poses=(), meta={}))
 
 
 def test_what_is_compared_with_stays(monkeypatch: pytest.MonkeyPatch):

@@ -7,25 +7,28 @@ Reference: docs/decisions/streams.md.
 """
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.detection import detect
-from mmweaver.generation import Room
-from mmweaver.methods import Method, Signal
+from mmweaver.dsp.detection import detect, needs_adc
+from mmweaver.models.methods import Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
-from mmweaver.request import parsed_text
+from mmweaver.weaver.generation import Room
+from mmweaver.weaver.parsed_request import ParsedRequest, parsed_text
 
+if TYPE_CHECKING:
+    from mmweaver.weaver.front_door import Weaver
+
+SignalT = TypeVar("SignalT", "StreamChunk", Signal)
 BLOCK_FRAMES = 10
 CHUNK_FRAMES = 10
 _MARGIN_S = 0.05  # of the dense motion around a chunk
@@ -65,13 +68,9 @@ class StreamChunk(ShownByFacts):
 
     def first(self, count: int) -> "StreamChunk":
         """Its first frames; the dense motions stay whole."""
-        some = slice(0, count)
-        grid = replace(self.cube.grid, frame_time_s=self.cube.grid.frame_time_s[some])
         return replace(
-            self, cube=replace(self.cube, values=self.cube.values[some], grid=grid),
-            points=self.points.select(self.points.frame < count),
-            adc=None if self.adc is None else replace(self.adc, samples=self.adc.samples[some]),
-            poses=tuple(replace(pose, time_s=pose.time_s[some], joints_m=pose.joints_m[some]) for pose in self.poses),
+            frames_of(self, 0, count), points=self.points.select(self.points.frame < count),
+            poses=tuple(replace(one, time_s=one.time_s[:count], joints_m=one.joints_m[:count]) for one in self.poses),
         )  # fmt: skip
 
     def facts(self) -> dict[str, str]:
@@ -82,22 +81,22 @@ class StreamChunk(ShownByFacts):
         }  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
 class Streamer:
-    """What a stream is made with; `chunks` runs it."""
+    """What a stream is made with; `chunks` runs it. Raises InputError for what is no number of frames."""
 
-    room: Room
-    config: RadarConfig
-    method: Method
-    method_name: str
-    detect_points: Callable[[RadarCube, AdcCube | None], PointCloud]
-    motion: ContinuousMotion
-    seed: int
-    chunk_frames: int
-    needs_adc: bool  # for the point cloud
-    keep_adc: bool
-    meta: dict[str, Any]
-    board: dict[str, Any]  # the method's argument for it, if it is not ideal
+    def __init__(
+        self, weaver: "Weaver", room: Room, request: ParsedRequest, motion: ContinuousMotion, chunk_frames: int
+    ) -> None:
+        if not (isinstance(chunk_frames, int | np.integer) and 1 <= chunk_frames <= 1000):
+            raise InputError(f"chunk_frames must be 1 to 1000, not {chunk_frames}")
+        self.weaver, self.room, self.request, self.motion = weaver, room, request, motion
+        self.chunk_frames = int(chunk_frames)
+        own, self.board = weaver.board_of(request, room)  # the method's argument for it, if it is not ideal
+        self.firmware = weaver.firmware_of(own)
+        self.meta = {
+            "seed": request.seed, "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs,
+            "board": own.meta(),
+        }  # fmt: skip
 
     def chunks(self, sentences: Iterable[str | None]) -> Iterator[StreamChunk]:
         """Chunks for as long as sentences come. Raises InputError where the first sentence cannot be carried out."""
@@ -135,8 +134,8 @@ class Streamer:
             while sum(len(one.cube.values) for one in ready) < count:
                 ready.append(next(blocks))
             whole = ready[0] if len(ready) == 1 else _together(ready)
-            yield self._chunk(part, _some(whole, 0, count), first)
-            ready = [_some(whole, count, None)] if len(whole.cube.values) > count else []
+            yield self._chunk(part, frames_of(whole, 0, count), first)
+            ready = [frames_of(whole, count, None)] if len(whole.cube.values) > count else []
 
     def _blocks(self, part: MotionPart) -> Iterator[Signal]:
         for first in range(part.first_frame, part.end_frame, BLOCK_FRAMES):
@@ -144,27 +143,28 @@ class Streamer:
 
     @single_precision()
     def _block(self, part: MotionPart, first: int, count: int) -> Signal:
-        return self.method(
-            self.room.scene, (part.pose,), self.config, num_frames=count, seed=self.seed,
-            keep_adc=self.keep_adc or self.needs_adc, stages=Stages(), background=self.room.background,
+        request, weaver = self.request, self.weaver
+        return weaver.method(
+            self.room.scene, (part.pose,), request.config, num_frames=count, seed=request.seed,
+            keep_adc=request.keep_adc or needs_adc(weaver.points), stages=Stages(), background=self.room.background,
             first_frame=first, **self.board,
         )  # fmt: skip
 
     def _chunk(self, part: MotionPart, signal: Signal, first: int) -> StreamChunk:
         time_s = signal.cube.grid.frame_time_s
-        pose, period_s = part.pose, self.config.frame_period_s
+        pose, period_s = part.pose, self.request.config.frame_period_s
         shown = (pose.time_s > time_s[0] - _MARGIN_S) & (pose.time_s < time_s[-1] + period_s + _MARGIN_S)
         dense = replace(pose, time_s=pose.time_s[shown], joints_m=pose.joints_m[shown])
         motion = part.motion
         refused = part.refused if first == part.first_frame else ""
         notes = (*self.room.scene.assumptions, *motion.assumptions, *signal.assumptions)
         meta = {
-            **self.meta, "text": part.text, "refused": refused, "method": signal.method or self.method_name,
+            **self.meta, "text": part.text, "refused": refused, "method": signal.method or self.weaver.method_name,
             "plan": motion.plan, "clauses": motion.clauses, "assumed": list(dict.fromkeys(notes)),
         }  # fmt: skip
         return StreamChunk(
-            cube=signal.cube, points=self.detect_points(signal.cube, signal.adc),
-            adc=signal.adc if self.keep_adc else None, poses=(resample(pose, time_s),), motions=(dense,),
+            cube=signal.cube, points=detect(signal.cube, signal.adc, self.weaver.points, self.firmware),
+            adc=signal.adc if self.request.keep_adc else None, poses=(resample(pose, time_s),), motions=(dense,),
             first_frame=first, text=part.text, refused=refused, meta=meta,
         )  # fmt: skip
 
@@ -185,21 +185,9 @@ def takes_argument(method: Method, name: str) -> bool:
     return name in parameters or any(one.kind is one.VAR_KEYWORD for one in parameters.values())
 
 
-def check_chunk_frames(chunk_frames: int) -> int:
-    """Raises InputError for what is no number of frames."""
-    if not (isinstance(chunk_frames, int | np.integer) and 1 <= chunk_frames <= 1000):
-        raise InputError(f"chunk_frames must be 1 to 1000, not {chunk_frames}")
-    return int(chunk_frames)
-
-
-def point_detector(points: str, firmware: Any) -> Callable[[RadarCube, AdcCube | None], PointCloud]:
-    """The detector of a weaver as a function of cube and samples."""
-    return lambda cube, adc: detect(cube, adc, points, firmware)
-
-
-def _some(signal: Signal, begin: int, end: int | None) -> Signal:
-    some = slice(begin, end)
-    cube = signal.cube
+def frames_of(signal: SignalT, begin: int, end: int | None) -> SignalT:
+    """A signal, or a chunk, with the cube and the samples of some of its frames."""
+    some, cube = slice(begin, end), signal.cube
     grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[some])
     adc = None if signal.adc is None else replace(signal.adc, samples=signal.adc.samples[some])
     return replace(signal, cube=replace(cube, values=cube.values[some], grid=grid), adc=adc)

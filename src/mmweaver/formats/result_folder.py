@@ -3,9 +3,9 @@
 import dataclasses
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from mmweaver.core.checksums import SUMS_FILE, sha256_of_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.stages import Stages
-from mmweaver.figures.animation import draw_animation
-from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_preview
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
+
+if TYPE_CHECKING:
+    from mmweaver.figures.figure_data import FigureData
 
 META_VERSION = 1
 BOARD_FILE = "board.json"
@@ -43,20 +43,20 @@ FILES = {
 
 def save_results(
     out: str | Path,
-    view: FigureData,
+    view: "FigureData",
     meta: dict[str, Any],
     *,
     adc: AdcCube | None = None,
     iq_order: str | None = None,
     overwrite: bool = False,
     stages: Stages | None = None,
-    pictures: bool = True,
+    pictures: "Mapping[str, Callable[[FigureData, Path], object]] | None" = None,
     extra: dict[str, str] | None = None,
     more: Callable[[Path], object] | None = None,
 ) -> dict[str, Any]:
     """Writes all files into the folder `out`, or none; returns the content of meta.json.
 
-    Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
+    `pictures`: what draws each, by file name. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
     `iq_order` says (default: as the radar does). `extra`: further text files, by name. `more` writes further files that
     FILES knows into a folder. Raises InputError where `out` holds other files and `overwrite` is not set, or where it
     cannot be written.
@@ -85,11 +85,9 @@ def save_results(
                 (stage / name).write_text(text, encoding="utf-8")
             if more is not None:
                 more(stage)
-        if pictures:
-            with stages("draw preview.png"):
-                draw_preview(view, stage / "preview.png")
-            with stages("draw preview.gif"):
-                draw_animation(view, stage / "preview.gif")
+        for name, draw in (pictures or {}).items():
+            with stages(f"draw {name}"):
+                draw(view, stage / name)
         names = {file.name for file in stage.iterdir()} | {"meta.json", SUMS_FILE}
         meta["files"] = {name: text for name, text in FILES.items() if name in names}
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}

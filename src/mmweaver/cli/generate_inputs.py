@@ -1,0 +1,58 @@
+"""What `mmweaver generate` makes its sequences with: the radar, the generator, the room."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mmweaver.cli.generate import Options
+    from mmweaver.core.radar_config import RadarConfig
+    from mmweaver.core.records import RadarCube
+    from mmweaver.weaver.front_door import Weaver
+    from mmweaver.weaver.generation import Room
+
+DEFAULT_RADAR = "awr1843"
+
+
+def read_background(asked: "Options") -> "RadarCube | None":
+    """The background recording, if one is given. Raises InputError for what is no recording."""
+    if asked.background is None:
+        return None
+    from mmweaver.recordings.read_recording import read_recording
+
+    return read_recording(asked.background, range_m=asked.range_m, range_bins=asked.range_bins).cube
+
+
+def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
+    """The radar: that of the background recording where no other is given."""
+    from dataclasses import replace
+
+    from mmweaver.core.range_window import chosen_range
+    from mmweaver.formats.radar_file import load_radar
+
+    is_own = background is not None and asked.radar is None
+    config = (
+        background.config if background is not None and is_own else load_radar(asked.radar_name(DEFAULT_RADAR) or "")
+    )
+    config = chosen_range(config, asked.range_m, asked.range_bins)
+    return config if asked.tx_order is None else replace(config, tx_order=asked.tx_order)
+
+
+def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str], object] | None" = None) -> "Weaver":
+    """The generator that the options ask for."""
+    from mmweaver.formats.radar_file import load_firmware
+    from mmweaver.formats.ti_calibration import read_ti_calibration
+    from mmweaver.weaver.front_door import Weaver
+
+    name = asked.radar_name(DEFAULT_RADAR) or ""
+    return Weaver(
+        method=asked.method, radar=radar, listener=listener, points=asked.points, weights=asked.weights,
+        firmware=load_firmware(asked.radar or DEFAULT_RADAR) if asked.points == "firmware" else None,
+        calibration=read_ti_calibration(name),
+    )  # fmt: skip
+
+
+def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") -> "Room":
+    """The room with its landmarks and its background recording."""
+    room = asked.read_room(weaver)
+    room = room.with_landmarks(*asked.landmark) if asked.landmark else room
+    return room if background is None else room.with_background(background, came_from=asked.background)

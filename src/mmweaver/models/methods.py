@@ -1,0 +1,245 @@
+"""Methods from a scene and the people moving in it to the radar signal, by name."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar, runtime_checkable
+
+import numpy as np
+
+from mmweaver.core.assumptions import UsualAssumption
+from mmweaver.core.board import Board
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.registry import Registry
+from mmweaver.core.stages import Stages
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.paths.board_effects import built_radar
+from mmweaver.paths.diffuse_clutter import seed_of_room
+from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
+from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+
+if TYPE_CHECKING:
+    from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
+    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.paths.background import BackgroundRecording
+
+
+# what meta.json says
+LEARNED_NOTE = UsualAssumption(
+    "echoes of first order were written by a network trained on simulated rooms, others by physics; phases of surfaces"
+    " and skin are sampled"
+)
+ELSEWHERE = (
+    "the network was trained with radars at the camera; elsewhere it was measured to be about as near as physics"
+    " (docs/several_radars.md)"
+)
+FIRST_ORDER_ALONE = "one bounce off rough surfaces and off the body: no paths over both"
+RECORDED = "static clutter is that of the background recording"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signal:
+    """What a method gives: the cube, the ADC samples if asked for, and what it assumed.
+
+    `method` is the name for meta.json where it is not that by which the method was chosen.
+    """
+
+    cube: RadarCube
+    adc: AdcCube | None
+    assumptions: tuple[str, ...]
+    method: str | None = None
+
+
+@runtime_checkable
+class Method(Protocol):
+    """A scene and the people moving in it -> the signal.
+
+    ADC samples are given where `keep_adc` asks for them. `background` is a recording by the same radar in the same
+    place with nobody present, whose static clutter replaces that of the scene. `board`, whose errors the signal has, is
+    only given where it has some; a method without this argument makes signals of an ideal one. `first_frame` is only
+    given for part of a longer signal (`Weaver.stream`): the number of the part's first frame, in the time of the poses,
+    which may begin earlier. Noise must then be another in each part, and phases the same; a method without this
+    argument makes no streams.
+    """
+
+    def __call__(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+        first_frame: int = 0,
+    ) -> Signal: ...
+
+
+class Physics:
+    """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
+
+    def __init__(self, propagation: Propagation = ALL_PATHS) -> None:
+        self.propagation = propagation
+        self._prepared = _Latest(self._prepare)
+        # rays are the same for every board with the same places of antennas, and boards differ by seed
+        self._traced = _Latest(
+            lambda scene, config, background, board: RayTracedRoom(scene, config, 0, self.propagation)
+        )
+
+    def __call__(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+        first_frame: int = 0,
+    ) -> Signal:
+        with stages("prepare the room"):
+            simulator = self._prepared.get(scene, config, background, board)
+        grid = CubeGrid.of(config, num_frames, first_frame)
+        values = np.empty(grid.shape, np.complex64)
+        samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
+        scale, done = math.nan, 0
+        with stages("simulate"):
+            for chunk in simulator.chunks(poses, num_frames=num_frames, seed=seed, first_frame=first_frame):
+                part = slice(done, done + len(chunk.samples))
+                values[part] = radar_cube(chunk).values
+                if keep_adc:
+                    samples[part] = chunk.samples
+                scale, done = chunk.scale, part.stop
+        several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
+        return Signal(
+            cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
+            adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
+            assumptions=(*ASSUMPTIONS, *_of_order(self.propagation), *several, *_of_background(simulator.background)),
+        )
+
+    def _prepare(
+        self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
+    ) -> Simulator:
+        room = self._traced.get(scene, _with_antennas_of(board, config), None, None)
+        return Simulator(
+            scene, config, micro_seed=seed_of_room(scene), background=background, board=board,
+            propagation=self.propagation, room=room,
+        )  # fmt: skip
+
+
+def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
+    return num_frames, config.num_loops, config.num_slots, config.num_rx, config.num_samples
+
+
+class Learned:
+    """The network's paths, rendered. The room is encoded once and kept for the next call.
+
+    `weights` is a file that `mmweaver train` wrote; without one, those that come with mmweaver. Raises InputError for
+    files that are no such weights.
+    """
+
+    def __init__(self, weights: Path | None = None, propagation: Propagation = ALL_PATHS) -> None:
+        self.weights, self.propagation = weights, propagation
+        self._encoded = _Latest(self._encode)
+        # what the network is given of a room is the same for every board with the same places of antennas
+        self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, propagation))
+
+    def __call__(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+        first_frame: int = 0,
+    ) -> Signal:
+        from mmweaver.models.frame_motion import FrameMotion
+
+        with stages("encode the room"):
+            room = self._encoded.get(scene, config, background, board)
+        with stages("weave the signal"):
+            motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
+            cube, adc = room.signal(
+                motions, seed=scene.radar_pose.noise_seed(seed), keep_adc=keep_adc, first_frame=first_frame,
+                num_frames=num_frames,
+            )  # fmt: skip
+        several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
+        moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
+        order = _of_order(self.propagation)
+        assumptions = (LEARNED_NOTE, *order, *moved, *several, *_of_background(room.background))
+        return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
+
+    def _encode(
+        self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
+    ) -> "LearnedRoom":
+        from mmweaver.models.neural_path_solver import LearnedRoom
+
+        given = self._given.get(scene, _with_antennas_of(board, config), None, None)
+        return LearnedRoom(self._network, given, config, background=background, board=board)
+
+    @cached_property
+    def _network(self) -> "ScattererNetwork":
+        from mmweaver.models.weights import load_weights, shipped_weights
+
+        return load_weights(self.weights or shipped_weights())[0]
+
+
+def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
+    from mmweaver.models.scene_tensors import GivenRoom
+
+    return GivenRoom.of(scene, config, propagation=propagation)
+
+
+def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
+    """The radar with antennas where a board has them: all that rays depend on."""
+    return config if board is None else replace(built_radar(board, config), noise_figure_db=config.noise_figure_db)
+
+
+RoomT = TypeVar("RoomT")
+
+
+class _Latest(Generic[RoomT]):
+    """The latest room that was prepared, for as long as scene, radar, background and board stay the same."""
+
+    def __init__(self, prepare: Callable[[Scene, RadarConfig, RadarCube | None, Board | None], RoomT]):
+        self._prepare = prepare
+        # compared by identity, so scene and background must live on; one tuple, for threads may share a method
+        self._kept: tuple[Scene, RadarCube | None, tuple[RadarConfig, str | None], RoomT] | None = None
+
+    def get(self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None) -> RoomT:
+        key = config, None if board is None else board.digest
+        kept = self._kept
+        if kept is None or kept[0] is not scene or kept[1] is not background or kept[2] != key:
+            kept = scene, background, key, self._prepare(scene, config, background, board)
+            self._kept = kept
+        return kept[3]
+
+
+def _of_order(propagation: Propagation) -> tuple[str, ...]:
+    return (FIRST_ORDER_ALONE,) if propagation.bounces == 1 else ()
+
+
+def _of_background(background: "BackgroundRecording | None") -> tuple[str, ...]:
+    return () if background is None else (RECORDED, *background.assumptions)
+
+
+DEFAULT_METHOD = "auto"  # the network
+METHODS: Registry[Callable[[], Method]] = Registry(
+    "method",
+    [(DEFAULT_METHOD, Learned), ("weaver", Learned), ("physics", Physics)],
+    entry_points="mmweaver.models.methods",
+)

@@ -1,0 +1,82 @@
+"""The page's form: JSON, checked, and the same request as a command line and as Python."""
+
+import shlex
+from dataclasses import fields, replace
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.options import command_words, option, option_name, options, options_of, read_value
+from mmweaver.weaver.request import Request
+
+MAX_TEXT = 500
+MAX_PATH = 200
+DEFAULT_BOARD = "typical:0"  # one board for all seeds, so that what is prepared for the room stays valid
+_OF_REQUEST = ("text", "seed", "at", "path")
+
+
+@options
+class Form(Request):
+    """A request with what it is made with: names, or ids of what the session brought."""
+
+    room: str = option("the room", default="")
+    radar: str = option("the radar", default="awr1843")
+    board_name: str = option("the board", default=DEFAULT_BOARD, name="board")
+    method: str = option("the method", default="auto")
+    recogniser: str | None = option("whose labels Live shows")
+    motion_id: str | None = option("a motion that the session brought", name="motion")
+
+    @classmethod
+    def of(cls, body: Any) -> "Form":
+        """Checks the JSON. Raises InputError with what is wrong."""
+        if not isinstance(body, dict):
+            raise InputError("a request is a JSON object with room and text")
+        own = vars(cls)["__annotations__"]
+        known = {option_name(one): one for one in options_of(cls) if one.name in own or option_name(one) in _OF_REQUEST}
+        given = {name: body[name] for name in known if body.get(name) not in (None, "")}
+        asked = cls(**{known[name].name: read_value(known[name], value) for name, value in given.items()})
+        if not asked.text or any(len(one) > MAX_TEXT for one in asked.text):
+            raise InputError(f"text is a sentence of at most {MAX_TEXT} characters, or a list with one for each person")
+        if not 0 <= asked.seed < 2**31:
+            raise InputError("the seed must be a whole number from 0 to 2147483647")
+        if asked.path_m is not None and not 2 <= len(asked.path_m) <= MAX_PATH:
+            raise InputError(f"a path is a list of 2 to {MAX_PATH} places")
+        return asked
+
+    @property
+    def request(self) -> Request:
+        """The request alone, of one person or of several, the first of whom starts at the place."""
+        text, places = list(self.text or ()), list(self.at or ())[:1]
+        is_one = len(text) == 1
+        at: Any = places + [None] * (len(text) - 1) if places else None
+        return Request(
+            text=text[0] if is_one else text, at=at[0] if at and is_one else at, path_m=self.path_m, seed=self.seed
+        )
+
+    def command(
+        self, room_options: list[str], *, radar: str | None = None, board: str | None = None, motion: str | None = None
+    ) -> str:
+        """The same as a command line; `radar`, `board` and `motion` name the files that the session brought."""
+        words = ["mmweaver", "generate", *room_options, *command_words(replace(self.request, text=self.text))]
+        words += [] if motion is None else ["--motion", motion]
+        words += ["--radar", radar or self.radar, "--board", board or self.board_name, "--method", self.method]
+        return shlex.join([*words, "--out", "result"])
+
+    def python(
+        self, room_call: str, *, radar: str | None = None, board: str | None = None, motion: str | None = None
+    ) -> str:
+        """The same as Python; `radar`, `board` and `motion` name the files that the session brought."""
+        request = replace(self.request, board=board or self.board_name)
+        given = {one.name: getattr(request, one.name) for one in fields(Request)}
+        arguments = "".join(
+            f", {one.name}={given[one.name]!r}" for one in fields(Request)
+            if one.name != "text" and given[one.name] != one.default
+        )  # fmt: skip
+        if motion is not None:
+            arguments += f", motion=weaver.read_motion({motion!r})"
+        return (
+            "from mmweaver import Weaver\n\n"
+            f"weaver = Weaver(method={self.method!r}, radar={(radar or self.radar)!r})\n"
+            f"room = weaver.{room_call}\n"
+            f"result = weaver.generate(room, {request.text!r}{arguments})\n"
+            'result.save("result")\n'
+        )

@@ -1,0 +1,285 @@
+"""What the studio does for a session: rooms, sequences, comparisons and exports. Blocking; the server queues it."""
+
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from threading import Lock
+from typing import Any, Generic, TypeVar
+
+from mmweaver.comparison.compare_signals import FeatureComparison, compare_signals
+from mmweaver.comparison.signal_evidence import ComparedSignal
+from mmweaver.core.board import Board
+from mmweaver.core.boards import find_board
+from mmweaver.core.errors import InputError, NoRoomError
+from mmweaver.core.presets import PRESETS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.models.methods import METHODS
+from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.register_activity import load_activity_plugins
+from mmweaver.playback.room import room_playback
+from mmweaver.playback.wire import pack
+from mmweaver.recognition.recogniser import Recogniser, load_recogniser
+from mmweaver.scene.photo_files import RoomFiles
+from mmweaver.studio.live import Live
+from mmweaver.studio.recordings import check_offered, read_offered
+from mmweaver.studio.schemas import Form
+from mmweaver.studio.sessions import BroughtRoom, Result, Session, Sessions
+from mmweaver.weaver.front_door import Weaver
+from mmweaver.weaver.generation import Generation, Room
+
+DEMO = "demo"
+FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
+BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
+_MAX_WEAVERS = 12  # each keeps the room that it worked in last
+
+T = TypeVar("T")
+
+
+class Offered(Generic[T]):
+    """What every session may use, by the names of its folders; each is read when somebody asks for it."""
+
+    def __init__(self, what: str, places: list[Path], read: Callable[[Path], T], taken: tuple[str, ...] = ()):
+        self._what, self._read, self._places = what, read, dict[str, Path]()
+        for place in places:
+            name = place.resolve().name
+            while name in self._places or name in taken:
+                name += "-2"
+            self._places[name] = place
+
+    @property
+    def names(self) -> list[str]:
+        """All names in the order of the command line."""
+        return list(self._places)
+
+    def get(self, name: str) -> T:
+        """One by its name. Raises InputError where there is none, or it cannot be read."""
+        if name not in self._places:
+            raise InputError(f"this {self._what} is not known here; choose another one")
+        return self._read(self._places[name])
+
+
+class RecoverableError(InputError):
+    """A request that cannot be met; `recovery_options` are buttons of the page: a label, and what they change."""
+
+    def __init__(self, message: str, recovery_options: list[dict[str, Any]]):
+        super().__init__(message)
+        self.recovery_options = recovery_options
+
+
+@contextmanager
+def recovery_options(asked: Form) -> Iterator[None]:
+    """Turns what would help a motion that finds no room, or does not fit its path, into what the page can change."""
+    try:
+        yield
+    except NoRoomError as error:
+        ways = [
+            {"label": f"with {radar}", "change": {"radar": radar}} for radar in error.recovery_options.get("radars", ())
+        ]
+        if asked.room != DEMO:
+            ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
+        raise RecoverableError(str(error), ways) from None
+    except InputError as error:
+        if asked.path_m is None:
+            raise
+        raise RecoverableError(str(error), [{"label": "without the path", "change": {"path": None}}]) from None
+
+
+class Service:
+    """Rooms and weights shared by all sessions."""
+
+    def __init__(
+        self,
+        rooms: list[Path] | None = None,
+        recordings: list[Path] | None = None,
+        recognisers: list[Path] | None = None,
+    ):
+        files = Offered("room", rooms or [], RoomFiles.find, (DEMO,))
+        self._rooms = {name: _offered_room(files.get(name)) for name in files.names}
+        self._rooms[DEMO] = BroughtRoom(label="bundled sample", options=("--demo",), call="sample_room()", read=_sample)
+        for path in recordings or ():
+            check_offered(path)
+        self.recordings = Offered("recording", recordings or [], read_offered)
+        self.recognisers: Offered[Recogniser] = Offered("recogniser", recognisers or [], load_recogniser)
+        for name in self.recognisers.names:
+            self.recognisers.get(name)  # one that is damaged is refused at once
+        self.sessions = Sessions()
+        self._weavers: OrderedDict[tuple[str, str, str, str], Weaver] = OrderedDict()
+        self._lock = Lock()
+
+    def warm_up(self) -> None:
+        """Reads the first room and makes one sequence in it, so that the first visitor does not wait."""
+        name = next(iter(self._rooms))
+        asked = Form(room=name, text=[FIRST_TEXT])
+        weaver = self._weaver(asked, PRESETS[asked.radar])
+        weaver.generate(self._rooms[name].room, FIRST_TEXT, board=asked.board_name)
+
+    def offer(self) -> dict[str, Any]:
+        """What the page's controls hold."""
+        load_activity_plugins()
+        return {
+            "rooms": [(name, room.label) for name, room in self._rooms.items()],
+            "radars": [(name, name) for name in PRESETS],
+            "methods": [("auto", "network"), ("physics", "physics (ray-traced)")],
+            "boards": [(name, name.replace(":", " ")) for name in BOARDS],
+            "recognisers": self.recognisers.names,
+            "recordings": self.recordings.names,
+            "sentences": [activity.example for activity in BY_KEY.values()],
+            "text": FIRST_TEXT,
+        }
+
+    def room_of(self, session: Session, name: str) -> BroughtRoom:
+        """A room by its id: the session's own or an offered one. Raises InputError."""
+        known = self._rooms | session.rooms
+        if name not in known:
+            raise InputError("this room is not known here; choose another one")
+        return known[name]
+
+    @staticmethod
+    def radar_of(session: Session, name: str) -> RadarConfig:
+        """A radar by its id: the session's own or a preset. Raises InputError."""
+        if name in session.radars:
+            return session.radars[name][1]
+        if name not in PRESETS:
+            raise InputError(f"unknown radar {name!r}; choose one of the list")
+        return PRESETS[name]
+
+    @staticmethod
+    def board_of(session: Session, name: str, radar: RadarConfig) -> Board:
+        """A board by its id: the session's own, "ideal" or "typical:N". Raises InputError."""
+        if name in session.boards:
+            return find_board(session.boards[name][1], radar)
+        if name != "ideal" and not name.startswith("typical:"):
+            raise InputError(f"unknown board {name!r}; choose one of the list")
+        return find_board(name, radar)
+
+    @staticmethod
+    def motion_of(session: Session, name: str | None) -> MotionClip | None:
+        """A motion that the session brought; None for None. Raises InputError."""
+        if name is not None and name not in session.motions:
+            raise InputError("this motion is no longer kept; open its file again")
+        return None if name is None else session.motions[name][1]
+
+    def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
+        """A room, packed for the page, with the places where this radar sees a person."""
+        label = session.rooms[name].label if name in session.rooms else name
+        range_m = self.radar_of(session, radar).range_m
+        shown = room_playback(self.room_of(session, name).room.scene, label, (float(range_m[0]), float(range_m[-1])))
+        return pack(shown.header, shown.arrays)
+
+    def generate(self, session: Session, body: Any) -> bytes:
+        """A sequence, kept in the session and packed for the page. Raises InputError."""
+        asked = Form.of(body)
+        room, radar = self.room_of(session, asked.room), self.radar_of(session, asked.radar)
+        weaver, board = self._weaver(asked, radar), self.board_of(session, asked.board_name, radar)
+        request = replace(asked.request, motion=self.motion_of(session, asked.motion_id), board=board)
+
+        def made(keep_adc: bool = False) -> Generation:
+            return weaver.carry_out(weaver.parsed(replace(request, keep_adc=keep_adc)), room.room)
+
+        with recovery_options(asked):
+            generation = made()
+        names = {
+            "radar": session.radars.get(asked.radar, (asked.radar,))[0],
+            "board": session.boards.get(asked.board_name, (asked.board_name,))[0],
+            "motion": None if asked.motion_id is None else session.motions[asked.motion_id][0],
+        }
+        repeated = {"command": asked.command([*room.options], **names), "python": asked.python(room.call, **names)}
+        result = Result(
+            cube=generation.cube, points=generation.points, poses=generation.poses, meta=generation.meta,
+            generation=generation, with_samples=lambda: made(keep_adc=True),
+        )  # fmt: skip
+        return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
+
+    def recording(self, session: Session, name: str) -> bytes:
+        """An offered recording, kept in the session and packed for the page. Raises InputError."""
+        return self._kept(session, self.recordings.get(name), {})
+
+    @staticmethod
+    def compare(session: Session, a: str, b: str) -> dict[str, Any]:
+        """The numbers of two kept results. Raises InputError."""
+        return comparison(session.result(a), session.result(b))
+
+    def result_bytes(self, session: Session, name: str) -> bytes:
+        """A kept result, packed for the page."""
+        return self._packed(session.result(name), name, {})
+
+    def live(self, session: Session, body: Any) -> Live:
+        """A stream in one of the session's rooms. Raises InputError."""
+        asked = Form.of(body)
+        radar = self.radar_of(session, asked.radar)
+        board = self.board_of(session, asked.board_name, radar)
+        room = self.room_of(session, asked.room).room
+        if asked.recogniser is None:
+            return Live(self._weaver(asked, radar), room, asked, board)
+        recogniser = self.recognisers.get(asked.recogniser)  # learned from the points of a board's firmware
+        return Live(Weaver(method=asked.method, radar=radar, points="firmware"), room, asked, board, recogniser)
+
+    def end(self, session: Session) -> None:
+        """Ends a session; what was prepared for its rooms, radars and boards goes with it."""
+        own = {*session.rooms, *session.radars, *session.boards}
+        with self._lock:
+            for key in [key for key in self._weavers if own & set(key)]:
+                del self._weavers[key]
+        self.sessions.end(session)
+
+    def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
+        name = session.add(result)
+        self.sessions.keep_within_memory()
+        return self._packed(result, name, more)
+
+    @staticmethod
+    def _packed(result: Result, name: str, more: dict[str, Any]) -> bytes:
+        shown = result.playback()
+        return pack({**shown.header, **more, "result": name}, shown.arrays)
+
+    def _weaver(self, asked: Form, radar: RadarConfig) -> Weaver:
+        """A generator for this room, radar, board and method; kept, because it holds what it prepared for the room."""
+        if asked.method not in METHODS:
+            raise InputError(f"unknown method {asked.method!r}; choose one of the list")
+        key = (asked.room, asked.radar, asked.board_name, asked.method)
+        with self._lock:
+            if key not in self._weavers:
+                self._weavers[key] = Weaver(method=asked.method, radar=radar)
+                while len(self._weavers) > _MAX_WEAVERS:
+                    self._weavers.popitem(last=False)
+            self._weavers.move_to_end(key)
+            return self._weavers[key]
+
+
+def _sample() -> Room:
+    return Weaver(method="physics").sample_room()
+
+
+def _offered_room(files: RoomFiles) -> BroughtRoom:
+    def read() -> Room:
+        return Weaver(method="physics").read_room(files.rgb, files.depth, files.camera)
+
+    return BroughtRoom(label=files.rgb.parent.resolve().name, options=tuple(files.options), call=files.call, read=read)
+
+
+def comparison(a: Result, b: Result) -> dict[str, Any]:
+    """The numbers of `mmweaver compare`: text and values, and a row for each feature that both sides show.
+
+    Raises InputError where one of them is a point cloud alone, or the two have no common ranges.
+    """
+    found = compare_signals([_signal(a, "A")], [_signal(b, "B")], names=(f"A: {a.title}", f"B: {b.title}"))
+    return {"text": found.text(), "values": found.to_values(), "rows": [_row(one) for one in found.ranked]}
+
+
+def _signal(result: Result, name: str) -> ComparedSignal:
+    if result.cube is None:
+        raise InputError(f"{name} is a point cloud alone; numbers need a signal on both sides")
+    adc = None if result.generation is None else result.generation.adc
+    return ComparedSignal(name=result.title, cube=result.cube, adc=adc, points=result.points, meta=result.meta)
+
+
+def _row(one: FeatureComparison) -> dict[str, Any]:
+    assert one.difference is not None
+    unit = one.feature.unit
+    return {
+        "title": one.feature.title, "effect": one.difference.effect_size, "a": one.a.text(unit), "b": one.b.text(unit),
+        "gives_away": one.gives_away,
+    }  # fmt: skip

@@ -1,0 +1,106 @@
+"""What is asked of `Weaver.generate`, as one typed record.
+
+It is the source of the keywords of `Weaver.generate`, of the options of `mmweaver generate`, of request.toml and of the
+studio's form. Nothing heavy is imported here.
+"""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmweaver.core.options import Place, Source, option, options
+
+if TYPE_CHECKING:
+    from mmweaver.core.board import Board
+    from mmweaver.core.radar_pose import RadarPose
+    from mmweaver.motion.mocap.clip import MotionClip
+
+
+class Heading(float):
+    """A direction in radians from +x towards +y, on the command line in degrees: 0 towards the radar."""
+
+    @classmethod
+    def of_words(cls, word: str) -> "Heading":
+        """'90' -> 0.0, to the picture's right."""
+        degrees = float(word)
+        if not math.isfinite(degrees):
+            raise ValueError
+        return cls(math.radians(degrees) - math.pi / 2)
+
+    @property
+    def words(self) -> str:
+        """As `of_words` reads it."""
+        return repr(round(math.degrees(self) + 90, 10))
+
+
+def radar_pose(word: str) -> "RadarPose":
+    """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees. Raises InputError."""
+    from mmweaver.core.radar_pose import RadarPose
+
+    return RadarPose.of_words(word)
+
+
+@options
+class Request:
+    """What is asked for. A value is that of the only person, or a list with one for each person (None: chosen)."""
+
+    text: str | Sequence[str] | None = option(
+        "what the person does; once more for each further person; 'nobody' is an empty room",
+        "TEXT", kind=str, many=True, group="motion",
+    )  # fmt: skip
+    motion: "MotionClip | None" = None  # the first person's recorded motion, which its text then only names
+    at: Place | Sequence[Place | None] | None = option(
+        "where the person starts: metres right of and ahead of the radar (default: chosen); of several people the first"
+        " --at is the first one's",
+        "X,Y", kind=Place, many=True,
+    )  # fmt: skip
+    heading_rad: float | None = option(
+        "the direction that the person faces first: 0 towards the radar, 90 to the picture's right, 180 away (default:"
+        " as the text says, else by seed)",
+        "DEG", kind=Heading, name="heading", rare=True,
+    )  # fmt: skip
+    path_m: Sequence[Place] | None = option(
+        "where the person walks: corners in metres right of and ahead of the radar",
+        "'X,Y X,Y ...'", kind=tuple[Place, ...], name="path", rare=True,
+    )  # fmt: skip
+    height_m: float | Sequence[float | None] | None = option(
+        "the person's height (default: as the text says, else by seed, or recorded); of several people once for each",
+        "M", kind=float, many=True, name="height",
+    )  # fmt: skip
+    subject: int | Sequence[int | None] | None = option(
+        "the person, 0 to 9999: skin, build, habits and usual height (default: by seed); of several people once for"
+        " each",
+        "N", kind=int, many=True,
+    )  # fmt: skip
+    as_recorded: bool = option(
+        "the motion's positions are the radar's own (x right, y away, z up); nothing is moved or checked",
+        default=False, rare=True,
+    )  # fmt: skip
+    frames: int | None = option(
+        "number of frames (default: as long as the sentence needs, at least 2 s, or as the recorded motion lasts)", "N",
+        group="radar",
+    )  # fmt: skip
+    seconds: float | None = option("instead of --frames: how long", "S")
+    fps: float | None = option("frames per second (default: the radar's own, 10 for awr1843)", "N")
+    radar_poses: "Sequence[RadarPose]" = option(
+        "where the radar stands, in metres right of, ahead of and above the camera, and degrees to which it is turned"
+        " to the right, up, and about its boresight (default: at the camera, level); once more for each further radar,"
+        " which records the same scene at the same time (docs/several_radars.md)",
+        "X,Y,Z,YAW,PITCH[,ROLL]", default=(), kind=radar_pose, many=True, name="radar-pose",
+    )  # fmt: skip
+    board: "str | Path | Board | None" = option(
+        "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
+        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
+        " default is the recording's own",
+        "typical|ideal|FILE", kind=Source,
+    )  # fmt: skip
+    seed: int = option("the same seed gives the same bits", "N", default=0, group="output")
+    keep_adc: bool = option(
+        "also write adc_data.bin, raw samples as a DCA1000 does", default=False, name="bin"
+    )  # fmt: skip
+
+    @property
+    def sentences(self) -> list[str]:
+        """One text for each person; that of a recorded motion may be empty."""
+        return [self.text or ""] if self.text is None or isinstance(self.text, str) else list(self.text)
