@@ -93,7 +93,13 @@ class RadarCube(ShownByFacts):
 
     def select(self, frames: slice | np.ndarray) -> "RadarCube":
         """Some of the frames, by slice or index."""
-        grid = CubeGrid(**{**vars(self.grid), "frame_time_s": self.grid.frame_time_s[frames]})
+        grid = CubeGrid(
+            frame_time_s=self.grid.frame_time_s[frames],
+            range_m=self.grid.range_m,
+            radial_velocity_mps=self.grid.radial_velocity_mps,
+            antenna_position_m=self.grid.antenna_position_m,
+            wavelength_m=self.grid.wavelength_m,
+        )
         return RadarCube(values=self.values[frames], grid=grid, config=self.config, scale=self.scale)
 
     def facts(self) -> dict[str, str]:
