@@ -4,13 +4,14 @@ import argparse
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+import torch
 from PIL import Image
 
 from mmweaver.cli import generate, train
@@ -125,22 +126,25 @@ def _results(folder: Path) -> Path:
     return folder
 
 
-def load_model(source: str, *_: Any) -> tuple[Any, Any, Any]:
-    """As `load_pretrained`: "blind" sees nothing, "broken" refuses every picture."""
+@dataclass
+class DepthProcessor:
+    """The processor of a depth model: "blind" sees nothing, "broken" refuses every picture."""
 
-    def processor(**_: Any) -> dict[str, Any]:
-        if source == "broken":
+    source: str
+
+    def __call__(self, **_: Any) -> dict[str, Any]:
+        if self.source == "broken":
             raise ValueError("a picture of another size was expected")
         return {}
 
-    def estimated(_: Any, target_sizes: list[tuple[int, int]]) -> list[dict[str, Any]]:
-        import torch
+    def post_process_depth_estimation(self, _: Any, target_sizes: list[tuple[int, int]]) -> list[dict[str, Any]]:
+        return [{"predicted_depth": torch.full(target_sizes[0], 0.0 if self.source == "blind" else 2.0)}]
 
-        return [{"predicted_depth": torch.full(target_sizes[0], 0.0 if source == "blind" else 2.0)}]
 
-    processor.post_process_depth_estimation = estimated
+def load_model(source: str, *_: Any) -> tuple[Any, Any, Any]:
+    """As `load_pretrained`."""
     kind = PROMPTED if source == "prompted" else "depth_anything"
-    return SimpleNamespace(model_type=kind), processor, lambda **_: None
+    return SimpleNamespace(model_type=kind), DepthProcessor(source), lambda **_: None
 
 
 @contextmanager
