@@ -5,7 +5,6 @@ import json
 import os
 import sys
 from collections.abc import Sequence
-from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -76,7 +75,6 @@ def build_parser() -> "Parser":
     return _parser_and_commands()[0]
 
 
-@cache
 def _parser_and_commands() -> "tuple[Parser, dict[str, Parser]]":
     from mmweaver.cli.arguments import Parser, add_general_options
 
