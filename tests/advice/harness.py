@@ -7,7 +7,7 @@ a placeholder (DIR, KIND=X,Y) gets a value here.
 import io
 import re
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from tests.advice.templates import Template, templates
 Words = list[str]
 # Command and message -> the commands that the message advises, in order; one that a command prints itself is a function
 # of what that has printed.
-Try = Callable[[Words, str], list[Words | Callable[[str], Words]]]
+Step = Words | Callable[[str], Words]
+Try = Callable[[Words, str], Sequence[Step]]
 _VALUE = r"[ =](?P<value>'[^']*'|[^\s;)]+)"
 _PLACEHOLDER = re.compile(r"[A-Z][A-Z_]*")
 _PLAIN_WORD = re.compile(r"[a-z]+")
@@ -48,7 +49,7 @@ class Row:
 def add(option: str, value: str | None = None, *more: str) -> Try:
     """The option is added, or its value replaced, as the message prints it; `value` fills a placeholder or nothing."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         own = printed_value(option, message)
         given = own if value is None else value
         if own is not None and value is not None:
@@ -74,7 +75,7 @@ def printed_value(option: str, message: str) -> str | None:
 def flag(option: str) -> Try:
     """An option without a value is added."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         printed_value(option, message)
         return [[*words, option]]
 
@@ -84,7 +85,7 @@ def flag(option: str) -> Try:
 def drop(*options: str) -> Try:
     """What the message advises to leave out is left out."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert re.search("leave|without|omit|is no option|is for|are for|is of|not both|once", message)
         for option in options:
             assert option in message, f"{option} is not advised to be left out: {message}"
@@ -97,9 +98,10 @@ def drop(*options: str) -> Try:
 def both(one: Try, other: Try) -> Try:
     """One advice and another at once."""
 
-    def changed(words: Words, message: str) -> list[Words]:
-        (words,) = one(words, message)
-        return other(words, message)
+    def changed(words: Words, message: str) -> list[Step]:
+        (step,) = one(words, message)
+        assert not callable(step)
+        return [*other(step, message)]
 
     return changed
 
@@ -107,7 +109,7 @@ def both(one: Try, other: Try) -> Try:
 def instead(said: str, old: str, new: str = "") -> Try:
     """Consecutive words of the command are replaced by others or none, as the message advises by words of its own."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert said in message, f"{said!r} is not advised: {message}"
         replaced, theirs = shlex.split(old), shlex.split(new)
         at = max(k for k in range(len(words)) if words[k : k + len(replaced)] == replaced)
@@ -119,7 +121,7 @@ def instead(said: str, old: str, new: str = "") -> Try:
 def plus(said: str, *more: str) -> Try:
     """Words are added to the command, as the message advises by words of its own."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert said in message, f"{said!r} is not advised: {message}"
         return [[*words, *more]]
 
@@ -132,7 +134,7 @@ def first(command: str, then: Try | None = None, **placeholders: str) -> Try:
     What it prints goes into the file behind a ">", if one is printed.
     """
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         found = re.search(re.escape(command) + r"[^;,()`']*", message)
         assert found, f"{command!r} is not advised: {message}"
         printed = [placeholders.get(word, word) for word in shlex.split(found[0].strip().rstrip("."))]
@@ -145,7 +147,7 @@ def first(command: str, then: Try | None = None, **placeholders: str) -> Try:
 def printed(start: str, *then: Words) -> Try:
     """The command that the message (or what was run last) prints after these words, then others."""
 
-    def changed(words: Words, message: str) -> list[Words | Callable[[str], Words]]:
+    def changed(words: Words, message: str) -> list[Step]:
         return [_command(start, message), *(then or [words])]
 
     return changed
@@ -160,7 +162,7 @@ def _command(start: str, text: str) -> Words:
 def repaired(said: str) -> Try:
     """`mmweaver verify` is run as the message prints it, then what that prints, then the refused command again."""
 
-    def changed(words: Words, message: str) -> list[Words | Callable[[str], Words]]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert said in message, f"{said!r} is not advised: {message}"
         found = re.search(r"mmweaver (verify) ([^\s;()]+)", message)
         return [list(found.groups()) if found else [], _made_anew, words]
@@ -175,10 +177,10 @@ def _made_anew(printed: str) -> Words:
 def edit(said: str, edited: Callable[[], object], then: Try | None = None) -> Try:
     """Files are changed as the message advises by these words; then the refused command runs again, or changed."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert said in message, f"{said!r} is not advised: {message}"
         edited()
-        return then(words, message) if then else [words]
+        return [*then(words, message)] if then else [words]
 
     return changed
 

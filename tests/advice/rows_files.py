@@ -13,6 +13,8 @@ from mmweaver.core.records import AdcCube
 from mmweaver.formats.dca1000 import upright, write_bin
 from mmweaver.formats.radar_options import RadarOptions
 from tests.advice.harness import Row, Try, Words, add, drop, edit, first, flag, instead, plus
+from mmweaver.formats.radar_options import RadarOptions, with_options
+from tests.advice.harness import Row, Step, Try, Words, add, drop, edit, first, flag, instead, plus
 from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
 from tests.formats.test_peer_arrays import hupr_array, simulated_frame
 from tests.recordings.test_plausibility import RADAR, room
@@ -94,7 +96,7 @@ IN_FRONT = "generate --demo --frames 1 --no-pictures --out made --text 'a person
 def generated(said: str, *more: str, then: Try) -> Try:
     """A result is generated with these options, as the message advises, and taken in place of the refused one."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         for option in more:
             assert option in message or option == "hupr", f"{option} is not advised: {message}"
         return [[*shlex.split(IN_FRONT), *more], *then(words, message)]

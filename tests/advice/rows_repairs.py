@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from mmweaver.cli.main import main
-from tests.advice.harness import Row, Try, Words, edit, instead, printed, repaired
+from tests.advice.harness import Row, Step, Try, Words, edit, instead, printed, repaired
 
 ONE = "generate --demo --text 'a person waves' --frames 1 --no-pictures --quiet"
 BATCH = "generate --demo --texts texts.txt --frames 1 --no-pictures --quiet --out out"
@@ -16,7 +16,7 @@ VIEW = "view out -o page.html --no-browser"
 def made_again(command: str) -> Try:
     """The command that made it, which the message names in words, and `verify` again."""
 
-    def changed(words: Words, message: str) -> list[Words]:
+    def changed(words: Words, message: str) -> list[Step]:
         assert re.search("as it was made|the command that (made|wrote) .*--overwrite", message), message
         return [shlex.split(command), words]
 

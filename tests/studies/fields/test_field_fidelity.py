@@ -14,6 +14,7 @@ from studies.paper.single_signal import PAPER
 from studies.scores.scorecard import METRICS
 
 
+@pytest.mark.slow  # a whole study
 def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch):
     signal = simulated("walking", is_alone=True, num_frames=2)
     monkeypatch.setattr(field_fidelity, "SIGNALS", {"walking_alone": lambda data: signal})

@@ -37,6 +37,7 @@ def material(tiny_geometry: Path) -> AblationMaterial:
     return AblationMaterial.of(tiny_geometry, 1, 1)
 
 
+@pytest.mark.slow  # a training; network_of and its parts are tested below
 def test_a_variant_is_trained_and_goes_on_as_it_was(material: AblationMaterial, tmp_path: Path):
     variant = AblationVariant(terms_without=("_person",), without=("steps",))
     one, again = (trained(variant, material, tmp_path, RECIPE) for _ in range(2))

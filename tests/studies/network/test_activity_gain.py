@@ -81,6 +81,7 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
     assert gain == pytest.approx(float(found["true_room"][0, 0] - found[ALONE][0, 0]))
 
 
+@pytest.mark.slow  # signals of a study
 def test_a_room_has_the_board_of_its_data_set_and_generated_signals_another(data: Path):
     (ideal,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
     assert ideal.own_board.is_ideal

@@ -3,12 +3,14 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from mmweaver.scene.sample_photo import SAMPLE_FOLDER
 from studies.network.learned_rooms_picture import METHODS, draw_rooms, views_of
 
 
+@pytest.mark.slow  # a picture of a study
 def test_the_same_motion_by_both_methods(tmp_path: Path):
     views = views_of(SAMPLE_FOLDER, frames=16)
     first, second = (views[name] for name in METHODS)

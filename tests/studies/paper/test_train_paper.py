@@ -53,6 +53,7 @@ def test_weights_are_read_again_and_their_page_gives_the_baseline(
     assert list((tmp_path / "pictures").glob("*.png"))
 
 
+@pytest.mark.slow  # a training
 def test_weights_of_another_recipe_are_refused(
     tiny_geometry: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

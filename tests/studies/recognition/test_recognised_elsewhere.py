@@ -29,6 +29,7 @@ def test_strangers_differ_in_what_nobody_knows():
     assert (strangers.task.activities, strangers.task.radar) == (task.activities, task.radar)
 
 
+@pytest.mark.slow  # a whole study
 def test_rows_say_what_is_noticed_of_each_condition(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     def drawn(recipe: SequenceRecipe, each: int, folder: Path):
         folder.mkdir(exist_ok=True)
