@@ -12,7 +12,7 @@ from torch import Tensor
 from mmweaver.dsp.point_response import PointResponse
 from mmweaver.fields.beams import beams_of
 from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.fitting import Fit, FitRecipe
+from mmweaver.fields.scatterers.fitting import FitRecipe, ScattererFit
 from mmweaver.fields.scatterers.layers import Layers, values_of_point
 
 Array = np.ndarray
@@ -28,7 +28,7 @@ class BudgetedRecipe(FitRecipe):
     num_values: int | None = None
 
 
-class BudgetedFit(Fit):
+class BudgetedFit(ScattererFit):
     """A fit whose `active_beams` (range, beam) of the static layer are not zero; None = all."""
 
     def __init__(self, target: Tensor, fit_window: FitWindow, recipe: BudgetedRecipe):

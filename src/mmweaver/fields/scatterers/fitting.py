@@ -56,10 +56,10 @@ def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
         recipe: budget and effort.
     """
     with torch.no_grad():
-        return Fit(target, fit_window, recipe).run()
+        return ScattererFit(target, fit_window, recipe).run()
 
 
-class Fit:
+class ScattererFit:
     """State of one fit; invariants: `received` = target / calibration - static, `residual` = received - points."""
 
     def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
