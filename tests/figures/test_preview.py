@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -99,7 +100,8 @@ def test_a_page_has_its_panels_and_no_label_is_cut_off_or_over_another(
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     boxes = []
-    for axes in (one for whole in figure.axes for one in (whole, *whole.child_axes)):
+    every: list[Any] = [one for whole in figure.axes for one in (whole, *whole.child_axes)]
+    for axes in every:
         titled = [text for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
         for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *titled):
             if text.get_text():
