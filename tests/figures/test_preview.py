@@ -63,6 +63,7 @@ WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "P
     ("kind", "panels"),
     [
         ("walk", WALK),
+        ("two people", ("The room, and the people at several times", *WALK)),
         ("breathing", ("Range over time, change over frames", "Displacement", "Doppler over all frames")),
         ("one frame", ("Range profile", "Doppler profile", "Azimuth profile")),
         ("narrow in elevation", ("Range-elevation",)),
@@ -77,7 +78,8 @@ def test_a_page_has_its_panels_and_no_label_is_cut_off_or_over_another(
     from matplotlib.text import Text
 
     views = {
-        "walk": lambda: view, "breathing": lambda: breathing_view(view), "one frame": lambda: noise_view(FAR, 1),
+        "walk": lambda: view, "two people": lambda: replace(view, poses=view.poses * 2, motions=view.motions * 2),
+        "breathing": lambda: breathing_view(view), "one frame": lambda: noise_view(FAR, 1),
         "narrow in elevation": lambda: noise_view(SMALL["iwr6843aop"], 3),
         "a row of antennas": lambda: noise_view(SMALL["xwr1642boost"], 2), "no row": lambda: noise_view(BGT60, 3),
     }  # fmt: skip
