@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -62,6 +63,7 @@ WALK = ("Range over time", "Micro-Doppler", "Range-Doppler", "Range profile", "P
     ("kind", "panels"),
     [
         ("walk", WALK),
+        ("two people", ("The room, and the people at several times", *WALK)),
         ("breathing", ("Range over time, change over frames", "Displacement", "Doppler over all frames")),
         ("one frame", ("Range profile", "Doppler profile", "Azimuth profile")),
         ("narrow in elevation", ("Range-elevation",)),
@@ -76,7 +78,8 @@ def test_a_page_has_its_panels_and_no_label_is_cut_off_or_over_another(
     from matplotlib.text import Text
 
     views = {
-        "walk": lambda: view, "breathing": lambda: breathing_view(view), "one frame": lambda: noise_view(FAR, 1),
+        "walk": lambda: view, "two people": lambda: replace(view, poses=view.poses * 2, motions=view.motions * 2),
+        "breathing": lambda: breathing_view(view), "one frame": lambda: noise_view(FAR, 1),
         "narrow in elevation": lambda: noise_view(SMALL["iwr6843aop"], 3),
         "a row of antennas": lambda: noise_view(SMALL["xwr1642boost"], 2), "no row": lambda: noise_view(BGT60, 3),
     }  # fmt: skip
@@ -99,7 +102,8 @@ def test_a_page_has_its_panels_and_no_label_is_cut_off_or_over_another(
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     boxes = []
-    for axes in (one for whole in figure.axes for one in (whole, *whole.child_axes)):
+    every: list[Any] = [one for whole in figure.axes for one in (whole, *whole.child_axes)]
+    for axes in every:
         titled = [text for text in axes.findobj(Text) if text.get_text() == axes.get_title(loc="left")]
         for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label, *titled):
             if text.get_text():

@@ -328,7 +328,9 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     for index, person in enumerate(people):
         shown = evenly_spaced(len(person.time_s), SHOWN_POSES if len(people) == 1 else SHOWN_POSES_OF_MANY)
         for body, share in zip(bodies_of(person, shown), np.linspace(0, 1, max(len(shown), 2)), strict=False):
-            own = np.array(to_rgb(person_colour(index, len(people)))) * (0.5 + 0.5 * share)  # brighter with time
+            own = [
+                part * (0.5 + 0.5 * share) for part in to_rgb(person_colour(index, len(people)))
+            ]  # brighter with time
             bodies.append((body, times(share)[:3] if len(people) == 1 else own))
     height, width = aligned.photo.rgb.shape[:2]
     size = (max(round(height * PHOTO_WIDTH_PX / width), 1), PHOTO_WIDTH_PX)
