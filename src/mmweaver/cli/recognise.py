@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from mmweaver.cli.arguments import check_mode
 from mmweaver.cli.option_groups import Printed
@@ -36,21 +36,22 @@ class Options(Printed):
     place: Path = option(
         "train: the task; else the trained folder", "TASK.toml|MODEL", default=MISSING, positional=True
     )
-    out: Path = option(
+    out: Any = option(
         "train: folder of the recogniser; the same command resumes it; score: draw the largest confusions, recorded"
         " windows that are mistaken, next to generated ones",
-        "DIR|PNG",
+        "DIR|PNG", kind=Path,
     )  # fmt: skip
     sequences: int | None = option(
         "people that perform each activity (default 40, of gestures that are done once 100; 8 are a first look)", "N"
     )
     seed: int = option("of people, rooms and trees", "N", default=0)
-    recordings: Path = option(
+    recordings: Any = option(
         "labelled recordings, a folder per activity: that train along, or that are scored",
         "DIR",
         group="train and score",
+        kind=Path,
     )
-    points: Path = option("a recording, or - for a pipe", "FILE|-", group="run")
+    points: Any = option("a recording, or - for a pipe", "FILE|-", group="run", kind=Path)
 
 
 def run(asked: Options) -> int:
