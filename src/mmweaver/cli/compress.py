@@ -40,7 +40,7 @@ class Options(Written, Samples, Ranges):
         " array, or a capture folder of mmwave-capture-std",
         "FILE|DIR", default=MISSING, positional=True,
     )  # fmt: skip
-    out: Path = option("the .mmw or .mmwl file to write", "FILE", short="-o")
+    out: Any = option("the .mmw or .mmwl file to write", "FILE", short="-o", kind=Path)
     bytes: int | None = option(
         "size of the file at most; less where the cube is exact in fewer", "N", group="size and quality"
     )

@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from mmweaver.cli.arguments import check_mode
 from mmweaver.cli.option_groups import Printed
@@ -41,12 +41,13 @@ class Options(Printed):
         "people that perform each activity (default 40, of gestures that are done once 100; 8 are a first look)", "N"
     )
     seed: int = option("of people, rooms and trees", "N", default=0)
-    recordings: Path = option(
+    recordings: Any = option(
         "labelled recordings, a folder per activity: that train along, or that are scored",
         "DIR",
         group="train and score",
+        kind=Path,
     )
-    points: Path = option("a recording, or - for a pipe", "FILE|-", group="run")
+    points: Any = option("a recording, or - for a pipe", "FILE|-", group="run", kind=Path)
 
 
 def run(asked: Options) -> int:

@@ -48,18 +48,18 @@ class Options(Printed):
         "what is trained: the network; a recogniser of the activities of the data; or poses from points",
         default=MISSING, positional=True,
     )  # fmt: skip
-    task: Path = option("of recipe pose: docs/pose.md", "TASK.toml", positional=True)
-    data: Path = option(
-        "a data set of mmweaver dataset; for recipe activity also a labelled set of your own room", "DIR"
+    task: Any = option("of recipe pose: docs/pose.md", "TASK.toml", positional=True, kind=Path)
+    data: Any = option(
+        "a data set of mmweaver dataset; for recipe activity also a labelled set of your own room", "DIR", kind=Path
     )
     out: Path = option("folder for checkpoint, log and weights", "DIR", default=MISSING, is_setting=False)
     start: Source | None = option(
         "weights of the same recipe to start from (default: random)", "FILE|DIR|HUB", name="weights"
     )
-    recordings: list[Path] = option(
+    recordings: Any = option(
         "folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the joints"
         " are known, else only the static room is tuned; the last one is held out for validation",
-        "DIR", nargs="+", group="your own recordings instead of --data (needs --weights)",
+        "DIR", nargs="+", group="your own recordings instead of --data (needs --weights)", kind=Path, many=True,
     )  # fmt: skip
     rgb: Path | None = option("photo of the room, where the folders hold none", "PNG")
     depth: Path | None = option("its depth", "FILE")
