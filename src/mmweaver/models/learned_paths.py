@@ -48,10 +48,17 @@ ADC_FRAMES_AT_ONCE = 20
 class LearnedRoom:
     """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
 
-    The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `room` is a
-    scene, or one made ready for this radar with its antennas where the board has them. `background`: a recording of the
-    empty room by this radar, from which static clutter is then taken. Raises InputError for one of another
-    radar.
+    Args:
+        network: Moved to `device`; phases are sampled and paths rendered on the CPU.
+        room: A scene, or one made ready for this radar with its antennas where the board has them.
+        config: The radar.
+        room_seed: Of the phases of surfaces and of clutter.
+        device: Where the network runs.
+        background: A recording of the empty room by this radar, whose static clutter is used.
+        board: The board whose errors the signal has; default: an ideal one.
+
+    Raises:
+        InputError: For a background recording of another radar.
     """
 
     def __init__(
