@@ -23,8 +23,8 @@ from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 from mmweaver.paths.unresolved_clutter import seed_of_room
 
 if TYPE_CHECKING:
+    from mmweaver.models.given_room import GivenRoom
     from mmweaver.models.learned_paths import LearnedRoom, ScattererNetwork
-    from mmweaver.models.scene_tensors import GivenRoom
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -219,7 +219,7 @@ class Learned:
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
-    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.models.given_room import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
 

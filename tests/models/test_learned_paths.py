@@ -11,10 +11,10 @@ from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_paths import LearnedRoom
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.models.scene_tensors import GivenRoom
 from mmweaver.paths.adc_synthesis import phasor
 from mmweaver.paths.body_model import body_of
 from mmweaver.paths.mean_echoes import MeanEchoes
