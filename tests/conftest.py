@@ -67,7 +67,7 @@ def real_data() -> Path:
 def blank_training_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Trainings write blank pictures: a sheet of matplotlib costs a second at every validation.
 
-    What is drawn is tested in test_validation_sheet.py and test_confusion_sheet.py; by night tests/cli/test_train.py
+    What is drawn is tested in test_validation_sheet.py; by night tests/cli/test_train.py
     draws it in a whole run.
     """
     for module, name in (

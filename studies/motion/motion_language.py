@@ -11,6 +11,7 @@ from torch import Tensor
 from mmweaver.core.seeding import stream
 from mmweaver.motion.motiongpt.language_model import build_t5
 from mmweaver.training.resuming import Resumable
+from studies.motion.motion_tokenizer import REPORT_EVERY
 
 if TYPE_CHECKING:
     from transformers import T5ForConditionalGeneration
@@ -54,7 +55,8 @@ def train_language(
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimiser.step()
         schedule.step()
-        work.report(loss=float(loss.detach()))
+        if work.done % REPORT_EVERY == 0:
+            work.history.append({"step": work.done, "loss": float(loss.detach())})
     return model.eval()
 
 

@@ -16,6 +16,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.motiongpt.tokenizer import Codebook, MotionTokenizer, TokenizerConfig
 from mmweaver.training.resuming import Resumable
 
+REPORT_EVERY = 50  # steps
 JOINTS = slice(4, 67)
 
 
@@ -68,7 +69,8 @@ def train_tokenizer(
         optimiser.step()
         schedule.step()
         means.follow(flat.detach(), codes, step)
-        work.report(loss=float(loss.detach()), codes_used=means.used())
+        if work.done % REPORT_EVERY == 0:
+            work.history.append({"step": work.done, "loss": float(loss.detach()), "codes_used": means.used()})
     return model.eval()
 
 

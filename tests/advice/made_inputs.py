@@ -15,7 +15,7 @@ import torch
 from PIL import Image
 
 from mmweaver.cli import generate, train
-from mmweaver.cli.main import _parser_and_commands, main
+from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
@@ -154,7 +154,6 @@ def signals_made_once(*, reads_photo: bool = False) -> Iterator[None]:
     Motions are composed. `reads_photo`: the photo that is named is read, though not reconstructed.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mmweaver.cli.main._parser_and_commands", _parsers)  # they take as long as many a refusal
         if reads_photo:
             patch.setattr("mmweaver.scene.photo.estimated_depth.load_pretrained", load_model)
             patch.setattr("mmweaver.scene.read_photo.refined_by_sam", lambda mask, *_: mask)
@@ -168,7 +167,6 @@ def signals_made_once(*, reads_photo: bool = False) -> Iterator[None]:
         _made.pop("other room", None)
 
 
-_parsers = cache(_parser_and_commands)
 _made: dict[Any, Any] = {}
 _RADARS = (("hupr", 0), ("hupr", 2))  # whose signals matter
 _carry_out = Weaver.carry_out

@@ -12,8 +12,6 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.formats.dca1000 import upright, write_bin
 from mmweaver.formats.radar_options import RadarOptions
-from tests.advice.harness import Row, Try, Words, add, drop, edit, first, flag, instead, plus
-from mmweaver.formats.radar_options import RadarOptions, with_options
 from tests.advice.harness import Row, Step, Try, Words, add, drop, edit, first, flag, instead, plus
 from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
 from tests.formats.test_peer_arrays import hupr_array, simulated_frame

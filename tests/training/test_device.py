@@ -1,10 +1,10 @@
-"""Alone, one of several, and batches of all shapes on a device."""
+"""Precision of products, and batches of all shapes on a device."""
 
 from dataclasses import dataclass
 
 import pytest
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from mmweaver.training.device import ComputeDevice, moved
 
@@ -14,18 +14,6 @@ class Nested:
     values: Tensor
     inner: tuple[Tensor, ...]
     name: str
-
-
-def test_a_single_process_averages_nothing():
-    place, module = ComputeDevice(), nn.Linear(2, 2)
-    assert place.is_first
-    assert place.joined(module) is module
-    assert torch.equal(place.mean(torch.tensor([3.0])), torch.tensor([3.0]))
-    place.wait()
-
-
-def test_only_the_first_writes():
-    assert not ComputeDevice(share=(1, 2)).is_first
 
 
 @pytest.mark.parametrize(("precision", "dtype"), [("float32", torch.float32), ("bf16", torch.bfloat16)])

@@ -1,4 +1,4 @@
-"""The sheet: ground truth and network side by side; equal maps look equal."""
+"""Pictures of a training: ground truth and network side by side, and confusion matrices."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.mean_power import PowerMaps
-from mmweaver.training.validation_sheet import differences_db, draw_sheet
+from mmweaver.training.validation_sheet import confusion, differences_db, draw_confusion, draw_sheet
 
 
 def maps(sequences: int, seed: int = 0) -> PowerMaps:
@@ -33,3 +33,19 @@ def test_ten_times_the_power_is_ten_decibels():
     fainter = PowerMaps(**{name: value / 10 for name, value in vars(truth).items()})
     assert differences_db(truth, truth) == {"range_doppler": 0, "range_azimuth": 0}
     assert differences_db(truth, fainter)["range_doppler"] == pytest.approx(10, abs=0.2)
+
+
+def test_each_row_is_normalised_by_its_class():
+    true, answers = np.array([0, 0, 0, 2]), np.array([0, 0, 1, 2])
+    share = confusion(true, answers, 3)
+    assert np.allclose(share, [[2 / 3, 1 / 3, 0], [0, 0, 0], [0, 0, 1]])
+
+
+def test_the_picture_is_darker_on_the_diagonal():
+    names = ("walking", "waving")
+    right = draw_confusion(np.array([0, 1]), np.array([0, 1]), names)
+    wrong = draw_confusion(np.array([0, 1]), np.array([1, 0]), names)
+    assert right.dtype == np.uint8
+    assert right.shape == wrong.shape
+    assert right.shape[2] == 3
+    assert not np.array_equal(right, wrong)

@@ -37,11 +37,22 @@ def generate_dataset(
     listener: Callable[[RoomReport], object] | None = None,
     repair: bool = False,
 ) -> list[RoomReport]:
-    """Generates the missing rooms and returns a report of each; may be killed and called again.
+    """Generates the missing rooms; may be killed and called again.
 
-    Uses `workers` processes; with `ray_address` ("local" for an embedded cluster) Ray, one task per core. With `repair`
-    the rooms that are there are checked, and damaged ones made anew. Raises InputError for a folder of another plan,
-    and where a worker was killed.
+    Args:
+        folder: The data set.
+        plan: What it holds.
+        config: The radar.
+        workers: Processes of this machine.
+        ray_address: Of a Ray cluster, one task per core; "local": an embedded one; default: no Ray.
+        listener: Called with the report of each finished room.
+        repair: Whether existing rooms are checked, and damaged ones made anew.
+
+    Returns:
+        A report of each room that was generated now.
+
+    Raises:
+        InputError: For a folder of another plan, and where a worker was killed.
     """
     check_packages(ray_address)
     rooms = plan.rooms()

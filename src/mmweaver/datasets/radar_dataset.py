@@ -35,14 +35,22 @@ FEATURES = (*OF_CUBE, "points", "pose", "label")
 class RadarDataset(Dataset[dict[str, Any]]):
     """Sequences of a data set as dicts of tensors, for torch's DataLoader.
 
-    `path`: a labelled set (`mmweaver dataset --activities`, `mmweaver generate --texts --store`) or a data set of rooms
-    (`mmweaver dataset --layouts`). `features`: any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB:
-    frame, range, doppler), "ra" (dB: frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear:
-    frame, 32, 32), "micro_doppler" (dB: window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose"
-    ((frame, 22, 3) metres) and "label" (int). `split`: "train", "validation", "test", another split of a data set of
-    rooms, or None for all; `by`: whether "subject", "place", "room" or "sentence" of a labelled set is held out
-    (default: what it was made with). `cached` keeps features in memory once computed. The order is that of the set; an
-    item is the same in every worker. Raises InputError for unknown names.
+    The order is that of the set; an item is the same in every worker.
+
+    Args:
+        path: A labelled set (`mmweaver dataset --activities`, `mmweaver generate --texts --store`) or a data set of
+            rooms (`mmweaver dataset --layouts`).
+        features: Any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB: frame, range, doppler), "ra" (dB:
+            frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear: frame, 32, 32), "micro_doppler"
+            (dB: window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose" ((frame, 22, 3) metres)
+            and "label" (int).
+        split: "train", "validation", "test", another split of a data set of rooms, or None for all.
+        by: Whether "subject", "place", "room" or "sentence" of a labelled set is held out; default: what it was made
+            with.
+        cached: Whether features are kept in memory once computed.
+
+    Raises:
+        InputError: For unknown names.
     """
 
     def __init__(

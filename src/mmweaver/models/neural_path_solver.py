@@ -20,9 +20,10 @@ from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
+from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.scatterer_network import ScattererNetwork
-from mmweaver.models.scene_tensors import GivenRoom, SceneTensors
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
@@ -48,10 +49,17 @@ ADC_FRAMES_AT_ONCE = 20
 class LearnedRoom:
     """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
 
-    The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `room` is a
-    scene, or one made ready for this radar with its antennas where the board has them. `background`: a recording of the
-    empty room by this radar, from which static clutter is then taken. Raises InputError for one of another
-    radar.
+    Args:
+        network: Moved to `device`; phases are sampled and paths rendered on the CPU.
+        room: A scene, or one made ready for this radar with its antennas where the board has them.
+        config: The radar.
+        room_seed: Of the phases of surfaces and of clutter.
+        device: Where the network runs.
+        background: A recording of the empty room by this radar, whose static clutter is used.
+        board: The board whose errors the signal has; default: an ideal one.
+
+    Raises:
+        InputError: For a background recording of another radar.
     """
 
     def __init__(

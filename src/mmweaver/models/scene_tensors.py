@@ -18,6 +18,8 @@ from mmweaver.paths.image_sources import apparent_direction
 from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.radar_equation import direction_loss_db
 from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
+from mmweaver.paths.radar_equation import pattern_towards_db
+from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160

@@ -154,9 +154,19 @@ def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
 def generate_sequences(
     recipe: SequenceRecipe, each: int, folder: Path | None = None, listener: Callable[[int, int], object] | None = None
 ) -> list[PointRecording]:
-    """`each` people perform every activity; those of `folder` are read instead of made, and new ones kept there.
+    """Generated recordings of all activities of a task.
 
-    `listener` is called with the number of sequences done and of all. Raises InputError for a folder of another recipe.
+    Args:
+        recipe: The task, with everything else that determines the sequences.
+        each: Number of people who perform every activity.
+        folder: Sequences that it holds are read, new ones are stored there.
+        listener: Called with the number of finished sequences and of all.
+
+    Returns:
+        Recordings, person by person.
+
+    Raises:
+        InputError: For a folder of another recipe, and for sentences that cannot be carried out.
     """
     if folder is not None and create_once(folder / "recipe.json", recipe.as_json()) != recipe.as_json():
         raise InputError(f"{folder} holds sequences of another task or seed; choose another folder or remove it")

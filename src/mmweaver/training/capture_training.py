@@ -108,10 +108,24 @@ def tune(
     compute: ComputeDevice | None = None,
     **options: Any,
 ) -> TuningResult:
-    """Fine-tunes weights on captures; the last capture is held out for validation, unless it is the only one.
+    """Fine-tunes weights on captures, or resumes from `out`/checkpoint.pt.
 
-    Uncalibrated recordings share one gain, at which the initial weights agree with them best. Resumes from
-    `out`/checkpoint.pt if present. Raises InputError for captures of different radars.
+    Uncalibrated recordings share one gain, at which the initial weights agree with them best.
+
+    Args:
+        captures: Of one radar; the last one is held out for validation, unless it is the only one.
+        out: Folder of the run.
+        recipe: Hyperparameters, as `recipe_for` chooses them.
+        start: The weights to begin with.
+        listener: Called with the progress of each step.
+        compute: Device, precision and process.
+        options: Further arguments of `Trainer`.
+
+    Returns:
+        The trainer with the best network, the calibrated rooms, and the loss of the initial weights.
+
+    Raises:
+        InputError: For captures of different radars.
     """
     network = initial_network(recipe, start)
     rooms = rooms_of(captures)

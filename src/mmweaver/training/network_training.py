@@ -107,10 +107,22 @@ def train(
     compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer[NetworkLearner]:
-    """Trains on split `train` of a data set; the returned Trainer holds the network that was best on `validation`.
+    """Trains on split `train` of a data set of rooms, or resumes from `out`/checkpoint.pt.
 
-    Resumes from `out`/checkpoint.pt if present. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
-    InputError for folders without data, and where gradients stay non-finite.
+    Args:
+        data: Folder of the data set.
+        out: Folder of the run.
+        recipe: Hyperparameters.
+        start: Weights to fine-tune; default: random.
+        listener: Called with the progress of each step.
+        compute: Device, precision and process.
+        options: Further arguments of `Trainer`.
+
+    Returns:
+        The trainer, with the network that was best on split `validation`.
+
+    Raises:
+        InputError: For folders without data, and where gradients stay non-finite.
     """
     options = {"is_tuning": start is not None} | options
     rooms, unseen = examples(data, "train"), examples(data, "validation")

@@ -13,21 +13,21 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_tensors import read_checkpoint
 
-SAVE_EVERY_S, REPORT_EVERY = 60.0, 50
+SAVE_EVERY_S = 60.0
 log = logging.getLogger(__name__)
 
 
 class Resumable:
     """Counts steps, saves the state of `parts` every minute, and resumes a saved run.
 
-    Without a file nothing is saved. `history` has a row of figures every 50 steps. `every_s` overrides the interval.
+    Without a file nothing is saved. `history` is for rows of figures. `every_s` overrides the interval.
     Of several processes all load, and only the one that `writes` saves. A run resumes with its original number of
     threads, for sums over other numbers of threads differ in their last bits.
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
         self.file, self.parts, self.every_s, self.writes = file, parts, every_s, writes
-        self.done, self.cpu_s = 0, 0.0
+        self.done = 0
         self.history: list[dict[str, float]] = []
         self._is_last = False
         if file is not None and file.is_file():
@@ -36,29 +36,23 @@ class Resumable:
     def steps(self, most: int) -> Iterator[int]:
         """Iterates over the remaining steps."""
         every_s = SAVE_EVERY_S if self.every_s is None else self.every_s
-        saved, cpu = time.monotonic(), time.process_time()
+        saved = time.monotonic()
         while self.done < most and not self._is_last:
             yield self.done
             self.done += 1
             if time.monotonic() - saved > every_s or self.done == most or self._is_last:
-                self.cpu_s += time.process_time() - cpu
                 self._save()
-                saved, cpu = time.monotonic(), time.process_time()
+                saved = time.monotonic()
 
     def stop(self) -> None:
         """Makes the current step the last one."""
         self._is_last = True
 
-    def report(self, **figures: float | int) -> None:
-        """Adds figures to the history every 50 steps."""
-        if self.done % REPORT_EVERY == 0:
-            self.history.append({"step": self.done, **figures})
-
     def _save(self) -> None:
         if self.file is None or not self.writes:
             return
         states = {name: part.state_dict() for name, part in self.parts.items()}
-        state = {"done": self.done, "cpu_s": self.cpu_s, "history": self.history, "parts": states}
+        state = {"done": self.done, "history": self.history, "parts": states}
         packed = io.BytesIO()  # for torch's own writing to a full disk ends in errors of all kinds
         torch.save(state | {"threads": torch.get_num_threads()}, packed)
         with atomic_file(self.file) as temporary:
@@ -73,7 +67,7 @@ class Resumable:
             raise InputError(
                 f"{file} cannot be resumed ({str(error).splitlines()[0][:80]}); delete it to start over"
             ) from None
-        self.done, self.cpu_s, self.history = saved["done"], saved["cpu_s"], saved["history"]
+        self.done, self.history = saved["done"], saved["history"]
         _use_threads(int(saved.get("threads", torch.get_num_threads())), file)  # older files do not have it
 
 

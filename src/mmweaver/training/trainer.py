@@ -102,9 +102,19 @@ Listener = Callable[[Progress], object]
 class Trainer(Generic[LearnerT]):
     """One training run.
 
-    `train(step, share)` samples the part of a step's batch that belongs to one of several processes, `validation(index,
-    share)` one of a few fixed batches. With `is_tuning` the initial weights are validated first, as the ones to beat.
-    Raises InputError for a checkpoint with other settings.
+    Args:
+        learner: The network with its loss.
+        recipe: Hyperparameters.
+        out: Folder of checkpoint, log and weights; a checkpoint there is resumed.
+        train: `train(step, share)` samples the part of a step's batch that belongs to one of several processes.
+        validation: `validation(index, share)`, one of a few fixed batches.
+        compute: Device, precision and process; default: the CPU in float32, alone.
+        is_tuning: Whether the initial weights are validated first, as the ones to beat.
+        tensorboard: Whether TensorBoard's files are written, too.
+        save_every_s: Seconds between checkpoints; default 60.
+
+    Raises:
+        InputError: For a checkpoint with other settings, or a batch that processes cannot share evenly.
     """
 
     def __init__(

@@ -1,0 +1,30 @@
+"""What the network and the paths of second order start from: a photographed room, traced once for one radar."""
+
+from dataclasses import dataclass
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import Scene
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.paths import Interaction, StaticPaths
+from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+from mmweaver.paths.unresolved_clutter import seed_of_room, unresolved_clutter
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivenRoom:
+    """The network corrects what `view` holds, paths of first order; the others stay as physics has them."""
+
+    view: SceneTensors
+    traced: RayTracedRoom
+    others: StaticPaths  # of second order, and clutter
+
+    @classmethod
+    def of(
+        cls, scene: Scene, config: RadarConfig, *, seed: int = 0, propagation: Propagation = ALL_PATHS
+    ) -> "GivenRoom":
+        """Of a scene. `seed`: another one has other phases and other clutter."""
+        traced = RayTracedRoom(scene, config, seed, propagation)
+        others = [traced.paths.of_kind(Interaction.ROOM_ROOM)]
+        if propagation.clutter:
+            others.append(unresolved_clutter(config, seed_of_room(scene) + seed))
+        return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))
