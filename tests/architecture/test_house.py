@@ -32,20 +32,6 @@ def test_functions_and_names():
                 assert "range" not in names, f"{path}: {node.name} shadows range"
 
 
-def test_no_public_class_and_no_file_has_a_name_twice():
-    """But for the command line, whose files are named after their commands."""
-    classes: dict[str, Path] = {}
-    files: dict[str, Path] = {}
-    for path in SOURCES:
-        if path.stem not in ("__init__", "__main__") and path.parent.name != "cli":
-            assert path.stem not in files, f"{path} and {files.get(path.stem)}"
-            files[path.stem] = path
-        for node in ast.parse(path.read_text()).body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                assert node.name not in classes, f"{node.name} in {path} and {classes.get(node.name)}"
-                classes[node.name] = path
-
-
 def test_shapes_are_checked_in_tests():
     """The canary: were the jaxtyping hook off, a wrong shape would pass."""
     with pytest.raises(Exception, match="samples"):
