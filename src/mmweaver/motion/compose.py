@@ -17,7 +17,7 @@ from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_co
 from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import settled
-from mmweaver.motion.planning.placement import Placement, place
+from mmweaver.motion.planning.placement import Conditions, Placement, place
 from mmweaver.motion.planning.targets import drop_targets
 
 RUN_ROOM_M = 3.5  # straight free floor that running to and fro at 3 m/s needs
@@ -106,13 +106,13 @@ def compose(
     plan, running_notes = _running(plan, floor)
 
     controls: dict[int, Controls] = {}
+    conditions = Conditions(
+        seed=seed, start_m=start_m, heading_rad=heading_rad, is_varied=is_varied, others=others, after=after
+    )
 
     def compose_on(plan: MotionPlan, floor: FloorMap) -> RankedPlacement:
         def candidates(attempt: int) -> list[Placement]:
-            return place(
-                plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=attempt,
-                heading_rad=heading_rad, is_varied=is_varied, after=after,
-            )  # fmt: skip
+            return place(plan, floor, body, conditions, attempt=attempt)
 
         def animate(placement: Placement) -> PoseSequence:
             made = assembled_controls(

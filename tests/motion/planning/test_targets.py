@@ -11,7 +11,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.placement import place
+from mmweaver.motion.planning.placement import Conditions, place
 from mmweaver.motion.planning.targets import drop_targets
 from tests.motion.rooms import WINDOW_M, room, seat
 
@@ -24,7 +24,7 @@ def _plan(target: str) -> MotionPlan:
 
 
 def _placed(scene: Scene, target: str, seed: int = 0):
-    return place(_plan(target), FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=seed, start_m=None)[0]
+    return place(_plan(target), FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=seed))[0]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -82,12 +82,12 @@ def test_without_a_photo_the_way_leads_anywhere_and_says_so():
 def test_who_points_at_a_landmark_faces_it(text: str):
     plan = plan_motion(text)
     scene = dataclasses.replace(room(), landmarks=(DOOR,))
-    path = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)[0].path
+    path = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=1))[0].path
     end_s = np.array([plan.duration_s])
     x, y = DOOR.position_m[:2] - path.position_m(end_s)[0]
     assert np.angle(np.exp(1j * (path.facing_rad(end_s)[0] - np.arctan2(y, x)))) == pytest.approx(0, abs=0.2)
     with pytest.raises(InputError, match="no door was found"):
-        place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), seed=1, start_m=None)
+        place(plan, FloorMap(room(), WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=1))
     assert any("no door to face" in note for note in drop_targets(plan).notes)
 
 
@@ -96,5 +96,5 @@ def test_who_cannot_walk_there_from_a_seat_gets_up_elsewhere():
     table = Landmark(kind="table", position_m=np.array([0.0, 2.6, -0.7]), approach_m=(0.0, 2.0), facing_rad=1.5)
     scene = dataclasses.replace(room(seats=(seat(y_m=2.4),)), landmarks=(table,))
     plan = plan_motion("a person gets up and walks to the table")
-    placed = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=0, start_m=None)[0]
+    placed = place(plan, FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), Conditions(seed=0))[0]
     assert any("no seat of the photo can be used" in note for note in placed.assumptions)

@@ -188,6 +188,8 @@ def _verbs(words: list[Word], *, is_placed: bool) -> list[int]:
         if word.text == "head" and i and words[i - 1].text not in ("to", "and", "then", "they"):
             continue  # the part of the body, as in "tilts the head" and "tilts head"
         after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "reach" and after in ("the", "his", "her", "its", "their"):
+            continue  # "reaches the end"
         if word.lemma == "move" and (texts & ARMS or texts & _OF_THE_BODY or after in _IT):
             continue  # it is the arm that moves, and how is not known
         goes_somewhere = is_placed or bool(texts & {*DIRECTIONS, *RADAR, *SEATS, *TARGETS})

@@ -27,7 +27,7 @@ _SIT_TO_STAND = re.compile(
 
 
 @dataclass(frozen=True)
-class Repetition:
+class RepeatedSentence:
     """What is done, how often in all, and the words that say so."""
 
     text: str
@@ -35,28 +35,28 @@ class Repetition:
     words: str = ""
 
 
-def repetition_of(text: str) -> Repetition:
+def repetition_of(text: str) -> RepeatedSentence:
     """The sentence without the words that repeat all of it.
 
     >>> repetition_of("a person bows, then claps and repeats this twice")
-    Repetition(text='a person bows, then claps', times=3, words='repeats this twice')
+    RepeatedSentence(text='a person bows, then claps', times=3, words='repeats this twice')
     """
     found = _SIT_TO_STAND.search(text)
     if found:
         word = next((word for word in (found[2], found[1]) if word and (word in NUMBERS or word.isdigit())), "1")
         rest = f"{text[: found.start()]}sits down, then stands up{text[found.end() :]}"
-        return Repetition(rest, max(_number(word), 1), found[0].strip())
+        return RepeatedSentence(rest, max(_number(word), 1), found[0].strip())
     found = _AT_START.match(text)
     if found:
-        return Repetition(text[found.end() :], max(_number(found[1]), 1), found[0].strip(" ,"))
+        return RepeatedSentence(text[found.end() :], max(_number(found[1]), 1), found[0].strip(" ,"))
     found = _AT_END.search(text)
     does = found is not None and found[1].lower().startswith("do")
     if found is None or not found.start() or (does and not (found[2] and (found[3] or found[4]))):
-        return Repetition(text)
+        return RepeatedSentence(text)
     more = _number(found[4]) if found[4] else 1
     in_all = found[0].rstrip(" .!").endswith("in total") or (does and not found[3] and "more" not in found[0])
     words = found[0][found.start(1) - found.start() :].strip(" .!")
-    return Repetition(text[: found.start()].rstrip(" ,;."), max(more if in_all else more + 1, 1), words)
+    return RepeatedSentence(text[: found.start()].rstrip(" ,;."), max(more if in_all else more + 1, 1), words)
 
 
 def _number(words: str) -> int:

@@ -30,7 +30,7 @@ from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, NOT_DONE, ClauseRecord, MotionPlan, Side, Step, Way
 from mmweaver.motion.language.posture_persistence import ARM_POSTURES, persist_postures
 from mmweaver.motion.language.postures import inherit_state, insert_transitions
-from mmweaver.motion.language.repetitions import Repetition, repetition_of
+from mmweaver.motion.language.repetitions import RepeatedSentence, repetition_of
 from mmweaver.motion.language.rewrite_rules import rewritten
 from mmweaver.motion.language.simultaneous import going_on, sequence_steps
 from mmweaver.motion.language.spelling import correct_spelling
@@ -90,7 +90,7 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
         raise error from None
 
 
-def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> MotionPlan:
+def _several_times(plan: MotionPlan, repeated: RepeatedSentence, given_text: str) -> MotionPlan:
     """A plan done as often as the sentence says; raises InputError for too many steps."""
     if len(plan.steps) * repeated.times > MAX_STEPS:
         raise InputError(

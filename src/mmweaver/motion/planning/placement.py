@@ -81,18 +81,36 @@ class Placement:
         return tuple(round(placed.seat_height_m / step_m) for placed in self.steps)
 
 
-def place(
-    plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, *, seed: int, start_m: tuple[float, float] | None,
-    others: tuple[PoseSequence, ...] = (), attempt: int = 0, heading_rad: float | None = None, is_varied: bool = True,
-    after: BodyState | None = None,
-) -> list[Placement]:  # fmt: skip
-    """Placements of the whole plan that are free and in view all along, and clear of `others`; the best first.
+@dataclass(frozen=True, kw_only=True)
+class Conditions:
+    """What a placement keeps to besides its plan."""
 
-    `start_m` fixes where the person starts, (x, y). Attempts 1 and 2 sample other placements, with more ways to sit: 1
-    leaves out some of the seats, 2 all of them unless the sentence names one that the room has. `after`: how the motion
-    before ended, which this one goes on from. Raises InputError where the start is not free
-    or out of view, where there is no room, or where the room lacks what a step goes to.
+    seed: int  # decides what the sentence leaves open
+    start_m: tuple[float, float] | None = None  # (x, y) where the person starts; None: anywhere
+    heading_rad: float | None = None  # where the body faces first, from +x towards +y
+    is_varied: bool = True  # False: people who stand face the radar, where it sees them best
+    others: tuple[PoseSequence, ...] = ()  # people to keep clear of
+    after: BodyState | None = None  # how the motion before ended, which this one goes on from
+
+
+def place(
+    plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, conditions: Conditions, *, attempt: int = 0
+) -> list[Placement]:
+    """Placements of the whole plan that are free and in view all along; the best first.
+
+    Args:
+        plan: a scheduled plan.
+        floor: where in the room a body of this height can be.
+        body: its proportions.
+        conditions: start, heading, other people.
+        attempt: 1 and 2 sample other placements, with more ways to sit: 1 leaves out some of the seats, 2 all of them
+            unless the sentence names one that the room has.
+
+    Raises:
+        InputError: where the start is not free or out of view, where there is no room, or where the room lacks what a
+            step goes to.
     """
+    start_m, after, others = conditions.start_m, conditions.after, conditions.others
     check_targets(plan, floor.scene)
     for step in plan.steps:
         if step.place is not None:
@@ -101,7 +119,7 @@ def place(
         raise NoRoomError(_no_floor(floor))
     if start_m is not None:
         floor.check_start(start_m)
-    rng = stream(seed, "motion", f"placement {attempt}" if attempt else "placement")
+    rng = stream(conditions.seed, "motion", f"placement {attempt}" if attempt else "placement")
     sampler = CandidateSampler(
         plan=plan,
         floor=floor,
@@ -110,7 +128,7 @@ def place(
         start_m=start_m,
         attempt=attempt,
         after=after,
-        **_open_choices(floor, seed, heading_rad, is_varied),
+        **_open_choices(floor, conditions),
     )
     trajectories: list[Trajectory] = []
     enough = ENOUGH_SEATED if attempt and any(step.uses_seat for step in plan.steps) else ENOUGH
@@ -127,10 +145,7 @@ def place(
             continue
         trajectories.append(trajectory)
     if not trajectories and attempt < LEAVES_SEATS and after is None and starts_seated(plan):
-        return place(
-            plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=LEAVES_SEATS, heading_rad=heading_rad,
-            is_varied=is_varied,
-        )  # fmt: skip
+        return place(plan, floor, body, conditions, attempt=LEAVES_SEATS)
     if not trajectories:
         raise NoRoomError(_no_room(plan, floor, start_m))
     order = np.argsort(
@@ -139,16 +154,16 @@ def place(
     return [_placement(trajectories[k], plan) for k in order]
 
 
-def _open_choices(floor: FloorMap, seed: int, heading_rad: float | None, is_varied: bool) -> dict[str, Any]:
+def _open_choices(floor: FloorMap, conditions: Conditions) -> dict[str, Any]:
     """What the sentence leaves open and the seed decides once for all candidates: where about, and facing where."""
     cells = floor.walkable_m
-    rng = stream(seed, "motion", "open choices")
+    rng = stream(conditions.seed, "motion", "open choices")
     facing_rad = float(rng.normal(0, 0.35)) if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
     spot = random_choice(cells, rng) if len(cells) else None
     return {
-        "heading_rad": heading_rad,
-        "off_radar_rad": facing_rad if is_varied else None,
-        "favourite_m": spot if is_varied else None,
+        "heading_rad": conditions.heading_rad,
+        "off_radar_rad": facing_rad if conditions.is_varied else None,
+        "favourite_m": spot if conditions.is_varied else None,
     }
 
 
