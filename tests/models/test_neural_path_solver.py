@@ -11,10 +11,9 @@ from mmweaver.core.records import Scene
 from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.room_inputs import GivenRoom
-from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.neural_path_solver import LearnedRoom
+from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.paths.adc_synthesis import phasor
 from mmweaver.paths.body_model import body_of

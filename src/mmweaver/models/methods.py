@@ -23,7 +23,7 @@ from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 
 if TYPE_CHECKING:
     from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
-    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.models.room_inputs import GivenRoom
     from mmweaver.paths.background import BackgroundRecording
 
 
@@ -199,7 +199,7 @@ class Learned:
 
 
 def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> "GivenRoom":
-    from mmweaver.models.scene_tensors import GivenRoom
+    from mmweaver.models.room_inputs import GivenRoom
 
     return GivenRoom.of(scene, config, propagation=propagation)
 

@@ -20,8 +20,8 @@ from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.models.given_room import GivenRoom
 from mmweaver.models.learned_second_order import second_order_paths
+from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread

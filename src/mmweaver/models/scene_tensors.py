@@ -12,13 +12,9 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.diffuse_clutter import diffuse_clutter, seed_of_room
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.image_sources import apparent_direction
-from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.radar_equation import direction_loss_db
-from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER, PreparedRoom, Propagation, RayTracedRoom
-from mmweaver.paths.radar_equation import pattern_towards_db
 from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
@@ -168,23 +164,3 @@ def _plane_features(plane: Plane) -> np.ndarray:
 
 def _tensor(values: np.ndarray) -> Tensor:
     return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float32))
-
-
-@dataclass(frozen=True, kw_only=True)
-class GivenRoom:
-    """The network corrects what `view` holds, paths of first order; the others stay as physics has them."""
-
-    view: SceneTensors
-    traced: RayTracedRoom
-    others: StaticPaths  # of second order, and clutter
-
-    @classmethod
-    def of(
-        cls, scene: Scene, config: RadarConfig, *, seed: int = 0, propagation: Propagation = ALL_PATHS
-    ) -> "GivenRoom":
-        """Of a scene. `seed`: another one has other phases and other clutter."""
-        traced = RayTracedRoom(scene, config, seed, propagation)
-        others = [traced.paths.select(Interaction.ROOM_ROOM)]
-        if propagation.clutter:
-            others.append(diffuse_clutter(config, seed_of_room(scene) + seed))
-        return cls(view=SceneTensors.of(scene, config, traced), traced=traced, others=StaticPaths.cat(others))

@@ -9,8 +9,8 @@ from dataclasses import fields
 import numpy as np
 
 from mmweaver.datasets.dataset_store import StoredRoom
-from mmweaver.paths.apparent_paths import moving_points, static_points
 from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.image_sources import moving_points, static_points
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
 
 

@@ -24,9 +24,6 @@ from mmweaver.dsp.spectra import (
     range_elevation_power,
 )
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.body_paths import BodyPaths
-from mmweaver.paths.image_sources import moving_points, static_points
-from mmweaver.paths.mean_power import MeanPower, PowerMaps
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.device import Share
