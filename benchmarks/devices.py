@@ -20,21 +20,21 @@ from measuring import report, results_folder
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.dsp.cube import cube_values
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.body_model import DEFAULT_NUM_POINTS
-from mmweaver.paths.body_paths import GHOST_POINTS
-from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.image_method import SpecularReflector
-from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
-from mmweaver.paths.receiver import IDEAL, Receiver
-from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
-from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, scattered_paths
-from mmweaver.paths.visibility import Visibility
+from mmweaver.propagation.adc_synthesis import AdcSynthesis
+from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS
+from mmweaver.propagation.body_paths import GHOST_POINTS
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.image_method import SpecularReflector
+from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
+from mmweaver.propagation.receiver import IDEAL, Receiver
+from mmweaver.propagation.resynthesis import Resynthesis, TracedMotion
+from mmweaver.propagation.static_paths import FIRST_ORDER, PreparedRoom, scattered_paths
+from mmweaver.propagation.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.signal.cube import cube_values
 
 NUM_FRAMES, STATIC_PATHS, FACES, OCCLUDED, MOVING_PATHS = 20, 8300, 5, 400, 900
 

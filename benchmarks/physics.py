@@ -32,14 +32,14 @@ def cpu_seconds(function, repeats: int = 3) -> float:
 
 def simulation_costs() -> dict[str, float]:
     from mmweaver import Weaver
-    from mmweaver.dsp.cube import radar_cube
     from mmweaver.motion.compose import compose
     from mmweaver.motion.language.timing import plan_motion
-    from mmweaver.paths.body_model import body_of
-    from mmweaver.paths.body_paths import BodyPaths
-    from mmweaver.paths.paths import Interaction
-    from mmweaver.paths.ray_traced import Simulator
-    from mmweaver.paths.reference_sum import exact_frame
+    from mmweaver.propagation.body_model import body_of
+    from mmweaver.propagation.body_paths import BodyPaths
+    from mmweaver.propagation.paths import Interaction
+    from mmweaver.propagation.ray_traced import Simulator
+    from mmweaver.propagation.reference_sum import exact_frame
+    from mmweaver.signal.cube import radar_cube
 
     weaver = Weaver(method="physics", radar="awr1843")
     scene = weaver.sample_room().scene

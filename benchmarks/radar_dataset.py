@@ -13,8 +13,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from measuring import least_cpu_seconds, report, results_folder
 
-from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.activity_store import read_activity_set
+from mmweaver.datasets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.radar_dataset import FEATURES, RadarDataset
 from mmweaver.weaver.front_door import Weaver
 

@@ -22,14 +22,14 @@ from measuring import RESULTS, report
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, RadarCube
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS, FIRST_ORDER
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS, FIRST_ORDER
+from mmweaver.signal.cube import radar_cube
 from mmweaver.weaver.front_door import Weaver
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"

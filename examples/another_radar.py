@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from mmweaver import PRESETS, Weaver
-from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.signal.spectra import range_doppler_power
 
 finer = replace(PRESETS["awr1843"], name="awr1843, 64 loops", num_loops=64)
 fig, axes = plt.subplots(1, 2, figsize=(9, 3.5), layout="constrained")

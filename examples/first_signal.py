@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from mmweaver import Weaver
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 
 weaver = Weaver()
 room = weaver.sample_room()

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from mmweaver import Weaver
-from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.signal.spectra import range_doppler_power
 
 sentences = ("a person walks to the left", "someone waves with both hands", "a man squats twice", "a person falls")
 weaver = Weaver()

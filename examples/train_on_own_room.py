@@ -10,7 +10,7 @@ import torch
 from torch.utils.data import DataLoader
 
 from mmweaver import Weaver
-from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
+from mmweaver.datasets.build_set import SetBuilder, SetOptions
 from mmweaver.datasets.radar_dataset import RadarDataset, collate
 
 ACTIVITIES = {

@@ -12,8 +12,8 @@ import numpy as np
 import zstandard
 
 from mmweaver.core.records import AdcCube, CameraIntrinsics
-from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.ti_cfg import read_ti_cfg
+from mmweaver.io.dca1000 import write_bin
+from mmweaver.io.ti_cfg import read_ti_cfg
 
 CFG = """% written by a test
 sensorStop

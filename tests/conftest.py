@@ -84,9 +84,9 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     That saves 0.7 CPU seconds in each of many tests. Tests of the reconstruction and of the network themselves call
     `reconstruct` and `LearnedRoom`, which stay as they are.
     """
-    from mmweaver.weaver import room_reader
     from mmweaver.models.methods import Learned
     from mmweaver.scene.reconstruction import reconstruct
+    from mmweaver.weaver import room_reader
 
     scenes: dict[str, Scene] = {}
 

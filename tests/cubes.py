@@ -8,7 +8,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.signal.cube import radar_cube
 
 SMALL = replace(AWR1843, num_samples=64, num_range_bins=32, first_range_bin=8, num_loops=16)
 

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.presets import BGT60
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
-from mmweaver.formats.conversions import to_dataset, to_tensors
+from mmweaver.io.conversions import to_dataset, to_tensors
 
 META = {"text": "silence", "seed": 0, "method": "none", "version": "0", "radar": {"name": "bgt60"}}
 

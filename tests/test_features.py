@@ -8,8 +8,8 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, RadarCube
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.features import (
+from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.features import (
     dynamic_range_angle,
     micro_doppler_db,
     range_azimuth_db,

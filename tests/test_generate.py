@@ -14,22 +14,22 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.cube import radar_cube, remove_static
-from mmweaver.dsp.firmware import firmware_points
-from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
-from mmweaver.formats.npz_files import (
+from mmweaver.datasets.verification import verify
+from mmweaver.io.npz_files import (
     read_npz,
     read_points_npz,
     read_poses_npz,
     read_radar_npz,
     write_radar_npz,
 )
-from mmweaver.formats.stored_result import read_result
+from mmweaver.io.stored_result import read_result
 from mmweaver.models.methods import METHODS, Signal
-from mmweaver.paths.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.signal.cube import radar_cube, remove_static
+from mmweaver.signal.firmware import firmware_points
+from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
-from mmweaver.weaver.verification import verify
 
 TEXT = "a person walks towards the radar"
 

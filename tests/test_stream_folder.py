@@ -10,10 +10,10 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.stream_folder import StreamFolder, sentences_of
+from mmweaver.datasets.verification import verify
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.stream_folder import StreamFolder, sentences_of
 from mmweaver.recordings.read_recording import read_recording
-from mmweaver.weaver.verification import verify
 
 SMALL = replace(AWR1843, num_loops=4, num_range_bins=8)
 

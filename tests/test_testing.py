@@ -10,8 +10,8 @@ from torch import nn
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
-from mmweaver.dsp.points import point_cloud
 from mmweaver.models.methods import Physics, Signal
+from mmweaver.signal.points import point_cloud
 from mmweaver.weaver import testing
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room

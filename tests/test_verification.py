@@ -11,7 +11,7 @@ from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
 from mmweaver.core.staging import staging_path
 from mmweaver.core.tensor_files import write_tensors
-from mmweaver.weaver.verification import verify
+from mmweaver.datasets.verification import verify
 
 
 def flip(file: Path, at: int = -1) -> None:

@@ -12,9 +12,9 @@ from PIL import Image
 from sample_room.light import Renderer, smoothed
 from sample_room.living_room import furnished_room
 
+from mmweaver.core.pinhole import viewing_rays
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
-from mmweaver.geometry.pinhole import viewing_rays
 
 SAMPLE = Path(__file__).resolve().parents[1] / "src" / "mmweaver" / "sample"
 

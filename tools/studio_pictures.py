@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))
 
 from mmweaver.scene.procedural.procedural_room import make_room  # noqa: E402
 from tests.browser.chromium import FLAGS, needs_browser, running_studio  # noqa: E402
-from tests.formats.point_clouds.test_read_points import packet  # noqa: E402
+from tests.io.point_clouds.test_read_points import packet  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images"
 READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"

@@ -19,11 +19,11 @@ const smallerThree = {
     });
   },
 };
-const out = "../src/mmweaver/playback/page/mmweaver.js";
+const out = "../src/mmweaver/viz/page/mmweaver.js";
 await build({
   entryPoints: ["src/main.ts"], outfile: out, bundle: true, plugins: [smallerThree], format: "esm", minify: true, target: "es2022",
   sourcemap: "external", sourcesContent: false, legalComments: "eof", loader: { ".css": "text" },
 });
 renameSync(`${out}.map`, "mmweaver.js.map");
 const licence = readFileSync("node_modules/three/LICENSE", "utf8");
-writeFileSync("../src/mmweaver/playback/page/LICENSES.txt", `mmweaver.js contains three.js:\n\n${licence}`);
+writeFileSync("../src/mmweaver/viz/page/LICENSES.txt", `mmweaver.js contains three.js:\n\n${licence}`);

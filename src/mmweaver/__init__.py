@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.version import __version__
 
 if TYPE_CHECKING:
-    from mmweaver.calibration.calibrate import Calibration, calibrate
-    from mmweaver.comparison.compare_signals import Comparison, compare
     from mmweaver.core.board import Board
     from mmweaver.core.errors import InputError
     from mmweaver.core.presets import PRESETS
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.radar_pose import RadarPose
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
-    from mmweaver.formats.npz_files import read_radar_npz
-    from mmweaver.formats.radar_file import load_radar
+    from mmweaver.evaluation.calibrate import Calibration, calibrate
+    from mmweaver.evaluation.compare_signals import Comparison, compare
+    from mmweaver.io.npz_files import read_radar_npz
+    from mmweaver.io.radar_file import load_radar
     from mmweaver.recordings.processing import process_recording
     from mmweaver.recordings.read_recording import Recording, read_recording
     from mmweaver.weaver.front_door import Weaver
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 _HOME = {
     "AdcCube": "core.records",
     "Board": "core.board",
-    "Calibration": "calibration.calibrate",
-    "Comparison": "comparison.compare_signals",
+    "Calibration": "evaluation.calibrate",
+    "Comparison": "evaluation.compare_signals",
     "Generation": "weaver.generation",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
@@ -41,15 +41,20 @@ _HOME = {
     "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "weaver.front_door",
-    "calibrate": "calibration.calibrate",
-    "compare": "comparison.compare_signals",
-    "load_radar": "formats.radar_file",
+    "calibrate": "evaluation.calibrate",
+    "compare": "evaluation.compare_signals",
+    "load_radar": "io.radar_file",
     "process_recording": "recordings.processing",
-    "read_radar_npz": "formats.npz_files",
+    "read_radar_npz": "io.npz_files",
     "read_recording": "recordings.read_recording",
 }
 
-_MODULES = ("features", "methods", "register", "testing")
+_MODULES = {
+    "features": "signal.features",
+    "methods": "models.methods",
+    "register": "weaver.register",
+    "testing": "weaver.testing",
+}
 
 __all__ = [
     "PRESETS",
@@ -80,7 +85,7 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     """Imports a public name from the module that defines it, at its first use."""
     if name in _MODULES:
-        return import_module(f"mmweaver.{name}")
+        return import_module(f"mmweaver.{_MODULES[name]}")
     if name not in _HOME:
         raise AttributeError(f"module 'mmweaver' has no attribute {name!r}")
     return getattr(import_module(f"mmweaver.{_HOME[name]}"), name)

@@ -9,11 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.dsp.point_response import PointResponse
-from mmweaver.fields.beams import beams_of
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.fitting import FitRecipe, ScattererFit
-from mmweaver.fields.scatterers.layers import Layers, values_of_point
+from mmweaver.compression.beams import beams_of
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.fitting import FitRecipe, ScattererFit
+from mmweaver.compression.scatterers.layers import Layers, values_of_point
+from mmweaver.signal.point_response import PointResponse
 
 Array = np.ndarray
 DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters

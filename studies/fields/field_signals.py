@@ -15,18 +15,18 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.dsp.windows import hann
-from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.io.raw_npy import read_adc_npy
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
-from mmweaver.paths.diffuse_clutter import seed_of_room
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import IDEAL, Impairments
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import IDEAL, Impairments
+from mmweaver.propagation.static_paths import Propagation
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
+from mmweaver.signal.windows import hann
 
 NUM_FRAMES = 20
 SENTENCES = {

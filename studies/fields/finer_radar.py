@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.dsp.windows import hann
+from mmweaver.signal.windows import hann
 from studies.fields.phase_centring import centred, centring_phasor
 from studies.fields.sampling import antenna_at, coordinates_on
 

@@ -18,7 +18,7 @@ from scipy.signal import lfilter
 
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.formats.mmwave_studio import read_mmwave_studio
+from mmweaver.io.mmwave_studio import read_mmwave_studio
 from studies.baselines.codec_interface import library
 from studies.fields.field_signals import two_people_radar
 from studies.manifest import StudyRun, content_of

@@ -12,10 +12,10 @@ from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.registry import Registry
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.mmwave_studio import read_mmwave_studio
-from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.mmwave_studio import read_mmwave_studio
+from mmweaver.io.raw_npy import read_adc_npy
+from mmweaver.signal.cube import radar_cube
 from studies.fields.field_signals import StudySignal, two_people_radar
 
 Source = Callable[[Path], AdcCube]

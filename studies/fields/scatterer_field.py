@@ -12,18 +12,18 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.compression.scatterers.cell_noise import MIXED_POWER, cell_noise, num_sampled_bins, range_bins
+from mmweaver.compression.scatterers.fit_window import FitWindow, long_window, overlap_hop
+from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
+from mmweaver.compression.scatterers.layers import Layers, no_points, rendered
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import CubeValues
-from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.dsp.windows import doppler_window, doppler_window_middle
-from mmweaver.fields.scatterers.cell_noise import MIXED_POWER, cell_noise, num_sampled_bins, range_bins
-from mmweaver.fields.scatterers.fit_window import FitWindow, long_window, overlap_hop
-from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
+from mmweaver.signal.point_response import PointResponse, Points
+from mmweaver.signal.windows import doppler_window, doppler_window_middle
 from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values
 from studies.fields.sampling import coordinates_on
 from studies.fields.signal_field import SignalField

@@ -29,8 +29,8 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
-from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.paths.receiver import IDEAL
+from mmweaver.propagation.receiver import IDEAL
+from mmweaver.signal.cube import adc_from_cube, radar_cube
 from studies.fields.budgeted_fit import BudgetedRecipe as ScattererRecipe
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, simulator_of, without_room

@@ -7,11 +7,11 @@ import argparse
 from pathlib import Path
 
 from mmweaver.core.records import PoseSequence
-from mmweaver.figures.motion_strip import draw_sheet
 from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.language.activities import BODY, HANDS, Activity
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s
+from mmweaver.viz.motion_strip import draw_sheet
 from studies.manifest import StudyRun
 
 SEED = 1

@@ -20,7 +20,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.models.methods import Physics
 from mmweaver.motion.compose import compose
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.propagation.static_paths import Propagation
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
 from studies.manifest import StudyRun

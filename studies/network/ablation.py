@@ -30,8 +30,8 @@ from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, re
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.paths.mean_power import PowerMaps
-from mmweaver.paths.radar_equation import points_of
+from mmweaver.propagation.mean_power import PowerMaps
+from mmweaver.propagation.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples

@@ -36,17 +36,17 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, DatasetPlan, RoomSpec, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import pose_of
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
-from mmweaver.paths.diffuse_clutter import seed_of_room
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS
+from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.signal.cube import radar_cube
 from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS, activity_examples, compute_log_maps
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, board_seen_in, empty_room, interval

@@ -28,7 +28,7 @@ from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
+from mmweaver.io.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights, shipped_weights

@@ -11,10 +11,10 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.panels import draw_azimuth_with_clutter, draw_micro_doppler, draw_photo, power_bar
-from mmweaver.figures.theme import STYLE
-from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.core.aligned_photo import AlignedPhoto
+from mmweaver.viz.figure_data import FigureData
+from mmweaver.viz.panels import draw_azimuth_with_clutter, draw_micro_doppler, draw_photo, power_bar
+from mmweaver.viz.theme import STYLE
 from mmweaver.weaver.front_door import Weaver
 from studies.manifest import StudyRun
 from studies.paper.power_method import PowerFields

@@ -25,7 +25,6 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.calibration.background_board import BackgroundBoard
 from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
@@ -35,17 +34,18 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.evaluation.background_board import BackgroundBoard
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
-from mmweaver.paths.diffuse_clutter import seed_of_room
-from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS, Propagation
+from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.signal.cube import radar_cube
 from studies.manifest import StudyRun
 from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method

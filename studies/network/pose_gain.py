@@ -20,13 +20,13 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import read_plan
 from mmweaver.datasets.room_sequences import RoomSequences, read_labelled
-from mmweaver.dsp.points import point_cloud
-from mmweaver.metrics.pose_errors import joint_errors_cm
+from mmweaver.evaluation.pose_errors import joint_errors_cm
 from mmweaver.models.point_frames import point_frames
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.recognition.generated_sequences import joints_at
 from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.signal.points import point_cloud
 from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from studies.manifest import StudyRun
 from studies.network.activity_gain import UnseenRoom, motions_in, with_generated

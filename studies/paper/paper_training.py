@@ -12,7 +12,7 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.activity_network import ActivityNetwork, load_activity
 from mmweaver.models.precision import exactly
-from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.network_examples import power_maps
 from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer

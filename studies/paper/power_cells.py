@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.dsp.point_response import PointResponse
+from mmweaver.signal.point_response import PointResponse
 
 REFERENCE = (0.05, 0.275, 0.125, 0.25)  # of a cell: m, m/s, cosine along x, cosine along z
 NEAREST_M, FARTHEST_M = 0.3, 4.2

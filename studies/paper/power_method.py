@@ -8,13 +8,13 @@ from torch import Tensor
 from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube, Scene
-from mmweaver.methods import Learned
+from mmweaver.models.methods import Learned
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import WeightsCard, load_into, read_card
-from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
-from mmweaver.paths.paths import Paths
-from mmweaver.paths.speckle import place_of, sample_cells
+from mmweaver.propagation.mean_scatterers import CellEchoes, MeanEchoes
+from mmweaver.propagation.paths import Paths
+from mmweaver.propagation.speckle import place_of, sample_cells
 from studies.paper.power_cells import CellSizes
 from studies.paper.power_network import RECIPE, PowerEncoding, PowerNetwork
 

@@ -19,13 +19,13 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor, nn
 
-from mmweaver.geometry.pinhole import pixel_coordinates
+from mmweaver.core.pinhole import pixel_coordinates
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_scatterers import CellEchoes, MeanEchoes
+from mmweaver.propagation.mean_scatterers import CellEchoes, MeanEchoes
 from studies.paper.pca_whitening import PcaWhitening
 from studies.paper.power_anchors import (
     BODY_VALUES,

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.propagation.body_model import ScatteringBody
 
 AROUND = 20  # vertices on a circle
 CAP_STEPS, SIDE_STEPS = 5, 3

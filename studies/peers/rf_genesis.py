@@ -18,8 +18,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.signal.cube import radar_cube
 from studies.peers.capsule_mesh import BodyMesh, capsule_mesh
 
 mi.set_variant("llvm_ad_rgb")

@@ -29,21 +29,21 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.comparison.compare_signals import FEATURES
-from mmweaver.comparison.signal_evidence import CannotSeeError, ComparedSignal, SignalEvidence
 from mmweaver.core.boards import find_board
 from mmweaver.core.presets import BGT60
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.formats.raw_npy import read_adc_npy
-from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
+from mmweaver.evaluation.compare_signals import FEATURES
+from mmweaver.evaluation.signal_evidence import CannotSeeError, ComparedSignal, SignalEvidence
+from mmweaver.io.raw_npy import read_adc_npy
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import AS_PUBLISHED, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.signal.cube import radar_cube
 from studies.fields.field_signals import pose_of, sample_scene
 from studies.manifest import StudyRun
 from studies.physics.signal_statistics import (

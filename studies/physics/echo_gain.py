@@ -16,12 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence, decibels
 from mmweaver.core.boards import find_board
 from mmweaver.core.records import AdcCube
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS
+from mmweaver.evaluation.signal_evidence import ComparedSignal, SignalEvidence, decibels
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS
+from mmweaver.signal.cube import radar_cube
 from studies.manifest import StudyRun
 from studies.physics.board_left_out import breather, recorded_breath, walkers
 from studies.physics.empty_room_cube import empty_room

@@ -7,11 +7,11 @@ from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
-from mmweaver.paths.antenna import pattern, scatterer_gain
-from mmweaver.paths.paths import ApparentPoint, Paths, ScenePaths
-from mmweaver.paths.ray_traced import Simulator, add_micro_motion
-from mmweaver.paths.receiver import Receiver
-from mmweaver.paths.visible_body import motion_through
+from mmweaver.propagation.antenna import pattern, scatterer_gain
+from mmweaver.propagation.paths import ApparentPoint, Paths, ScenePaths
+from mmweaver.propagation.ray_traced import Simulator, add_micro_motion
+from mmweaver.propagation.receiver import Receiver
+from mmweaver.propagation.visible_body import motion_through
 
 TOTAL_M2 = 10**-0.5  # cross section of all joints together: -5 dBsm, as the skin has over all aspects
 

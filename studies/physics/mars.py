@@ -29,16 +29,16 @@ from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube, remove_static
-from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
-from mmweaver.dsp.points import point_cloud
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
-from mmweaver.paths.board_effects import BoardEffects
-from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import Impairments
-from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.propagation.board_effects import BoardEffects
+from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import Impairments
+from mmweaver.propagation.skin_scattering import LAMBERT, SkinEcho
+from mmweaver.propagation.static_paths import AS_PUBLISHED
+from mmweaver.signal.cube import radar_cube, remove_static
+from mmweaver.signal.firmware import FirmwareCloud, firmware_points
+from mmweaver.signal.points import point_cloud
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room

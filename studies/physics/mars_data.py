@@ -14,8 +14,8 @@ from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import MEGABYTE
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.dsp.firmware import FirmwareCloud
 from mmweaver.recognition.point_recordings import PointRecording
+from mmweaver.signal.firmware import FirmwareCloud
 
 FRAME_S = 0.1
 LONGEST_GAP = 3  # frames; joints are interpolated over shorter gaps, a longer one begins another recording

@@ -20,13 +20,13 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.cube import radar_cube, remove_static
-from mmweaver.dsp.points import point_cloud
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import ALL_PATHS
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS
+from mmweaver.signal.cube import radar_cube, remove_static
+from mmweaver.signal.points import point_cloud
 from studies.fields.field_signals import OTHER_SKIN, sample_scene
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
@@ -195,9 +195,9 @@ def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
-    from mmweaver.figures.figure_data import Fan
-    from mmweaver.figures.theme import POWER_MAP, STYLE, person_colour
+    from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power
+    from mmweaver.viz.figure_data import Fan
+    from mmweaver.viz.theme import POWER_MAP, STYLE, person_colour
 
     azimuth_rad = azimuth_axis_rad()
     with matplotlib.rc_context(STYLE):

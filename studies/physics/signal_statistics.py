@@ -21,13 +21,13 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.virtual_array import azimuth_row
-from mmweaver.dsp.cube import radar_cube, remove_static
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.mmwave_studio import read_mmwave_studio
-from mmweaver.formats.raw_npy import read_adc_npy
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.mmwave_studio import read_mmwave_studio
+from mmweaver.io.raw_npy import read_adc_npy
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.static_paths import Propagation
+from mmweaver.signal.cube import radar_cube, remove_static
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from studies.fields.field_signals import pose_of, sample_scene, two_people_radar
 from studies.manifest import StudyRun
 from studies.physics.empty_room_cube import empty_room

@@ -15,14 +15,14 @@ from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.datasets.room_generation import pose_of
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
 from mmweaver.models.neural_path_solver import LearnedRoom
 from mmweaver.models.scatterer_network import WeaverNetwork
-from mmweaver.paths.receiver import IDEAL, Receiver
+from mmweaver.propagation.receiver import IDEAL, Receiver
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.signal.cube import radar_cube
 from mmweaver.training.activity_training import compute_log_maps
 from studies.network.learned_scores import OTHER
 

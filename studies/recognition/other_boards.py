@@ -11,9 +11,9 @@ import numpy as np
 
 from mmweaver.core.records import PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.recognition.generated_sequences import SequenceRecipe
 from mmweaver.recognition.point_recordings import PointRecording, is_moving
+from mmweaver.signal.firmware_cfar import counts_per_db
 
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 STEP_MPS = 0.12  # of the velocities of things that move

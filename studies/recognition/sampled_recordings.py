@@ -24,8 +24,8 @@ from torch import Tensor
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.datasets.dataset_store import read_plan
 from mmweaver.datasets.room_sequences import LabelledData, read_labelled
-from mmweaver.dsp.cube import adc_from_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES
+from mmweaver.signal.cube import adc_from_cube
 from mmweaver.training.activity_training import TRAIN_SPLITS, augmented, compute_log_maps
 from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.field_fidelity import PAPER_VALUES

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
-from mmweaver.metrics.pose_errors import ALIGNMENTS, joint_errors_cm
+from mmweaver.evaluation.pose_errors import ALIGNMENTS, joint_errors_cm
 from mmweaver.models.point_frames import point_frames
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.figures.motion_strip import draw_pose_strips
 from mmweaver.models.point_frames import middle_m, near
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.pose_estimator import PoseEstimator, load_estimator
@@ -29,6 +28,7 @@ from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.train_pose import generated_frames, posed_frames, split_people
 from mmweaver.training.pose_training import PosedFrames, PoseRecipe, PoseWindows, mean_pose_m, train_pose
 from mmweaver.training.trainer import Trainer
+from mmweaver.viz.motion_strip import draw_pose_strips
 from studies.manifest import StudyRun, content_of
 from studies.recognition.score_poses import (
     JointCalibration,

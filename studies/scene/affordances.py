@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import project
 from mmweaver.core.records import Landmark, Scene, Seat
 from mmweaver.core.seeding import stream
-from mmweaver.geometry.pinhole import project
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.procedural.ground_truth import RadarFrame

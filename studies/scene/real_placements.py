@@ -17,10 +17,10 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import unproject
 from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.shapes import Points
 from mmweaver.core.skeleton import joint
-from mmweaver.geometry.pinhole import unproject
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.read_photo import read_photo

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.dsp.cube import remove_static
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.signal.cube import remove_static
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 from studies.manifest import StudyRun

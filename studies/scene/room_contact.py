@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.core.body_capsules import CAPSULES, Capsule, scale_of
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
-from mmweaver.geometry.body_capsules import CAPSULES, Capsule, scale_of
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import Scene
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS

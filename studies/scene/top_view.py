@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

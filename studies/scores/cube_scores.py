@@ -8,7 +8,7 @@ from jaxtyping import Complex
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMap, RangeDopplerMask
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from studies.scores.map_similarity import ssim_map
 
 AnyComplex = Complex[np.ndarray, "*any"]

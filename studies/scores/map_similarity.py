@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.metrics.map_scores import SHOWN_DB, PowerMaps, displays
+from mmweaver.evaluation.map_scores import SHOWN_DB, PowerMaps, displays
 
 WINDOW_SIGMA = 1.5
 WINDOW_RADIUS = 5

@@ -10,10 +10,10 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import RangeAngleMap, RangeDopplerMap, RangeDopplerMask
-from mmweaver.dsp.cfar import ca_cfar
-from mmweaver.dsp.points import point_cloud
-from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
-from mmweaver.metrics.map_scores import log_map_difference_db
+from mmweaver.evaluation.map_scores import log_map_difference_db
+from mmweaver.signal.cfar import ca_cfar
+from mmweaver.signal.points import point_cloud
+from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from studies.scores.cloud_distances import cloud_distances_m
 from studies.scores.cube_scores import (
     BASELINES,

@@ -103,7 +103,7 @@ def faulted_commands(inputs: Path) -> list[FaultedCommand]:
         FaultedCommand("dataset", f"dataset OUT/data {DATASET}", is_resumable=True,
                        computes=("mmweaver.datasets.room_generation:generate_room",)),
         FaultedCommand("dataset --activities", f"dataset OUT/set {labels} {sample} {LABELLED}",
-                       is_resumable=True, computes=(*GENERATED, "mmweaver.activity_sets.build_set:compose_request")),
+                       is_resumable=True, computes=(*GENERATED, "mmweaver.datasets.build_set:compose_request")),
         FaultedCommand("train", f"{TRAIN} --data {inputs}/data --out OUT/run", is_resumable=True, computes=TRAINED,
                        smaller=small_training),
     ]  # fmt: skip

@@ -18,7 +18,7 @@ from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.io.dca1000 import write_bin
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.joint_arrays import CMU_NAMES
@@ -31,7 +31,7 @@ from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, Request
 from tests.captures import CFG
 from tests.cli.test_motion_options import waving
-from tests.formats.test_ti_cfg import BEST_RANGE, SUB_FRAMES
+from tests.io.test_ti_cfg import BEST_RANGE, SUB_FRAMES
 from tests.recordings.test_plausibility import RADAR, room
 
 SAMPLE = Path(generate.__file__).parents[1] / "sample"

@@ -10,11 +10,11 @@ from mmweaver.cli.main import main
 from mmweaver.core.presets import ANTENNAS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
-from mmweaver.formats.dca1000 import upright, write_bin
-from mmweaver.formats.radar_options import RadarOptions
+from mmweaver.io.dca1000 import upright, write_bin
+from mmweaver.io.radar_options import RadarOptions
 from tests.advice.harness import Row, Step, Try, Words, add, drop, edit, first, flag, instead, plus
 from tests.captures import counts, packets_of, pcap_of, radar_of_cfg
-from tests.formats.test_peer_arrays import hupr_array, simulated_frame
+from tests.io.test_peer_arrays import hupr_array, simulated_frame
 from tests.recordings.test_plausibility import RADAR, room
 
 PROCESS = "process {iq} --radar {radar} --no-pictures --no-analysis --out out"

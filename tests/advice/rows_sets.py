@@ -7,7 +7,7 @@ from pathlib import Path
 from PIL import Image
 
 from mmweaver.cli.main import main
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.io.dca1000 import write_bin
 from tests.advice.harness import Row, add, drop, instead
 from tests.advice.made_inputs import SAMPLE
 from tests.recordings.test_plausibility import RADAR, room

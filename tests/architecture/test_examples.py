@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.py"))
-# One makes 90 sequences (tests/activity_sets and tests/datasets/test_radar_dataset.py hold its parts), one searches for
+# One makes 90 sequences (tests/datasets and tests/datasets/test_radar_dataset.py hold its parts), one searches for
 # two sizes (tests/cli/test_compress.py).
 LONG = {"train_on_own_room", "small_files"}
 

@@ -3,9 +3,9 @@
 import re
 from pathlib import Path
 
-from mmweaver.exports.export import FORMATS
-from mmweaver.formats.peer_arrays import LAYOUTS
-from mmweaver.formats.point_clouds.read_points import FORMATS as POINT_FORMATS
+from mmweaver.datasets.export import FORMATS
+from mmweaver.io.peer_arrays import LAYOUTS
+from mmweaver.io.point_clouds.read_points import FORMATS as POINT_FORMATS
 from mmweaver.recordings.read_recording import PACKET_SUFFIXES
 from mmweaver.scene.scanned_mesh.read_mesh import SUFFIXES
 

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from mmweaver.cli.main import main
-from tests.formats.test_ti_cfg import BEST_RANGE
+from tests.io.test_ti_cfg import BEST_RANGE
 
 pytest.importorskip("zarr")
 ROOT = Path(__file__).resolve().parents[2]

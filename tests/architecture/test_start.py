@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 from mmweaver.core.presets import PRESETS
-from mmweaver.formats.dca1000 import bytes_of_frame
+from mmweaver.io.dca1000 import bytes_of_frame
 
 
 def test_the_command_line_starts_without_torch():

@@ -46,8 +46,8 @@ FEATURES = (
     *((f"export made/ --to {kind} --out out/", "export") for kind in ("zarr", "netcdf", "ros2", "mcap", "mp4", "webm")),
     ("export made/ --to mp4 --out out.mp4", "export"),
     ("export made/ --to rerun --out out/", "rerun"),
-    ("python 'from mmweaver.formats.conversions import to_dataset; to_dataset(None, None, (), None, {})'", "xarray"),
-    ("python 'from mmweaver.playback.notebook import player_widget; player_widget(None, None)'", "notebook"),
+    ("python 'from mmweaver.io.conversions import to_dataset; to_dataset(None, None, (), None, {})'", "xarray"),
+    ("python 'from mmweaver.viz.notebook import player_widget; player_widget(None, None)'", "notebook"),
     ("python 'import mmweaver.compression.zarr_codec'", "dataset"),
     ("python 'from mmweaver.models.hub import push_to_hub; push_to_hub(None, None)'", "weaver"),
 )  # fmt: skip

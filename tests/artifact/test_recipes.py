@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from mmweaver.cli.main import COMMANDS
-from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.io.npz_files import read_radar_npz
 from tests.artifact.artifact import Installed
 from tests.artifact.readme import recipes
 from tests.artifact.smaller import SMALLER

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-BUNDLE = Path("src/mmweaver/playback/page/mmweaver.js")
+BUNDLE = Path("src/mmweaver/viz/page/mmweaver.js")
 
 
 def test_the_bundle_is_current(tmp_path: Path):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.io.dca1000 import write_bin
 from tests import captures
 from tests.browser.chromium import FLAGS, Running, needs_browser, running_studio
 from tests.scene.scanned_mesh.test_mesh_photo import Y_UP, furnished

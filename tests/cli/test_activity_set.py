@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from mmweaver.activity_sets import build_set
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
+from mmweaver.datasets import build_set
 from mmweaver.datasets.activity_store import read_activity_set
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"

@@ -9,7 +9,7 @@ import pytest
 from mmweaver.cli.batch import read_texts
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.io.npz_files import read_radar_npz
 
 SHORT = ["generate", "--demo", "--frames", "6", "--no-pictures", "--json"]
 

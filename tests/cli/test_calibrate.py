@@ -9,8 +9,8 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.core.board import read_board
-from mmweaver.formats.npz_files import read_npz
-from tests.calibration.test_calibrate import RADAR, cluttered_room
+from mmweaver.io.npz_files import read_npz
+from tests.evaluation.test_calibrate import RADAR, cluttered_room
 
 
 @pytest.fixture(scope="module")

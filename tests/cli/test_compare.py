@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.cli.main import main
-from tests.comparison.test_compared_sides import write_result
+from tests.evaluation.test_compared_sides import write_result
 
 
 @pytest.fixture(scope="module")

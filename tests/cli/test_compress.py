@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.formats.npz_files import write_radar_npz
-from tests.fields.echoes import SMALL, crowd
+from mmweaver.io.npz_files import write_radar_npz
+from tests.compression.echoes import SMALL, crowd
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixt
 
 def test_an_array_of_another_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     """HuPR's shape is known; mmMesh's is also RF-Genesis's, so it must be named."""
-    from tests.formats.test_peer_arrays import hupr_array, simulated_frame
+    from tests.io.test_peer_arrays import hupr_array, simulated_frame
 
     np.save(tmp_path / "000000001.npy", hupr_array(simulated_frame()))
     words = ["compress", str(tmp_path / "000000001.npy"), "-o", str(tmp_path / "a.mmw"), "--bytes", "9000", "--json"]

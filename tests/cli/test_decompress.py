@@ -5,8 +5,8 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.compression.mmw_codec import compress_cube
-from mmweaver.formats.npz_files import read_radar_npz
-from tests.fields.echoes import crowd, error_db
+from mmweaver.io.npz_files import read_radar_npz
+from tests.compression.echoes import crowd, error_db
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 
 from mmweaver.cli.main import main
-from mmweaver.figures.previews import PREVIEWS
-from mmweaver.formats.npz_files import read_npz, read_radar_npz
+from mmweaver.io.npz_files import read_npz, read_radar_npz
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.viz.previews import PREVIEWS
 from tests.captures import write_camera
 from tests.platforms import posix_only
 

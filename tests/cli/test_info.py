@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.compression.mmw_codec import compress_cube
-from tests.fields.echoes import crowd
+from tests.compression.echoes import crowd
 
 
 def test_what_a_file_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

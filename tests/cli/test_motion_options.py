@@ -8,7 +8,7 @@ import pytest
 
 from mmweaver.cli.main import main
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.formats.npz_files import read_npz
+from mmweaver.io.npz_files import read_npz
 
 FPS = 30.0
 

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from mmweaver.cli.main import main
-from tests.activity_sets.conftest import ACTIVITIES
+from tests.datasets.conftest import ACTIVITIES
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.formats.npz_files import write_points_npz
+from mmweaver.io.npz_files import write_points_npz
 from mmweaver.recognition import train_pose
 from mmweaver.recognition.pose_estimator import load_estimator
 from tests.training.moving_arm import moving_arm

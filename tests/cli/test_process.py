@@ -12,8 +12,8 @@ from mmweaver.core.boards import typical_board
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
-from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.npz_files import read_npz, read_points_npz, read_radar_npz
+from mmweaver.io.dca1000 import write_bin
+from mmweaver.io.npz_files import read_npz, read_points_npz, read_radar_npz
 from tests.captures import counts, radar_of_cfg, write_radar
 
 BARE_CFG = """channelCfg 15 7 0

@@ -14,7 +14,7 @@ from mmweaver.cli.main import main
 from mmweaver.cli.recognise_text import confused_lines
 from mmweaver.recognition import train_recogniser as training
 from mmweaver.recognition.recogniser import load_recogniser
-from tests.formats.point_clouds.test_read_points import out_of_box
+from tests.io.point_clouds.test_read_points import out_of_box
 from tests.recognition.small_recogniser import drawn_sequences, write_recordings
 from tests.recognition.test_train_recogniser import TASK
 

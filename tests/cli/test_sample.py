@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mmweaver.activity_sets.build_set import read_activities
 from mmweaver.cli.main import main
 from mmweaver.core.checksums import SUMS_FILE
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.radar_file import load_radar
+from mmweaver.datasets.build_set import read_activities
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.radar_file import load_radar
 from mmweaver.recognition.task_file import read_task
 from mmweaver.scene.photo_files import RoomFiles
 from mmweaver.scene.sample_photo import sample_photo

@@ -18,7 +18,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.models.activity_network import ActivityNetwork, label_names_of, load_activity
 from mmweaver.models.weights import load_into, shipped_weights
-from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
+from tests.datasets.conftest import activity_set  # noqa: F401  (a fixture)
 
 pytest.importorskip("zarr")
 

@@ -6,7 +6,7 @@ from mmweaver.core.seeding import stream
 
 def test_active_mask_are_those_of_the_metrics():
     from studies.scores.cube_scores import cells_of
-    from tests.fields.echoes import crowd
+    from tests.compression.echoes import crowd
 
     cube = crowd()
     assert np.array_equal(active_mask(cube.values), cells_of(cube).is_active)

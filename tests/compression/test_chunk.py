@@ -7,13 +7,13 @@ import torch
 
 from mmweaver.compression.chunk import PREFIX, ChunkFrames, decode_chunk, pack_exact, unpack_exact
 from mmweaver.compression.chunk_encoder import ChunkEncoder, ChunkMode, Scale, noise_power
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
 from mmweaver.compression.transforms import NO_DCT, TransformChoice
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from tests.fields.echoes import SMALL, crowd, error_db
-from tests.fields.scatterers.test_fit_window import overlapping
+from tests.compression.echoes import SMALL, crowd, error_db
+from tests.compression.scatterers.test_fit_window import overlapping
 
 POINTS = ChunkMode(with_points=True)
 

@@ -10,9 +10,9 @@ from mmweaver.compression.mmw_codec import read_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.io.dca1000 import write_bin
 from mmweaver.recordings.recording_pieces import RecordingPieces
-from tests.fields.echoes import SMALL, error_db
+from tests.compression.echoes import SMALL, error_db
 
 RADAR = replace(SMALL, num_loops=2, num_range_bins=4, num_samples=64)
 

@@ -9,7 +9,7 @@ from mmweaver.compression.lossless_file import LosslessFile, compress_bin, descr
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
-from mmweaver.formats.dca1000 import bytes_of_frame
+from mmweaver.io.dca1000 import bytes_of_frame
 from tests.captures import PAYLOAD, counts, packets_of, pcap_of, radar_of_cfg
 
 RADAR = replace(AWR1843, num_samples=64, num_loops=8, num_range_bins=32, first_range_bin=0)

@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
-from tests.fields.echoes import SMALL, crowd, error_db
+from tests.compression.echoes import SMALL, crowd, error_db
 
 
 @pytest.fixture(scope="module")

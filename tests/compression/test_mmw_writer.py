@@ -9,8 +9,8 @@ import pytest
 from mmweaver.compression.mmw_codec import describe_mmw, read_cube
 from mmweaver.compression.mmw_writer import MmwWriter
 from mmweaver.core.errors import InputError
+from tests.compression.echoes import SMALL, error_db
 from tests.compression.test_mmw_codec import plain_cube
-from tests.fields.echoes import SMALL, error_db
 
 RADAR = replace(SMALL, num_loops=2, num_range_bins=4)
 

@@ -10,8 +10,8 @@ from mmweaver.compression.optimiser import Optimiser, error_db
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
+from tests.compression.echoes import SMALL, crowd
 from tests.compression.test_mmw_codec import plain_cube
-from tests.fields.echoes import SMALL, crowd
 
 
 def optimiser_of(cube: RadarCube) -> Optimiser:

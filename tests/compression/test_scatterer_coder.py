@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.compression.beams import beams_of
 from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.scatterer_coder import (
     CodedPoints,
@@ -16,12 +17,11 @@ from mmweaver.compression.scatterer_coder import (
     static_levels,
     static_of,
 )
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.layers import no_points
 from mmweaver.core.seeding import stream
-from mmweaver.fields.beams import beams_of
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.layers import no_points
-from tests.fields.echoes import SMALL
-from tests.fields.scatterers.test_refinement import AXES, RESPONSE, random_points
+from tests.compression.echoes import SMALL
+from tests.compression.scatterers.test_refinement import AXES, RESPONSE, random_points
 
 SHAPE = (3, 24, 16)
 

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.compression.transforms import FULL_DCT, ChunkTransform, TransformChoice, transform_choices
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.windows import hann
+from mmweaver.signal.windows import hann
 
 SHAPES = [(1, 4, 8, 3), (5, 3, 1, 1), (6, 4, 2, 4), (4, 3, 32, 8)]
 

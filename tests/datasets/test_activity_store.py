@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.datasets.activity_store import read_activity_set
-from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
+from tests.datasets.conftest import activity_set  # noqa: F401  (a fixture)
 
 STORE = "sequences.zarr"
 VICTIMS = [f"{STORE}/label/c/0", f"{STORE}/joints_m/c/0/0/0/0", "leaks.json", f"{STORE}/zarr.json"]

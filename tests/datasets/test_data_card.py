@@ -11,8 +11,8 @@ from mmweaver.core.version import __version__
 from mmweaver.datasets.data_card import CARD_FILE, write_rooms_card, write_set_card
 from mmweaver.datasets.dataset_writer import AXES
 from mmweaver.datasets.radar_dataset import RadarDataset
-from mmweaver.weaver.verification import verify
-from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
+from mmweaver.datasets.verification import verify
+from tests.datasets.conftest import activity_set  # noqa: F401  (a fixture)
 
 zarr = pytest.importorskip("zarr")
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "n>1M")  # as the Hub calls them

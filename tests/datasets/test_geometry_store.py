@@ -14,7 +14,7 @@ from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.datasets.geometry_store import StoredGeometry
 from mmweaver.datasets.room_generation import generate_room
-from mmweaver.paths.static_paths import FIRST_ORDER
+from mmweaver.propagation.static_paths import FIRST_ORDER
 from tests.training.tiny_data import TINY_PLAN
 
 pytest.importorskip("zarr")

@@ -11,8 +11,8 @@ from torch.utils.data import DataLoader
 from mmweaver.core.errors import InputError
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.radar_dataset import FEATURES, RadarDataset, collate
-from mmweaver.dsp.features import range_doppler_db
-from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
+from mmweaver.signal.features import range_doppler_db
+from tests.datasets.conftest import activity_set  # noqa: F401  (a fixture)
 
 
 def test_an_item_has_all_features(activity_set: Path):  # noqa: F811

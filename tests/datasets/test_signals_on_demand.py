@@ -11,15 +11,15 @@ import pytest
 import torch
 from torch.utils.data import DataLoader
 
-from mmweaver.activity_sets.build_set import SetBuilder, read_activities
 from mmweaver.core.errors import InputError
 from mmweaver.datasets import RadarDataset, collate
 from mmweaver.datasets.activity_store import ActivitySet, read_activity_set
+from mmweaver.datasets.build_set import SetBuilder, read_activities
 from mmweaver.datasets.signals_on_demand import moving_power_db
 from mmweaver.models.methods import Physics
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.propagation.static_paths import Propagation
 from mmweaver.weaver.front_door import Weaver
-from tests.activity_sets.conftest import ACTIVITIES, OPTIONS, builder
+from tests.datasets.conftest import ACTIVITIES, OPTIONS, builder
 
 pytest.importorskip("zarr")
 FEW = replace(OPTIONS, each=1, seconds=0.6)

@@ -17,14 +17,14 @@ from mmweaver.datasets import room_generation
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.datasets.room_generation import GeneratedRoom
-from mmweaver.formats.npz_files import write_radar_npz
-from mmweaver.formats.result_folder import save_results
-from mmweaver.formats.stream_folder import LIST, StreamFolder
+from mmweaver.io.npz_files import write_radar_npz
+from mmweaver.io.result_folder import save_results
+from mmweaver.io.stream_folder import LIST, StreamFolder
+from tests.compression.echoes import SMALL, crowd
 from tests.faults.synced_disk import SyncedDisk
-from tests.fields.echoes import SMALL, crowd
-from tests.figures.views import noise_view
 from tests.motion.rooms import room
 from tests.test_stream_folder import add
+from tests.viz.views import noise_view
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from mmweaver.activity_sets.build_set import read_activities
 from mmweaver.cli.arguments import parsed
 from mmweaver.cli.main import parser_of
 from mmweaver.compression.lossless_file import CHECK, LosslessFile, compress_bin
@@ -24,24 +23,25 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_tensors import read_checkpoint
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.core.tensor_files import write_tensors
-from mmweaver.formats.dca_packets import read_pcap
-from mmweaver.formats.pcap import udp_packets
-from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr
-from mmweaver.formats.point_clouds.read_points import read_points
-from mmweaver.formats.radar_options import RadarOptions, read_antennas
-from mmweaver.formats.stored_result import read_result
-from mmweaver.formats.stream_folder import read_stream_cube
+from mmweaver.datasets.build_set import read_activities
+from mmweaver.io.dca_packets import read_pcap
+from mmweaver.io.pcap import udp_packets
+from mmweaver.io.peer_arrays import detect_layout, read_cubelearn, read_hupr
+from mmweaver.io.point_clouds.read_points import read_points
+from mmweaver.io.radar_options import RadarOptions, read_antennas
+from mmweaver.io.stored_result import read_result
+from mmweaver.io.stream_folder import read_stream_cube
 from mmweaver.models.weights import FORMAT, load_into
 from mmweaver.motion.language.sentence import parse
-from mmweaver.playback.wire import pack, unpack
 from mmweaver.studio.schemas import Form
 from mmweaver.training.run_log import RunLog
-from tests.formats.point_clouds.test_read_points import XYZV, out_of_box, packet
-from tests.formats.test_pcap import pcapng_of
-from tests.formats.test_peer_arrays import hupr_array, simulated_frame
+from mmweaver.viz.wire import pack, unpack
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.set_readers import members_reader
+from tests.io.point_clouds.test_read_points import XYZV, out_of_box, packet
+from tests.io.test_pcap import pcapng_of
+from tests.io.test_peer_arrays import hupr_array, simulated_frame
 
 ACTIVITIES = """[activities]
 waving = ["a person waves with the left hand", "a person waves with the right hand"]

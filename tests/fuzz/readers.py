@@ -18,9 +18,9 @@ from mmweaver.core.records import AdcCube, CameraIntrinsics, PointCloud, PoseSeq
 from mmweaver.core.safe_files.safe_text import read_toml
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
-from mmweaver.formats.dca1000 import read_bin, write_bin
-from mmweaver.formats.dca_packets import read_pcap
-from mmweaver.formats.npz_files import (
+from mmweaver.io.dca1000 import read_bin, write_bin
+from mmweaver.io.dca_packets import read_pcap
+from mmweaver.io.npz_files import (
     read_points_npz,
     read_poses_npz,
     read_radar_npz,
@@ -28,8 +28,8 @@ from mmweaver.formats.npz_files import (
     write_pose_npz,
     write_radar_npz,
 )
-from mmweaver.formats.radar_file import describe_radar, load_firmware, load_radar
-from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.io.radar_file import describe_radar, load_firmware, load_radar
+from mmweaver.io.raw_npy import read_adc_npy
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.recordings.processing import process_recording
 from mmweaver.scene.photo.camera_file import intrinsics_for, read_camera_file
@@ -37,12 +37,12 @@ from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
 from mmweaver.scene.segmentation.class_file import read_class_file
 from tests import captures
-from tests.formats.test_mmwave_studio import SETUP
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.mesh_readers import mesh_readers
 from tests.fuzz.set_readers import set_readers
+from tests.io.test_mmwave_studio import SETUP
 
 WIDTH, HEIGHT = 64, 48
 STUDIO = {"mmWaveDevices": [{"rfConfig": SETUP, "rawDataCaptureConfig": {"rlDevDataFmtCfg_t": {"iqSwapSel": 0}}}]}

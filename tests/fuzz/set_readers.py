@@ -24,12 +24,12 @@ from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_store import read_radar, read_rooms
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.datasets.room_generation import RoomGeometry
+from mmweaver.datasets.verification import verify
 from mmweaver.datasets.zarr_arrays import put_array
-from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.static_paths import FIRST_ORDER
-from mmweaver.paths.static_paths_store import room_of
-from mmweaver.paths.visibility import Visibility
-from mmweaver.weaver.verification import verify
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.static_paths import FIRST_ORDER
+from mmweaver.propagation.static_paths_store import room_of
+from mmweaver.propagation.visibility import Visibility
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader
 

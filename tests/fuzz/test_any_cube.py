@@ -10,7 +10,7 @@ from mmweaver.compression.active_mask import active_mask
 from mmweaver.compression.mmw_codec import FLOAT32_DB, MAX_PEAK, compress_cube, values_of_bytes
 from mmweaver.compression.optimiser import error_db
 from mmweaver.core.records import CubeGrid, RadarCube
-from tests.fields.echoes import SMALL
+from tests.compression.echoes import SMALL
 from tests.fuzz.test_properties import deep, hold
 
 SMALL_FILE, WORDS = 300, 12  # bytes below which a few words of the stream matter; what may then be left over

@@ -14,8 +14,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.datasets.activity_store import read_activity_set
 from mmweaver.datasets.dataset_plan import DatasetPlan, check_plan, shell_words
 from mmweaver.datasets.dataset_store import read_rooms
-from mmweaver.figures.theme import STYLE
-from mmweaver.weaver.verification import verify
+from mmweaver.datasets.verification import verify
+from mmweaver.viz.theme import STYLE
 
 ATTACK = "mmweaver dataset set; rm -rf /tmp/x $(id) `id` | sh"
 SUM = "0" * 64

@@ -26,12 +26,11 @@ from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, R
 from mmweaver.core.safe_files.safe_zarr import open_zarr
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
+from mmweaver.datasets.cloud_layouts import write_mars, write_radhar
+from mmweaver.datasets.tensor_layouts import write_mmmesh, write_rf_genesis
 from mmweaver.datasets.zarr_arrays import put_array, put_sequences
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.exports.cloud_layouts import write_mars, write_radhar
-from mmweaver.exports.tensor_layouts import write_mmmesh, write_rf_genesis
-from mmweaver.formats.dca1000 import read_bin, write_bin
-from mmweaver.formats.npz_files import (
+from mmweaver.io.dca1000 import read_bin, write_bin
+from mmweaver.io.npz_files import (
     read_points_npz,
     read_poses_npz,
     read_radar_npz,
@@ -39,11 +38,12 @@ from mmweaver.formats.npz_files import (
     write_pose_npz,
     write_radar_npz,
 )
-from mmweaver.formats.peer_arrays import read_mmmesh, read_rf_genesis
-from mmweaver.formats.point_clouds.read_points import read_points
-from mmweaver.formats.radar_file import load_radar
-from mmweaver.formats.stored_result import StoredResult
-from mmweaver.paths.receiver import Impairments, Receiver
+from mmweaver.io.peer_arrays import read_mmmesh, read_rf_genesis
+from mmweaver.io.point_clouds.read_points import read_points
+from mmweaver.io.radar_file import load_radar
+from mmweaver.io.stored_result import StoredResult
+from mmweaver.propagation.receiver import Impairments, Receiver
+from mmweaver.signal.cube import radar_cube
 from tests.cubes import point_cube
 
 SMALL = replace(AWR1843, num_loops=2, num_samples=8, num_range_bins=4, first_range_bin=0)

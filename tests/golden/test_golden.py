@@ -11,11 +11,11 @@ import torch
 from mmweaver.compression.mmw_codec import describe_mmw, read_cube
 from mmweaver.core.checksums import SUMS_FILE
 from mmweaver.datasets.dataset_store import read_rooms
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.npz_files import read_points_npz, read_poses_npz, read_radar_npz
+from mmweaver.datasets.verification import verify
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.npz_files import read_points_npz, read_poses_npz, read_radar_npz
 from mmweaver.models.weights import load_into
-from mmweaver.weaver.verification import verify
-from tests.fields.echoes import crowd, error_db
+from tests.compression.echoes import crowd, error_db
 
 # of the first cube and the joints of the data set, and of the cube of the result folder; by the code that wrote them
 DIGESTS = {

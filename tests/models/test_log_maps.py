@@ -7,8 +7,8 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
-from mmweaver.dsp.spectra import range_azimuth_power, range_doppler_power
 from mmweaver.models.log_maps import MIDDLE_DB, NUM_AZIMUTHS, SPREAD_DB, WIDEST_DEG, LogMaps
+from mmweaver.signal.spectra import range_azimuth_power, range_doppler_power
 
 
 def _cube(scale: float) -> RadarCube:

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.micro_motion import STILL, MicroMotion, MicroMotionSettings, Waves
-from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.propagation.body_model import ScatteringBody
 from tests.rooms import standing_person
 
 STEP_S = 0.04

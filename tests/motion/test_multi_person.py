@@ -11,7 +11,7 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.planning.separation import separations_m
-from mmweaver.paths.body_model import body_of
+from mmweaver.propagation.body_model import body_of
 from tests.rooms import floor, scene_of
 
 SCENE = scene_of((floor(),))

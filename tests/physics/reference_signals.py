@@ -13,7 +13,7 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.core.stages import Stages
 from mmweaver.models.methods import METHODS, Physics
 from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.propagation.static_paths import Propagation
 
 FILE = Path(__file__).with_suffix(".npz")
 SPEED_MPS, FRAMES, CELLS = 0.8, 2, 200

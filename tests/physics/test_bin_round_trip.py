@@ -10,8 +10,8 @@ from mmweaver.core.presets import AWR1843, HUPR, MMMESH
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.formats.dca1000 import read_bin, write_bin
+from mmweaver.io.dca1000 import read_bin, write_bin
+from mmweaver.signal.cube import adc_from_cube, radar_cube
 
 
 def scene_cube(config: RadarConfig) -> RadarCube:

@@ -12,9 +12,9 @@ from mmweaver.core.presets import AWR1843, BGT60, HUPR, MMMESH
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube, remove_static, remove_static_adc
-from mmweaver.dsp.points import point_cloud
-from mmweaver.dsp.spectra import (
+from mmweaver.signal.cube import radar_cube, remove_static, remove_static_adc
+from mmweaver.signal.points import point_cloud
+from mmweaver.signal.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
     moving_doppler,

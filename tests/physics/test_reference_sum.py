@@ -7,11 +7,11 @@ import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
-from mmweaver.paths.reference_sum import exact_frame
-from mmweaver.paths.static_paths import scattered_paths
-from mmweaver.paths.visible_body import motion_through
+from mmweaver.propagation.adc_synthesis import AdcSynthesis
+from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
+from mmweaver.propagation.reference_sum import exact_frame
+from mmweaver.propagation.static_paths import scattered_paths
+from mmweaver.propagation.visible_body import motion_through
 
 
 def moving_points(count: int, speed_mps: float, acceleration_mps2: float, seed: int = 0):

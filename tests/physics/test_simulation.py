@@ -8,18 +8,18 @@ import torch
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843
-from mmweaver.dsp.cube import cube_values
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
-from mmweaver.paths.adc_synthesis import AdcSynthesis
-from mmweaver.paths.antenna import scatterer_gain, specular_gain
-from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.image_method import specular_paths, specular_reflectors
-from mmweaver.paths.materials import MATERIALS, reflection
-from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import IDEAL
-from mmweaver.paths.skin_scattering import LAMBERT
-from mmweaver.paths.static_paths import Propagation
+from mmweaver.propagation.adc_synthesis import AdcSynthesis
+from mmweaver.propagation.antenna import scatterer_gain, specular_gain
+from mmweaver.propagation.cube_rendering import CubeRenderer
+from mmweaver.propagation.image_method import specular_paths, specular_reflectors
+from mmweaver.propagation.materials import MATERIALS, reflection
+from mmweaver.propagation.paths import ApparentPoint, Interaction, Paths
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import IDEAL
+from mmweaver.propagation.skin_scattering import LAMBERT
+from mmweaver.propagation.static_paths import Propagation
+from mmweaver.signal.cube import cube_values
 from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
 
 SYNTHESIS = AdcSynthesis(AWR1843)
@@ -210,8 +210,8 @@ def test_furniture_hides_the_person_and_the_person_hides_the_wall():
     echo = hidden.run(person, num_frames=1, seed=0).adc.samples[0] - hidden.room_adc
     assert np.abs(echo).max() == 0
     without_shadow = seen.run(person, num_frames=1, seed=0).adc.samples[0] - seen.room_adc
-    from mmweaver.paths.body_model import body_of
-    from mmweaver.paths.body_paths import BodyPaths
+    from mmweaver.propagation.body_model import body_of
+    from mmweaver.propagation.body_paths import BodyPaths
 
     paths = BodyPaths(seen.room, body_of(person), seen.clock, seen._joints_at_nodes(person, np.arange(1)))
     occluded = paths.occluded_paths(0)
@@ -253,7 +253,7 @@ def test_cutting_the_frames_changes_no_bit(monkeypatch: pytest.MonkeyPatch):
     simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
     person = standing_person((0.2, 2.0, -1.2), (0.0, -0.5, 0.0))
     whole = simulator.run(person, num_frames=3, seed=0).adc.samples
-    monkeypatch.setattr("mmweaver.paths.ray_traced.CHUNK_FRAMES", 2)
+    monkeypatch.setattr("mmweaver.propagation.ray_traced.CHUNK_FRAMES", 2)
     assert whole.tobytes() == simulator.run(person, num_frames=3, seed=0).adc.samples.tobytes()
 
 

@@ -9,9 +9,9 @@ from mmweaver.core.presets import ANTENNAS, halfwave_positions, ti_board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.transmit_code import tx_code_of
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.points import point_cloud
-from mmweaver.paths.reference_sum import exact_frame
+from mmweaver.propagation.reference_sum import exact_frame
+from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.points import point_cloud
 
 CHIRP = {
     "chirp_slope_hz_per_s": 60.012e12, "idle_time_s": 7e-6, "adc_start_time_s": 6e-6, "ramp_end_time_s": 65e-6,

@@ -9,12 +9,12 @@ import pytest
 from mmweaver.core.presets import BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
-from mmweaver.dsp.cube import radar_cube, remove_static, remove_static_adc
-from mmweaver.dsp.points import point_cloud
-from mmweaver.dsp.spectra import azimuth_axis_rad, moving_doppler, range_azimuth_power, range_doppler_power
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.mmwave_studio import read_mmwave_studio
-from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.mmwave_studio import read_mmwave_studio
+from mmweaver.io.raw_npy import read_adc_npy
+from mmweaver.signal.cube import radar_cube, remove_static, remove_static_adc
+from mmweaver.signal.points import point_cloud
+from mmweaver.signal.spectra import azimuth_axis_rad, moving_doppler, range_azimuth_power, range_doppler_power
 
 
 def two_people_radar(tx_order: tuple[int, ...] = (0, 1)) -> RadarConfig:

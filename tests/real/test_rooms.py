@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import Scene
-from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.geometry.rotations import pitch_and_roll_rad
+from mmweaver.core.rotations import pitch_and_roll_rad
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.formats.npz_files import write_points_npz
+from mmweaver.io.npz_files import write_points_npz
 from mmweaver.recognition.point_recordings import (
     PointRecording,
     read_task_recording,

@@ -7,9 +7,9 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.reference_sum import exact_frame
+from mmweaver.propagation.reference_sum import exact_frame
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
+from mmweaver.signal.cube import radar_cube
 
 RADAR = replace(
     AWR1843, name="one", num_loops=128, idle_time_s=440e-6, num_samples=64, sample_rate_hz=1.13e6, frame_period_s=0.1,

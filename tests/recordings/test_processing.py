@@ -10,9 +10,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import BGT60
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.recordings.processing import process_recording
+from mmweaver.signal.cube import radar_cube
 from tests.captures import counts, packets_of, radar_of_cfg, write_camera, write_radar
 from tests.rooms import back_wall, floor, scene_of, standing_person
 

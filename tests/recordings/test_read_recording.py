@@ -7,11 +7,11 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.npz_files import write_radar_npz
+from mmweaver.io.dca1000 import write_bin
+from mmweaver.io.npz_files import write_radar_npz
 from mmweaver.recordings.processing import process_recording
 from mmweaver.recordings.read_recording import read_recording
+from mmweaver.signal.cube import radar_cube
 from tests.captures import counts, radar_of_cfg, write_radar
 
 

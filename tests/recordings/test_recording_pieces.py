@@ -6,13 +6,13 @@ import pytest
 
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
-from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.npz_files import write_radar_npz
-from mmweaver.formats.stream_folder import LIST, PARTS
+from mmweaver.io.dca1000 import write_bin
+from mmweaver.io.npz_files import write_radar_npz
+from mmweaver.io.stream_folder import LIST, PARTS
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.recordings.recording_pieces import RecordingPieces
 from tests.captures import packets_of, pcap_of
-from tests.fields.echoes import SMALL
+from tests.compression.echoes import SMALL
 
 RADAR = replace(SMALL, num_loops=2, num_range_bins=4, num_samples=32)
 AXES = "frame,loop,tx,rx,sample"

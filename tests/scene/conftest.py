@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from mmweaver.core.pinhole import unproject
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.geometry.pinhole import unproject
-from mmweaver.geometry.ray_caster import RayCaster
 
 Box = tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from mmweaver.paths.materials import MATERIALS
+from mmweaver.propagation.materials import MATERIALS
 from mmweaver.scene.coco_stuff import ALIASES, GLASS, MATERIAL, MIRRORS, NAMES, coco_class
 
 

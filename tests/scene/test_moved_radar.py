@@ -10,18 +10,18 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
 from mmweaver.core.records import PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.cube import radar_cube, remove_static
-from mmweaver.dsp.spectra import (
+from mmweaver.propagation import ray_traced
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import IDEAL
+from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
+from mmweaver.signal.cube import radar_cube, remove_static
+from mmweaver.signal.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
     range_azimuth_power,
     range_doppler_power,
     range_elevation_power,
 )
-from mmweaver.paths import ray_traced
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import IDEAL
-from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from tests.rooms import STANDING_M, back_wall, floor, plane, scene_of, side_wall, standing_person
 
 RIGHT_ANGLE = RadarPose.of_words("1.8,2.2,0,-90,0")  # 2.2 m ahead of the camera, looks to its left

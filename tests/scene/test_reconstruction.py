@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import Plane, Scene
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.reconstruction import reconstruct
 
 TABLE = ((-0.9, 0.3), (1.9, 2.6), (0.69, 0.73))

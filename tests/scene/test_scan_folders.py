@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import resized, rotated_clockwise
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.geometry.pinhole import resized, rotated_clockwise
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
 from mmweaver.weaver.front_door import Weaver

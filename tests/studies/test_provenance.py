@@ -20,7 +20,12 @@ def git(root: Path, *words: str) -> str:
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:
     """A repository that looks like mmWeaver's."""
-    for file in ("src/mmweaver/__init__.py", "src/mmweaver/paths/image_method.py", "studies/__init__.py", "README.md"):
+    for file in (
+        "src/mmweaver/__init__.py",
+        "src/mmweaver/propagation/image_method.py",
+        "studies/__init__.py",
+        "README.md",
+    ):
         path = tmp_path / "clone" / file
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("")
@@ -38,7 +43,7 @@ def test_a_clean_clone_gives_its_commit(clone: Path):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("file", ["src/mmweaver/paths/image_method.py", "studies/__init__.py", "studies/new.py"])
+@pytest.mark.parametrize("file", ["src/mmweaver/propagation/image_method.py", "studies/__init__.py", "studies/new.py"])
 def test_any_change_in_package_or_studies_is_dirty(clone: Path, file: str):
     (clone / file).write_text("changed = True\n")
     assert provenance(clone, clone / "src" / "mmweaver")["dirty"] is True

@@ -9,9 +9,9 @@ import pytest
 from mmweaver import Weaver
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
-from mmweaver.playback.wire import unpack
 from mmweaver.studio.live import Live
 from mmweaver.studio.schemas import Form
+from mmweaver.viz.wire import unpack
 from mmweaver.weaver.streaming import StreamChunk
 
 

@@ -6,11 +6,11 @@ import pytest
 
 from mmweaver import Weaver
 from mmweaver.core.errors import InputError
-from mmweaver.playback.wire import unpack
 from mmweaver.recognition.recogniser import load_recogniser, save_recogniser
 from mmweaver.studio.live import Live
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.service import Offered, Service
+from mmweaver.viz.wire import unpack
 from tests.recognition.small_recogniser import small_recogniser
 
 TASK = """radar = "awr1843"

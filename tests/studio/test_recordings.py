@@ -7,15 +7,15 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.points import point_cloud
-from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.stream_folder import StreamFolder
+from mmweaver.io.dca1000 import write_bin
+from mmweaver.io.stream_folder import StreamFolder
+from mmweaver.signal.cube import radar_cube
+from mmweaver.signal.points import point_cloud
 from mmweaver.studio.recordings import check_offered, read_offered, read_recorded
 from mmweaver.studio.service import Offered
 from mmweaver.studio.sessions import Result
 from tests import captures
-from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
+from tests.io.point_clouds.test_read_points import XYZV, out_of_box
 
 
 def offered(*paths: Path) -> Offered[Result]:

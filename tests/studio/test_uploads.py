@@ -18,8 +18,8 @@ from mmweaver.studio.service import RecoverableError
 from mmweaver.studio.sessions import Session, Sessions
 from mmweaver.studio.uploads import file_names, place_of, take
 from tests import captures
-from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
 from tests.fuzz.corpus import corpus
+from tests.io.point_clouds.test_read_points import XYZV, out_of_box
 from tests.scene.test_scan_folders import polycam, tum
 
 AWR = PRESETS["awr1843"]

@@ -10,7 +10,7 @@ from PIL import Image
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.formats.npz_files import read_poses_npz, read_radar_npz, write_radar_npz
+from mmweaver.io.npz_files import read_poses_npz, read_radar_npz, write_radar_npz
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.training.captures import read_capture, rooms_of
 from mmweaver.weaver.front_door import Weaver
@@ -89,7 +89,7 @@ def test_inconsistent_captures_are_refused(made: Path, tmp_path: Path):
     late.mkdir()
     for name in ("radar.npz", "radar.json", "meta.json", "pose.npz"):
         (late / name).write_bytes((made / name).read_bytes())
-    from mmweaver.formats.npz_files import write_pose_npz
+    from mmweaver.io.npz_files import write_pose_npz
 
     pose = read_poses_npz(late / "pose.npz")[0]
     write_pose_npz(late / "pose.npz", replace(pose, time_s=pose.time_s + 5.0))
@@ -102,7 +102,7 @@ def test_a_capture_of_an_empty_room_has_no_pose(made: Path, tmp_path: Path):
     folder.mkdir()
     for name in ("radar.npz", "radar.json", "meta.json"):
         (folder / name).write_bytes((made / name).read_bytes())
-    from mmweaver.formats.npz_files import write_pose_npz
+    from mmweaver.io.npz_files import write_pose_npz
 
     pose = read_poses_npz(made / "pose.npz")[0]
     write_pose_npz(folder / "pose.npz", time_s=pose.time_s)

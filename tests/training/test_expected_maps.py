@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
-from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import examples, power_maps
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.metrics.pose_errors import joint_errors_cm
+from mmweaver.evaluation.pose_errors import joint_errors_cm
 from mmweaver.recognition.pose_estimator import PoseEstimator
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.train_pose import posed_frames

@@ -10,8 +10,8 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.skeleton import joint
 from mmweaver.models.scatterer_network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_power import MeanPower
-from mmweaver.paths.radar_equation import points_of
+from mmweaver.propagation.mean_power import MeanPower
+from mmweaver.propagation.radar_equation import points_of
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.network_examples import reflected_joints, reflected_scene

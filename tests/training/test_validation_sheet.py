@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.propagation.mean_power import PowerMaps
 from mmweaver.training.validation_sheet import confusion, differences_db, draw_confusion, draw_sheet
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.seeding import stream
-from mmweaver.geometry.ray_caster import RayCaster
 from sample_room.living_room import CEILING_M, LEFT_WALL_M
 from sample_room.patterns import albedo
 from sample_room.solids import Room

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from mmweaver.activity_sets.build_set import SetBuilder
     from mmweaver.cli.dataset import Options
+    from mmweaver.datasets.build_set import SetBuilder
 
 
 def run_activity_set(asked: "Options") -> int:
     """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
     if asked.from_results is not None:
         return _run_from_results(asked)
-    from mmweaver.activity_sets.build_set import SetBuilder, SetOptions, read_activities
     from mmweaver.core.safe_files.safe_text import read_text
+    from mmweaver.datasets.build_set import SetBuilder, SetOptions, read_activities
     from mmweaver.weaver.front_door import Weaver
 
     assert asked.activities is not None
@@ -41,9 +41,9 @@ def run_activity_set(asked: "Options") -> int:
 
 def _run_from_results(asked: "Options") -> int:
     """Result folders as one set."""
-    from mmweaver.activity_sets.build_set import read_activities
-    from mmweaver.activity_sets.from_results import set_of_results
     from mmweaver.core.output_checks import check_output_folder
+    from mmweaver.datasets.build_set import read_activities
+    from mmweaver.datasets.from_results import set_of_results
 
     assert asked.from_results is not None
     for name in ("room", "per_class", "seconds", "subjects", "method", "iq"):
@@ -58,7 +58,7 @@ def _run_from_results(asked: "Options") -> int:
 
 
 def _print_report(asked: "Options", report: dict[str, Any], what: str) -> int:
-    from mmweaver.activity_sets.confounders import verdict_of
+    from mmweaver.datasets.confounders import verdict_of
 
     return asked.report({"out": str(asked.out), "leaks": report}, f"{what} in {asked.out}; {verdict_of(report)}")
 

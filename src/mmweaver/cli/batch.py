@@ -13,8 +13,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
-    from mmweaver.activity_sets.paired_sampling import Draw, GivenPlacing
     from mmweaver.cli.generate import Options
+    from mmweaver.datasets.paired_sampling import Draw, GivenPlacing
     from mmweaver.weaver.front_door import Weaver
     from mmweaver.weaver.generation import Room
     from mmweaver.weaver.parsed_request import ParsedRequest
@@ -40,7 +40,7 @@ class BatchSequence:
 
     def entry(self) -> dict[str, Any]:
         """What the list of all sequences holds of it."""
-        from mmweaver.activity_sets.paired_sampling import heading_deg
+        from mmweaver.datasets.paired_sampling import heading_deg
 
         return {
             "folder": self.folder.name, "text": self.text, "seed": self.seed, "draw": self.draw.index,
@@ -105,7 +105,7 @@ class Batch:
 
     def _leaks(self, sequences: list[BatchSequence]) -> dict[str, Any] | None:
         """The leak report of several draws of several sentences."""
-        from mmweaver.activity_sets.paired_sampling import folder_leaks
+        from mmweaver.datasets.paired_sampling import folder_leaks
 
         draws, texts = [one.draw for one in sequences], sorted({one.text for one in sequences})
         if len(texts) < 2 or len({draw.index for draw in draws}) < 2:
@@ -115,7 +115,7 @@ class Batch:
 
     def request(self, one: BatchSequence) -> "ParsedRequest":
         """The request of one sequence."""
-        from mmweaver.activity_sets.paired_sampling import placed
+        from mmweaver.datasets.paired_sampling import placed
 
         return placed(self.requests[one.text], one.draw, one.height_m)
 
@@ -152,7 +152,7 @@ class Batch:
 
     def _expected(self, one: BatchSequence, request: "ParsedRequest") -> dict[str, Any]:
         """What meta.json of the same sequence holds."""
-        from mmweaver.formats.result_folder import plain
+        from mmweaver.io.result_folder import plain
         from mmweaver.models.methods import DEFAULT_METHOD
 
         weaver = self.weaver
@@ -171,9 +171,9 @@ class _NoPlaceError(Exception):
 
 def run_batch(asked: "Options", out: Path) -> int:
     """Makes what is missing of the sequences and prints which there are. Raises InputError."""
-    from mmweaver.activity_sets.paired_sampling import GivenPlacing, heading_rad
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
     from mmweaver.core.output_checks import check_output_folder
+    from mmweaver.datasets.paired_sampling import GivenPlacing, heading_rad
 
     check_output_folder(out, overwrite=True, files=[LIST, LEAKS], inputs=asked.inputs)
     person = asked.of_one_person("--texts makes sequences of one person each")
@@ -253,7 +253,7 @@ def _sequences(
 
     Raises InputError where no place serves one of them.
     """
-    from mmweaver.activity_sets.paired_sampling import sentence_draws, sentence_order
+    from mmweaver.datasets.paired_sampling import sentence_draws, sentence_order
 
     repeat, seed = _repeat(asked), asked.seed
     draws, why = sentence_draws(requests, room.scene, repeat, seed, given)

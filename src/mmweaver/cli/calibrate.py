@@ -44,9 +44,9 @@ class Options(Written, Samples, Ranges):
 
 def run(asked: Options) -> int:
     """Calibrates, writes and prints. Raises InputError."""
-    from mmweaver.calibration.calibrate import calibrate
-    from mmweaver.calibration.target_fits import KnownTarget
     from mmweaver.core.output_checks import check_output_file
+    from mmweaver.evaluation.calibrate import calibrate
+    from mmweaver.evaluation.target_fits import KnownTarget
 
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=asked.recordings)
     if len(asked.target or ()) > 2:

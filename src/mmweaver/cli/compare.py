@@ -44,8 +44,8 @@ class Options(Samples, Written):
 
 def run(asked: Options) -> int:
     """Compares, writes and prints. Raises InputError."""
-    from mmweaver.comparison.compare_signals import compare
-    from mmweaver.comparison.comparison_page import check_comparison_folder
+    from mmweaver.evaluation.compare_signals import compare
+    from mmweaver.evaluation.comparison_page import check_comparison_folder
 
     if asked.out is not None:
         check_comparison_folder(asked.out, overwrite=asked.overwrite, inputs=[asked.a, asked.b])

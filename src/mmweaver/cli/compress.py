@@ -153,7 +153,7 @@ def _compress_samples(asked: Options) -> int:
         bar("read the radar")
         from mmweaver.compression.lossless_file import compress_bin
         from mmweaver.core.safe_files.regular_files import check_regular
-        from mmweaver.formats.radar_file import load_radar
+        from mmweaver.io.radar_file import load_radar
 
         size = compress_bin(
             asked.file,

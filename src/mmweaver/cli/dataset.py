@@ -93,7 +93,7 @@ class Options(LabelledSet, RoomSet, RadarChoice, Ranges, BoardChoice, Printed):
     def radar_config(self) -> "RadarConfig":
         """The radar that records. Raises InputError."""
         from mmweaver.core.range_window import chosen_range
-        from mmweaver.formats.radar_file import load_radar
+        from mmweaver.io.radar_file import load_radar
 
         return chosen_range(load_radar(self.radar_name("awr1843") or ""), self.range_m, self.range_bins)
 

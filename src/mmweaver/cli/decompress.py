@@ -74,7 +74,7 @@ def _warn_of_cut(cut_short: int, file: Path) -> None:
 def _cube(asked: Options) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.core.atomic_files import atomic_files
-    from mmweaver.formats.npz_files import write_radar_npz
+    from mmweaver.io.npz_files import write_radar_npz
 
     radar_out = asked.out.with_name("radar.json")
     if asked.out.name == radar_out.name:

@@ -28,8 +28,8 @@ class Options(Written):
 def run(asked: Options) -> int:
     """Exports one result or many. Raises InputError."""
     from mmweaver.core.errors import InputError
+    from mmweaver.datasets.export import FORMATS, export_result, export_set, is_of_two_radars
     from mmweaver.datasets.room_sequences import is_set
-    from mmweaver.exports.export import FORMATS, export_result, export_set, is_of_two_radars
 
     if asked.folder is None and asked.to is None:
         return _list(asked)
@@ -50,7 +50,7 @@ def run(asked: Options) -> int:
 
 
 def _list(asked: Options) -> int:
-    from mmweaver.exports.export import FORMATS
+    from mmweaver.datasets.export import FORMATS
 
     listed = [{"format": name, "what": one.what, "needs_samples": one.needs_samples} for name, one in FORMATS.items()]
     notes = {True: " (needs samples: --bin)", False: ""}

@@ -277,7 +277,7 @@ def _run_one(asked: Options, out: Path) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import machine_summary, summary_lines
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.formats.result_folder import FILES
+    from mmweaver.io.result_folder import FILES
     from mmweaver.weaver.parsed_request import parse
 
     files = [REQUEST_FILE] if len(asked.radar_poses) > 1 else FILES

@@ -27,7 +27,7 @@ def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
     from dataclasses import replace
 
     from mmweaver.core.range_window import chosen_range
-    from mmweaver.formats.radar_file import load_radar
+    from mmweaver.io.radar_file import load_radar
 
     is_own = background is not None and asked.radar is None
     config = (
@@ -39,8 +39,8 @@ def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
 
 def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str], object] | None" = None) -> "Weaver":
     """The generator that the options ask for."""
-    from mmweaver.formats.radar_file import load_firmware
-    from mmweaver.formats.ti_calibration import read_ti_calibration
+    from mmweaver.io.radar_file import load_firmware
+    from mmweaver.io.ti_calibration import read_ti_calibration
     from mmweaver.weaver.front_door import Weaver
 
     name = asked.radar_name(DEFAULT_RADAR) or ""

@@ -68,8 +68,8 @@ def run(asked: Options) -> int:
 def _write_files(asked: Options, pose: "PoseSequence") -> None:
     """Writes joints and picture, both or none."""
     from mmweaver.core.atomic_files import atomic_files
-    from mmweaver.figures.motion_strip import draw_strip
-    from mmweaver.formats.npz_files import write_pose_npz
+    from mmweaver.io.npz_files import write_pose_npz
+    from mmweaver.viz.motion_strip import draw_strip
 
     files = asked.out or []
     with atomic_files(*files) as temporaries:

@@ -9,7 +9,7 @@ from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
-    from mmweaver.figures.figure_data import FigureData
+    from mmweaver.viz.figure_data import FigureData
 
 EXAMPLES = """examples:
   mmweaver plot walk/                                      # features.png: all features at four times
@@ -21,8 +21,8 @@ EXAMPLES = """examples:
 
 @options
 class Options(Samples):
-    """Draws what mmweaver.features computes, with axes and one scale of decibels: a row for each feature, a column for
-    each frame.
+    """Draws what mmweaver.signal.features computes, with axes and one scale of decibels: a row per feature, a column
+    per frame.
     """
 
     GROUPS: ClassVar[dict[str, str]] = {"radar": "raw samples, which do not bring their radar"}
@@ -48,7 +48,7 @@ def run(asked: Options) -> int:
     if asked.out.suffix.lower() not in ("", ".png"):
         raise InputError(f"{asked.out}: pictures are PNG files; name it {asked.out.stem}.png")
     from mmweaver.core.atomic_files import atomic_file
-    from mmweaver.figures.feature_page import draw_features, features_of, frames_of
+    from mmweaver.viz.feature_page import draw_features, features_of, frames_of
 
     view = _view(asked)
     features = features_of(view.cube, asked.feature)
@@ -61,8 +61,8 @@ def run(asked: Options) -> int:
 
 def _view(asked: Options) -> "FigureData":
     from mmweaver.datasets.activity_store import is_activity_set, read_activity_set
-    from mmweaver.dsp.points import point_cloud
-    from mmweaver.figures.figure_data import FigureData
+    from mmweaver.signal.points import point_cloud
+    from mmweaver.viz.figure_data import FigureData
 
     if is_activity_set(asked.signal):
         stored, number = read_activity_set(asked.signal), asked.sequence or 0
@@ -72,7 +72,7 @@ def _view(asked: Options) -> "FigureData":
         return FigureData(title=title, cube=stored.cube(number), points=stored.cloud(number))
     if asked.sequence is not None:
         raise InputError("--sequence is of a labelled set; leave it out")
-    from mmweaver.comparison.compared_sides import signals_of
+    from mmweaver.evaluation.compared_sides import signals_of
     from mmweaver.recordings.read_recording import RawReading
 
     reading = RawReading(radar=asked.radar_name(), **asked.reading())

@@ -30,8 +30,8 @@ def run(asked: Options) -> int:
 
     from mmweaver.core.atomic_files import atomic_file
     from mmweaver.core.output_checks import check_output_file
-    from mmweaver.formats.npz_files import write_points_npz
-    from mmweaver.formats.point_clouds.read_points import points_kind, read_points
+    from mmweaver.io.npz_files import write_points_npz
+    from mmweaver.io.point_clouds.read_points import points_kind, read_points
 
     check_output_file(asked.out, overwrite=asked.overwrite, inputs=[asked.file])
     cloud = read_points(asked.file, asked.layout)

@@ -26,10 +26,10 @@ def run(asked: Options) -> int:
     """Writes the poses. Raises InputError."""
     from mmweaver.core.atomic_files import atomic_file
     from mmweaver.core.output_checks import check_output_folder
-    from mmweaver.figures.motion_strip import draw_pose_strips
-    from mmweaver.formats.npz_files import write_pose_npz
+    from mmweaver.io.npz_files import write_pose_npz
     from mmweaver.recognition.point_recordings import read_task_recording
     from mmweaver.recognition.pose_estimator import load_estimator
+    from mmweaver.viz.motion_strip import draw_pose_strips
 
     files = ("pose.npz", "pose.png")
     check_output_folder(asked.out, overwrite=asked.overwrite, files=files, inputs=[asked.points])

@@ -51,7 +51,7 @@ def run(asked: Options) -> int:
 
     if asked.file is None:
         raise InputError("which recording? give a file or a capture folder (see mmweaver process --help)")
-    from mmweaver.formats.result_folder import FILES
+    from mmweaver.io.result_folder import FILES
 
     check_output_folder(asked.out, overwrite=asked.overwrite, files=FILES, inputs=[asked.file])
     with StageBar(NUM_STAGES, quiet=asked.quiet or asked.verbose) as bar:

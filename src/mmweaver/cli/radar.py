@@ -25,7 +25,7 @@ class Options(Ranges, RadarSettings):
 def run(asked: Options) -> int:
     """Prints the radar on stdout. Raises InputError."""
     from mmweaver.core.range_window import chosen_range
-    from mmweaver.formats.radar_file import describe_radar, load_radar
+    from mmweaver.io.radar_file import describe_radar, load_radar
 
     if asked.radar is None:
         print(_presets(as_json=asked.json))

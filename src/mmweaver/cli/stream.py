@@ -24,8 +24,8 @@ def run_stream(asked: "Options", out: Path) -> int:
     from mmweaver.cli.generate_inputs import radar_of, read_background, room_of, weaver_of
     from mmweaver.core.output_checks import check_output_folder, is_empty
     from mmweaver.core.staging import sweep
-    from mmweaver.formats.result_folder import META_VERSION, radar_meta
-    from mmweaver.formats.stream_folder import LIST, PARTS, StreamFolder
+    from mmweaver.io.result_folder import META_VERSION, radar_meta
+    from mmweaver.io.stream_folder import LIST, PARTS, StreamFolder
 
     _check(asked)
     person = asked.of_one_person("--stream is of one person")
@@ -86,7 +86,7 @@ def _check(asked: "Options") -> None:
 def _sentences(asked: "Options") -> Iterable[str]:
     """The sentences, from the command line, a file, or standard input as they come."""
     from mmweaver.cli.batch import read_texts
-    from mmweaver.formats.stream_folder import sentences_of
+    from mmweaver.io.stream_folder import sentences_of
 
     if asked.texts is None:
         return asked.text or ()

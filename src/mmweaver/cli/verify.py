@@ -26,7 +26,7 @@ class Options(Printed):
 
 def run(asked: Options) -> int:
     """Prints what is damaged; returns 0 or 1. Raises InputError where nothing can be verified."""
-    from mmweaver.weaver.verification import verify
+    from mmweaver.datasets.verification import verify
 
     found = verify(asked.path)
     count = f"{found.checked} file{'' if found.checked == 1 else 's'}"

@@ -9,8 +9,8 @@ from mmweaver.core.options import MISSING, option, options
 from mmweaver.core.output_checks import check_output_file
 
 if TYPE_CHECKING:
-    from mmweaver.formats.stored_result import StoredResult
-    from mmweaver.playback.sequence import Playback
+    from mmweaver.io.stored_result import StoredResult
+    from mmweaver.viz.sequence import Playback
 
 EXAMPLES = """examples:
   mmweaver view walk/                       # writes walk/view.html and opens it
@@ -34,9 +34,9 @@ def run(asked: Options) -> int:
     """Writes the page. Raises InputError for a folder that holds no result."""
     out = asked.out or asked.folder / "view.html"
     check_output_file(out, overwrite=asked.overwrite)
-    from mmweaver.formats.stored_result import read_result
-    from mmweaver.playback.html_page import write_page
-    from mmweaver.playback.sequence import make_playback
+    from mmweaver.io.stored_result import read_result
+    from mmweaver.viz.html_page import write_page
+    from mmweaver.viz.sequence import make_playback
 
     stored = read_result(asked.folder)
     sequence = make_playback(stored.cube, stored.points, stored.poses, stored.meta)
@@ -52,8 +52,8 @@ def _room(stored: "StoredResult") -> "Playback | None":
     inputs = stored.meta.get("inputs")
     if not stored.poses or not isinstance(inputs, dict):
         return None
-    from mmweaver.playback.html_page import OFFLINE_ROOM_POINTS
-    from mmweaver.playback.room import room_playback
+    from mmweaver.viz.html_page import OFFLINE_ROOM_POINTS
+    from mmweaver.viz.room import room_playback
     from mmweaver.weaver.front_door import Weaver
 
     weaver = Weaver(method="physics")

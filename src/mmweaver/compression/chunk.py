@@ -17,6 +17,7 @@ import torch
 from jaxtyping import Complex
 from torch import Tensor
 
+from mmweaver.compression.beams import beams_of
 from mmweaver.compression.entropy import BitStream, Decoder
 from mmweaver.compression.low_rank import decode_low_rank
 from mmweaver.compression.noise_layer import NoiseLayer
@@ -30,15 +31,14 @@ from mmweaver.compression.scatterer_coder import (
     static_of,
     unpack_gains,
 )
+from mmweaver.compression.scatterers.fit_window import FitWindow, overlap_hop
+from mmweaver.compression.scatterers.layers import Layers, no_points, rendered
 from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.dsp.point_response import PointResponse
-from mmweaver.fields.beams import beams_of
-from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
-from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
+from mmweaver.signal.point_response import PointResponse
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS and FINER_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")

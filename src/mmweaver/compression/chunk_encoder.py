@@ -12,6 +12,7 @@ import numpy as np
 import torch
 
 from mmweaver.compression.active_mask import active_mask, active_power, cell_power
+from mmweaver.compression.beams import beams_of
 from mmweaver.compression.chunk import (
     HAS_CELLS,
     HAS_GAINS,
@@ -41,12 +42,8 @@ from mmweaver.compression.scatterer_coder import (
     static_of,
     unpack_gains,
 )
-from mmweaver.compression.transforms import ChunkTransform, TransformChoice
-from mmweaver.core.records import RadarCube
-from mmweaver.dsp.point_response import Points
-from mmweaver.fields.beams import beams_of
-from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.layers import (
+from mmweaver.compression.scatterers.fitting import FitRecipe, fitted
+from mmweaver.compression.scatterers.layers import (
     Layers,
     fit_static,
     rendered,
@@ -56,7 +53,10 @@ from mmweaver.fields.scatterers.layers import (
     subtract_static,
     values_of_point,
 )
-from mmweaver.fields.scatterers.refinement import Damping, refined
+from mmweaver.compression.scatterers.refinement import Damping, refined
+from mmweaver.compression.transforms import ChunkTransform, TransformChoice
+from mmweaver.core.records import RadarCube
+from mmweaver.signal.point_response import Points
 
 MIN_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_BELOW, REFINED_STEPS, SAME_COUNT = 0.85, 3, 0.15  # see `_kept_points`

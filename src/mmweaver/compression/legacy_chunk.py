@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int
 
+from mmweaver.compression.beams import beams_of
 from mmweaver.compression.cell_coder import CLOSED, COARSE, FINE
 from mmweaver.compression.chunk import (
     HAS_GAINS,
@@ -26,8 +27,7 @@ from mmweaver.compression.entropy import BitModel, BitStream, Decoder, Mixture, 
 from mmweaver.compression.scatterer_coder import PointCoder, PointSteps, unpack_gains
 from mmweaver.compression.transforms import ChunkTransform, TransformChoice
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.dsp.point_response import PointResponse
-from mmweaver.fields.beams import beams_of
+from mmweaver.signal.point_response import PointResponse
 
 Levels = Int[np.ndarray, "2 beam frame range doppler"]
 Cells = Int[np.ndarray, "frame range doppler"]

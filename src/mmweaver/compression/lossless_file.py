@@ -27,8 +27,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular, open_regular
 from mmweaver.core.safe_files.safe_text import parse_json
-from mmweaver.formats.dca1000 import bytes_of_frame
-from mmweaver.formats.dca_packets import SampleBytes
+from mmweaver.io.dca1000 import bytes_of_frame
+from mmweaver.io.dca_packets import SampleBytes
 
 MAGIC, VERSION = b"MMWL", 1
 BLOCK = struct.Struct("<IH")

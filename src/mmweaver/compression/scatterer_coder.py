@@ -14,8 +14,8 @@ from jaxtyping import Float, Int
 
 from mmweaver.compression.cell_coder import ClassMapCoder, LevelCoder
 from mmweaver.compression.entropy import MAX_UNIFORM, BitModel, BitStream, NumberModel
-from mmweaver.dsp.point_response import Axes, PointResponse, Points
-from mmweaver.fields.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.signal.point_response import Axes, PointResponse, Points
 
 Integers = Int[np.ndarray, "_"]
 Counts = Int[np.ndarray, "frame range doppler"]

@@ -35,7 +35,7 @@ from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import shell_words
 from mmweaver.datasets.signals_on_demand import GEOMETRY, SetGeometry, SignalsOnDemand, write_set_geometry
 from mmweaver.datasets.zarr_arrays import IQ_DIMENSIONS, consolidate, put_array, put_texts, write_iq, zarr_module
-from mmweaver.formats.npz_files import POINT_COLUMNS
+from mmweaver.io.npz_files import POINT_COLUMNS
 
 SET_FILE, LEAKS_FILE, ACTIVITIES_FILE, STORE = "set.json", "leaks.json", "activities.toml", "sequences.zarr"
 SCHEMA_VERSION = 2

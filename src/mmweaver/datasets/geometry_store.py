@@ -16,20 +16,20 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.room_generation import RoomGeometry
 from mmweaver.datasets.zarr_arrays import put_array
-from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
-from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
-from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
-from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.paths import STATIC_KINDS, Interaction
-from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom, Propagation
-from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
-from mmweaver.paths.visibility import Visibility
+from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody
+from mmweaver.propagation.body_paths import GHOST_POINTS, ghost_points
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.paths import STATIC_KINDS, Interaction
+from mmweaver.propagation.static_paths import AS_PUBLISHED, PreparedRoom, Propagation
+from mmweaver.propagation.static_paths_store import room_arrays, room_of, room_words
+from mmweaver.propagation.visibility import Visibility
 
 GEOMETRY = "geometry"
 ROOMS = ("room", "photographed")
@@ -112,14 +112,14 @@ class StoredGeometry:
 
     def cube(self, motion: Any, frames: np.ndarray, *, realization: int, device: str) -> np.ndarray:
         """Frames of a traced motion's cube in sqrt(mW), complex64 (frame, range, doppler, antenna)."""
-        from mmweaver.dsp.cube import cube_values
+        from mmweaver.signal.cube import cube_values
 
         samples = self.resynthesis(device).samples(motion, frames, realization=realization)
         return cube_values(samples, self.config).cpu().numpy()
 
     def resynthesis(self, device: str) -> Any:
         """The room's `Resynthesis` on a device, made once."""
-        from mmweaver.paths.resynthesis import Resynthesis
+        from mmweaver.propagation.resynthesis import Resynthesis
 
         if device not in self._resyntheses:
             self._resyntheses[device] = Resynthesis(self.room, device)
@@ -127,7 +127,7 @@ class StoredGeometry:
 
     def motion(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
         """The `TracedMotion` of one sequence."""
-        from mmweaver.paths.resynthesis import TracedMotion
+        from mmweaver.propagation.resynthesis import TracedMotion
 
         if index >= len(self._visibility):
             raise InputError(

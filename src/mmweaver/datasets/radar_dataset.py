@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.datasets.activity_store import SPLIT_KEYS, SPLITS
 from mmweaver.datasets.room_sequences import LabelledData, read_labelled
-from mmweaver.dsp.features import (
+from mmweaver.signal.features import (
     dynamic_range_angle,
     micro_doppler_db,
     point_table,

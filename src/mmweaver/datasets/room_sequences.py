@@ -14,7 +14,7 @@ from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.datasets.activity_store import SET_FILE, ActivitySet, is_activity_set, read_activity_set
 from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import PLAN_FILE, StoredRoom, plan_text, read_radar, read_rooms
-from mmweaver.dsp.points import point_cloud
+from mmweaver.signal.points import point_cloud
 
 
 @dataclass(frozen=True, kw_only=True)

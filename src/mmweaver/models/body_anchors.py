@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from mmweaver.core.pinhole import pixel_coordinates
 from mmweaver.core.skeleton import NUM_JOINTS, PARENTS, joint
 from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
-from mmweaver.paths.image_method import mirrored
+from mmweaver.propagation.image_method import mirrored
 
 # from joint, to joint, how far along (above 1: past the second)
 _MIDDLE = (

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_REFLECTORS, anchor_places
-from mmweaver.paths.body_model import average_body
+from mmweaver.propagation.body_model import average_body
 
 
 @dataclass(frozen=True, kw_only=True)

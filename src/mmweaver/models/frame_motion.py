@@ -6,11 +6,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PoseSequence
-from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.resample import joints_and_velocities
-from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.propagation.frame_clock import FrameClock
 
 HISTORY_FRAMES = 10  # before part of a longer signal, which the pose encoder sees, too
 

@@ -14,13 +14,13 @@ import torch
 from torch import Tensor
 
 from mmweaver.models.frame_motion import FrameMotion
-from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.occlusion import occluded
-from mmweaver.paths.paths import Paths
-from mmweaver.paths.second_order import ROOM_MARGIN_M, BodyBodyPaths, BodyRoomPaths, PairSampling
-from mmweaver.paths.static_paths import RayTracedRoom
-from mmweaver.paths.visible_body import BodyAtFrames, VisibleBody
+from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.occlusion import occluded
+from mmweaver.propagation.paths import Paths
+from mmweaver.propagation.second_order import ROOM_MARGIN_M, BodyBodyPaths, BodyRoomPaths, PairSampling
+from mmweaver.propagation.static_paths import RayTracedRoom
+from mmweaver.propagation.visible_body import BodyAtFrames, VisibleBody
 
 SKIN_POINTS = 200
 SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's parts begin at fifth frames

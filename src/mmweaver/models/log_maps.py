@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.virtual_array import azimuth_row
-from mmweaver.dsp.windows import noise_share
+from mmweaver.signal.windows import noise_share
 
 NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
 NUM_ANGLE_MAPS = 2  # all echoes, and the moving ones

@@ -15,16 +15,16 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.paths.board_effects import built_radar
-from mmweaver.paths.diffuse_clutter import seed_of_room
-from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
-from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+from mmweaver.propagation.board_effects import built_radar
+from mmweaver.propagation.diffuse_clutter import seed_of_room
+from mmweaver.propagation.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
+from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+from mmweaver.signal.cube import radar_cube
 
 if TYPE_CHECKING:
     from mmweaver.models.neural_path_solver import LearnedRoom, ScattererNetwork
     from mmweaver.models.room_inputs import GivenRoom
-    from mmweaver.paths.background import BackgroundRecording
+    from mmweaver.propagation.background import BackgroundRecording
 
 
 # what meta.json says

@@ -10,37 +10,37 @@ import torch
 from scipy import fft
 from torch import Tensor
 
+from mmweaver.compression.scatterers.cell_noise import cell_noise
 from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
-from mmweaver.dsp.windows import doppler_window_middle
-from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.models.learned_second_order import second_order_paths
 from mmweaver.models.room_inputs import GivenRoom
 from mmweaver.models.scatterer_network import ScattererNetwork
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
-from mmweaver.paths.background import BackgroundRecording, check_recording
-from mmweaver.paths.board_effects import BoardEffects
-from mmweaver.paths.cube_rendering import CubeRenderer
-from mmweaver.paths.image_sources import static_points
-from mmweaver.paths.mean_power import MeanPower
-from mmweaver.paths.mean_scatterers import MeanEchoes
-from mmweaver.paths.occlusion import occluded
-from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
-from mmweaver.paths.receiver import quantise
-from mmweaver.paths.speckle import (
+from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
+from mmweaver.propagation.background import BackgroundRecording, check_recording
+from mmweaver.propagation.board_effects import BoardEffects
+from mmweaver.propagation.cube_rendering import CubeRenderer
+from mmweaver.propagation.image_sources import static_points
+from mmweaver.propagation.mean_power import MeanPower
+from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.occlusion import occluded
+from mmweaver.propagation.paths import Paths, ScenePaths, StaticPaths
+from mmweaver.propagation.receiver import quantise
+from mmweaver.propagation.speckle import (
     place_of,
     sample_moving,
     sample_moving_segments,
     sample_static,
     strongest_first,
 )
+from mmweaver.signal.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
+from mmweaver.signal.windows import doppler_window_middle
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20

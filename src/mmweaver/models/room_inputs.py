@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.diffuse_clutter import diffuse_clutter, seed_of_room
-from mmweaver.paths.paths import Interaction, StaticPaths
-from mmweaver.paths.static_paths import ALL_PATHS, Propagation, RayTracedRoom
+from mmweaver.propagation.diffuse_clutter import diffuse_clutter, seed_of_room
+from mmweaver.propagation.paths import Interaction, StaticPaths
+from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedRoom
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,8 +16,8 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.pinhole import pixel_coordinates
 from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
     GHOST_FEATURES,
@@ -32,7 +32,7 @@ from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_C
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import full_precision
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
-from mmweaver.paths.mean_scatterers import MeanEchoes
+from mmweaver.propagation.mean_scatterers import MeanEchoes
 
 
 class ScattererNetwork(nn.Module):

@@ -7,15 +7,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.pinhole import resized
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.geometry.pinhole import resized
-from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.image_method import SpecularReflector
-from mmweaver.paths.image_sources import apparent_direction
-from mmweaver.paths.radar_equation import direction_loss_db
-from mmweaver.paths.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
+from mmweaver.propagation.antenna import scatterer_gain
+from mmweaver.propagation.image_method import SpecularReflector
+from mmweaver.propagation.image_sources import apparent_direction
+from mmweaver.propagation.radar_equation import direction_loss_db
+from mmweaver.propagation.static_paths import FIRST_ORDER, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160

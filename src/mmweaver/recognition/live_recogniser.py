@@ -12,8 +12,8 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
-from mmweaver.formats.point_clouds.point_tables import csv_columns
-from mmweaver.formats.point_clouds.ti_uart import MAGIC, ByteSource, point_packets
+from mmweaver.io.point_clouds.point_tables import csv_columns
+from mmweaver.io.point_clouds.ti_uart import MAGIC, ByteSource, point_packets
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.recogniser import Recogniser, Recognition
 

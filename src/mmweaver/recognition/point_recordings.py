@@ -14,8 +14,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.regular_files import check_exists
 from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
-from mmweaver.formats.point_clouds.read_points import read_points
-from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
+from mmweaver.io.point_clouds.read_points import read_points
+from mmweaver.io.point_clouds.ti_uart import read_ti_uart
 from mmweaver.recognition.task_file import RecordedColumns, RecordingSettings
 
 SUFFIXES = (".npz", ".dat", ".csv", ".txt", ".bin")

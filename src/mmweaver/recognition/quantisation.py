@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float, Int
 
-from mmweaver.dsp.firmware import range_step_m
 from mmweaver.recognition.point_recordings import PointRecording
 from mmweaver.recognition.task_file import RecognitionTask
+from mmweaver.signal.firmware import range_step_m
 
 SLOWER = 0.05  # of two that are equal, what is at rest is the echo and what moves a step is its flank
 AROUND = 2  # cells on either side that tell the middle of an echo

@@ -11,13 +11,13 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.firmware import firmware_points
-from mmweaver.dsp.firmware_cfar import counts_per_db
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.skin_scattering import LAMBERT, SkinEcho
+from mmweaver.propagation.static_paths import AS_PUBLISHED
 from mmweaver.recognition.random_scene import VariationSample, random_scene
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from
+from mmweaver.signal.firmware import firmware_points
+from mmweaver.signal.firmware_cfar import counts_per_db
 
 BEHIND_M = 0.3  # least distance of a wall from the body
 AT_M = 2.0  # range at which the level of diffuse clutter is specified

@@ -32,8 +32,8 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.core.safe_files.safe_text import read_toml
-from mmweaver.formats.radar_file import load_firmware, load_radar
-from mmweaver.formats.radar_options import split_radar
+from mmweaver.io.radar_file import load_firmware, load_radar
+from mmweaver.io.radar_options import split_radar
 from mmweaver.motion.worded_activities import NOBODY, activities_of
 
 # Known names of each table, with the limits of those that are numbers.

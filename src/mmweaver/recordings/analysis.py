@@ -7,12 +7,12 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import AdcCube, RadarCube
-from mmweaver.dsp.doppler_spectrogram import MicroDoppler, micro_doppler
-from mmweaver.dsp.points import point_cloud
-from mmweaver.dsp.slow_time import SlowTimeCell, moving_cells, slow_time_doppler
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.dsp.tracking import PersonTrack, track_people
-from mmweaver.dsp.vital_signs import Rate, breathing_rate, heart_rate
+from mmweaver.signal.doppler_spectrogram import MicroDoppler, micro_doppler
+from mmweaver.signal.points import point_cloud
+from mmweaver.signal.slow_time import SlowTimeCell, moving_cells, slow_time_doppler
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
+from mmweaver.signal.tracking import PersonTrack, track_people
+from mmweaver.signal.vital_signs import Rate, breathing_rate, heart_rate
 
 MIN_VITAL_S = 8.0
 MIN_CONTRAST = 20.0  # of a spectrogram, its peak over its median: less is noise

@@ -14,19 +14,19 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.cube import remove_static
-from mmweaver.dsp.detection import check_points, detect, needs_adc
-from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.previews import PREVIEWS
-from mmweaver.figures.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
-from mmweaver.formats.dca_packets import PacketCapture
-from mmweaver.formats.npz_files import write_npz
-from mmweaver.formats.radar_file import load_firmware
-from mmweaver.formats.result_folder import META_VERSION, file_digest, radar_meta, save_results
+from mmweaver.io.dca_packets import PacketCapture
+from mmweaver.io.npz_files import write_npz
+from mmweaver.io.radar_file import load_firmware
+from mmweaver.io.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
 from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording, without_board
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
+from mmweaver.signal.cube import remove_static
+from mmweaver.signal.detection import check_points, detect, needs_adc
+from mmweaver.viz.figure_data import FigureData
+from mmweaver.viz.previews import PREVIEWS
+from mmweaver.viz.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
 
 
 @dataclass(frozen=True, kw_only=True)

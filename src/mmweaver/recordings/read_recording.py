@@ -22,18 +22,18 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.core.safe_files.regular_files import check_exists
-from mmweaver.dsp.cube import adc_from_cube, cropped, radar_cube, tdm_compensation
-from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
-from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.dca_packets import PacketCapture, read_pcap
-from mmweaver.formats.npz_files import read_radar_npz
-from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout
-from mmweaver.formats.radar_file import load_radar
-from mmweaver.formats.raw_npy import read_adc_npy
-from mmweaver.formats.stream_folder import is_stream, read_stream_cube
-from mmweaver.formats.ti_calibration import read_ti_calibration
-from mmweaver.formats.ti_cfg import refuse_headers
-from mmweaver.paths.board_correction import corrected
+from mmweaver.io.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
+from mmweaver.io.dca1000 import read_bin
+from mmweaver.io.dca_packets import PacketCapture, read_pcap
+from mmweaver.io.npz_files import read_radar_npz
+from mmweaver.io.peer_arrays import LAYOUTS, detect_layout
+from mmweaver.io.radar_file import load_radar
+from mmweaver.io.raw_npy import read_adc_npy
+from mmweaver.io.stream_folder import is_stream, read_stream_cube
+from mmweaver.io.ti_calibration import read_ti_calibration
+from mmweaver.io.ti_cfg import refuse_headers
+from mmweaver.propagation.board_correction import corrected
+from mmweaver.signal.cube import adc_from_cube, cropped, radar_cube, tdm_compensation
 
 CUBE = "radar.npz"
 PACKET_SUFFIXES = (".pcap", ".pcapng")

@@ -6,9 +6,9 @@ from typing import Any
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.safe_arrays import read_npy
-from mmweaver.formats.capture_std import is_capture
-from mmweaver.formats.dca1000 import num_frames_of_bin
-from mmweaver.formats.stream_folder import is_stream, num_frames_of_stream
+from mmweaver.io.capture_std import is_capture
+from mmweaver.io.dca1000 import num_frames_of_bin
+from mmweaver.io.stream_folder import is_stream, num_frames_of_stream
 from mmweaver.recordings.read_recording import Recording, read_recording
 
 

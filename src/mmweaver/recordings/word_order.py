@@ -11,8 +11,8 @@ import numpy as np
 
 from mmweaver.core.records import AdcCube
 from mmweaver.core.shapes import Array
-from mmweaver.dsp.windows import hann
-from mmweaver.formats.dca1000 import IQ_ORDERS, LANES, adc_of_words, words_of
+from mmweaver.io.dca1000 import IQ_ORDERS, LANES, adc_of_words, words_of
+from mmweaver.signal.windows import hann
 
 MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
 LIKELIER_DB = 6.0  # less of it than in any other order, at which I Q I Q, or none of it, is likelier

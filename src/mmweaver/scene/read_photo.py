@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import resized
 from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_pictures import turned_upright
 from mmweaver.core.shapes import DepthPixels, RgbPixels
-from mmweaver.geometry.pinhole import resized
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, lens_intrinsics, read_camera_file
 from mmweaver.scene.photo.estimated_depth import EXAMPLE, estimate_depth
 from mmweaver.scene.photo.picture_files import Turned, read_depth, read_rgb

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import resized, rotated_clockwise
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import foreign_errors
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.core.shapes import DepthPixels, RgbPixels
-from mmweaver.geometry.pinhole import resized, rotated_clockwise
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.lzfse import read_lzfse
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb

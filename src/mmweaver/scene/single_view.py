@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
+from mmweaver.core.pinhole import viewing_rays
 from mmweaver.core.records import FreeSpace, Plane, RgbdPhoto, Seat
 from mmweaver.core.shapes import Faces, PerFace, Vertices
-from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.scene.affordances.free_space import find_free_space
 from mmweaver.scene.affordances.seats import find_seats
 from mmweaver.scene.coco_stuff import ROUGH, WALLS

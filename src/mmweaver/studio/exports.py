@@ -10,13 +10,13 @@ from tempfile import TemporaryDirectory
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.regular_files import read_bytes
-from mmweaver.exports.export import FORMATS, export_result
-from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.previews import PREVIEWS
-from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
-from mmweaver.formats.result_folder import save_results
-from mmweaver.playback.html_page import write_page
+from mmweaver.datasets.export import FORMATS, export_result
+from mmweaver.io.npz_files import write_points_npz, write_radar_npz
+from mmweaver.io.result_folder import save_results
 from mmweaver.studio.sessions import Result
+from mmweaver.viz.figure_data import FigureData
+from mmweaver.viz.html_page import write_page
+from mmweaver.viz.previews import PREVIEWS
 
 MAX_EXPORT_BYTES = 4_000_000_000
 Export = Callable[[Result, Path], Path]  # writes into a folder and returns the file

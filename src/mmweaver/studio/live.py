@@ -9,11 +9,11 @@ import numpy as np
 
 from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
-from mmweaver.playback.sequence import make_playback
-from mmweaver.playback.wire import pack
 from mmweaver.recognition.live_recogniser import LiveRecogniser
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.studio.schemas import DEFAULT_BOARD, Form
+from mmweaver.viz.sequence import make_playback
+from mmweaver.viz.wire import pack
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Room
 from mmweaver.weaver.streaming import StreamChunk

@@ -5,11 +5,11 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.regular_files import check_regular
-from mmweaver.formats.capture_std import is_capture
-from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
-from mmweaver.formats.radar_file import load_radar
-from mmweaver.formats.stored_result import read_result
-from mmweaver.formats.stream_folder import is_stream
+from mmweaver.io.capture_std import is_capture
+from mmweaver.io.point_clouds.ti_uart import read_ti_uart
+from mmweaver.io.radar_file import load_radar
+from mmweaver.io.stored_result import read_result
+from mmweaver.io.stream_folder import is_stream
 from mmweaver.recordings.processing import process_recording
 from mmweaver.studio.sessions import Result
 

@@ -21,12 +21,12 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
-from mmweaver.playback.html_page import page_file
 from mmweaver.studio import exports, uploads
 from mmweaver.studio.jobs import BusyError, Jobs
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.service import Service
 from mmweaver.studio.sessions import Session
+from mmweaver.viz.html_page import page_file
 
 T = TypeVar("T")
 Work = Callable[[Session, dict[str, Any]], Any]

@@ -8,25 +8,25 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Generic, TypeVar
 
-from mmweaver.comparison.compare_signals import FeatureComparison, compare_signals
-from mmweaver.comparison.signal_evidence import ComparedSignal
 from mmweaver.core.board import Board
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.evaluation.compare_signals import FeatureComparison, compare_signals
+from mmweaver.evaluation.signal_evidence import ComparedSignal
 from mmweaver.models.methods import METHODS
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.register_activity import load_activity_plugins
-from mmweaver.playback.room import room_playback
-from mmweaver.playback.wire import pack
 from mmweaver.recognition.recogniser import Recogniser, load_recogniser
 from mmweaver.scene.photo_files import RoomFiles
 from mmweaver.studio.live import Live
 from mmweaver.studio.recordings import check_offered, read_offered
 from mmweaver.studio.schemas import Form
 from mmweaver.studio.sessions import BroughtRoom, Result, Session, Sessions
+from mmweaver.viz.room import room_playback
+from mmweaver.viz.wire import pack
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 

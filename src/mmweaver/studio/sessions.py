@@ -16,8 +16,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.playback.points_playback import point_log_playback
-from mmweaver.playback.sequence import Playback, make_playback
+from mmweaver.viz.points_playback import point_log_playback
+from mmweaver.viz.sequence import Playback, make_playback
 from mmweaver.weaver.generation import Generation, Room
 
 MAX_SESSIONS = 100

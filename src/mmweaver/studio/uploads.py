@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import is_installed
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
-from mmweaver.formats.radar_file import load_radar
+from mmweaver.io.radar_file import load_radar
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.scene.photo.estimated_depth import AUTO
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles

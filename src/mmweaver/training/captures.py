@@ -26,13 +26,13 @@ from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_store import StoredRoom
-from mmweaver.dsp.spectra import noise_power
-from mmweaver.formats.npz_files import read_poses_npz
+from mmweaver.io.npz_files import read_poses_npz
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.capture_photo import photo_folder, read_capture_photo
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.signal.spectra import noise_power
 
 POSE, META = "pose.npz", "meta.json"
 FRAMES = 20  # per sequence of a longer capture

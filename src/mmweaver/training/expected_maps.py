@@ -9,9 +9,9 @@ from dataclasses import fields
 import numpy as np
 
 from mmweaver.datasets.dataset_store import StoredRoom
-from mmweaver.paths.body_paths import BodyPaths
-from mmweaver.paths.image_sources import moving_points, static_points
-from mmweaver.paths.mean_power import MeanPower, PowerMaps
+from mmweaver.propagation.body_paths import BodyPaths
+from mmweaver.propagation.image_sources import moving_points, static_points
+from mmweaver.propagation.mean_power import MeanPower, PowerMaps
 
 
 class ExpectedMaps:

@@ -14,8 +14,11 @@ from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
-from mmweaver.dsp.cube import static_cube
-from mmweaver.dsp.spectra import (
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.propagation.mean_power import PowerMaps
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.signal.cube import static_cube
+from mmweaver.signal.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
     has_elevation,
@@ -23,9 +26,6 @@ from mmweaver.dsp.spectra import (
     range_doppler_power,
     range_elevation_power,
 )
-from mmweaver.models.scene_tensors import SceneTensors
-from mmweaver.paths.mean_power import PowerMaps
-from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.device import Share
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_loss import Targets

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmweaver.paths.mean_power import MeanPower, PowerMaps
-from mmweaver.paths.mean_scatterers import MeanEchoes
-from mmweaver.paths.radar_equation import points_of
+from mmweaver.propagation.mean_power import MeanPower, PowerMaps
+from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.propagation.radar_equation import points_of
 
 STEEPEST = 8.0
 LIKELIHOOD = 0.2  # weight of the divergence relative to the difference of logarithms

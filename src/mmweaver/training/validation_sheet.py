@@ -6,9 +6,9 @@ import numpy as np
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.dsp.spectra import azimuth_axis_rad
-from mmweaver.metrics.map_scores import log_map_difference_db
-from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.evaluation.map_scores import log_map_difference_db
+from mmweaver.propagation.mean_power import PowerMaps
+from mmweaver.signal.spectra import azimuth_axis_rad
 
 SPAN_DB = 50.0
 MAX_ROWS = 3

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.calibration.background_board import BackgroundBoard
 from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD, compensated
 from mmweaver.core.channel_calibration import ChannelCalibration
@@ -29,10 +28,10 @@ from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.detection import check_points, detect, needs_adc
-from mmweaver.formats.radar_file import load_firmware, load_radar
-from mmweaver.formats.result_folder import META_VERSION, file_digest
-from mmweaver.formats.ti_calibration import read_ti_calibration
+from mmweaver.evaluation.background_board import BackgroundBoard
+from mmweaver.io.radar_file import load_firmware, load_radar
+from mmweaver.io.result_folder import META_VERSION, file_digest
+from mmweaver.io.ti_calibration import read_ti_calibration
 from mmweaver.models.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
@@ -43,6 +42,7 @@ from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
+from mmweaver.signal.detection import check_points, detect, needs_adc
 from mmweaver.weaver.generation import Generation, Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parse
 from mmweaver.weaver.request import Request

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.board import Board, read_board
 from mmweaver.core.boards import IDEAL_BOARD
@@ -13,20 +14,19 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
-from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_preview
-from mmweaver.figures.previews import PREVIEWS
-from mmweaver.formats.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
-from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.io.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import add_landmarks
 from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.viz.figure_data import FigureData
+from mmweaver.viz.preview import draw_preview
+from mmweaver.viz.previews import PREVIEWS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from torch import Tensor
     from xarray import Dataset
 
-    from mmweaver.playback.sequence import Playback
+    from mmweaver.viz.sequence import Playback
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -129,7 +129,7 @@ class Generation(ShownByFacts):
 
     def show(self) -> Any:
         """Plays the sequence in a notebook: room, people, points and maps. Needs the extra 'notebook'."""
-        from mmweaver.playback.notebook import player_widget
+        from mmweaver.viz.notebook import player_widget
 
         return player_widget(*self._playback())
 
@@ -138,15 +138,15 @@ class Generation(ShownByFacts):
 
         Raises InputError where it cannot be written.
         """
-        from mmweaver.playback.html_page import write_page
+        from mmweaver.viz.html_page import write_page
 
         write_page(Path(path), *self._playback(), self.figure_data.title)
 
     def _playback(self) -> "tuple[Playback, Playback]":
         """The sequence and its room, for the page."""
-        from mmweaver.playback.html_page import OFFLINE_ROOM_POINTS
-        from mmweaver.playback.room import room_playback
-        from mmweaver.playback.sequence import make_playback
+        from mmweaver.viz.html_page import OFFLINE_ROOM_POINTS
+        from mmweaver.viz.room import room_playback
+        from mmweaver.viz.sequence import make_playback
 
         if not self.scene.radar_pose.is_at_camera:
             raise InputError("the page shows radars at the camera only; look at preview.png of a radar elsewhere")
@@ -161,7 +161,7 @@ class Generation(ShownByFacts):
         `cube` has the dimensions frame_time (s), range (m), radial_velocity (m/s) and antenna, `joints`
         person, frame_time, joint and axis; columns of the point cloud have the dimension point.
         """
-        from mmweaver.formats.conversions import to_dataset
+        from mmweaver.io.conversions import to_dataset
 
         return to_dataset(self.cube, self.points, self.poses, self.adc, self.meta)
 
@@ -172,7 +172,7 @@ class Generation(ShownByFacts):
         `radial_velocity_mps`, `antenna_position_m`; `joints_m` (person, frame, 22, 3); `points` (point, 6): frame,
         x_m, y_m, z_m, radial_velocity_mps, snr_db; `adc` (frame, loop, tx, rx, sample) where there are samples.
         """
-        from mmweaver.formats.conversions import to_tensors
+        from mmweaver.io.conversions import to_tensors
 
         return to_tensors(self.cube, self.points, self.poses, self.adc)
 

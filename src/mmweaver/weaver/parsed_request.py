@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.options import Place
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
-from mmweaver.formats.result_folder import radar_meta
+from mmweaver.io.result_folder import radar_meta
 from mmweaver.motion.empty_scene import NOBODY, says_nobody
 from mmweaver.motion.language.plan import APPROXIMATED, MotionPlan
 from mmweaver.motion.language.sentence_parser import parse_sentence

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from torch import nn
 
     from mmweaver.core.radar_config import RadarConfig
-    from mmweaver.dsp.detection import Detector
     from mmweaver.models.methods import Method
+    from mmweaver.signal.detection import Detector
 
 
 def method(name: str, make: "Callable[[], Method]") -> None:
@@ -38,7 +38,7 @@ def detector(name: str, detect: "Detector") -> None:
 
     One that needs ADC samples has the attribute `needs_adc = True`. Raises InputError for a name that is taken.
     """
-    from mmweaver.dsp.detection import DETECTORS
+    from mmweaver.signal.detection import DETECTORS
 
     DETECTORS.register(name, detect)
 

@@ -8,7 +8,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.stages import Stages
-from mmweaver.formats.result_folder import file_digest
+from mmweaver.io.result_folder import file_digest
 from mmweaver.scene.multiview.view_file import read_views
 from mmweaver.scene.photo.capture_photo import DEPTH, read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note

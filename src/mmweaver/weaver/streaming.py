@@ -18,10 +18,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.detection import detect, needs_adc
 from mmweaver.models.methods import Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.continuous import ContinuousMotion, MotionPart
+from mmweaver.signal.detection import detect, needs_adc
 from mmweaver.weaver.generation import Room
 from mmweaver.weaver.parsed_request import ParsedRequest, parsed_text
 

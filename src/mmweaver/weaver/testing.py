@@ -13,16 +13,16 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube, Scene
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.methods import Signal
+from mmweaver.signal.cube import radar_cube
 from mmweaver.weaver.front_door import Weaver
 from mmweaver.weaver.generation import Generation, Room
 
 if TYPE_CHECKING:
     from torch import nn
 
-    from mmweaver.dsp.detection import Detector
     from mmweaver.models.methods import Method
+    from mmweaver.signal.detection import Detector
 
 TEXT = "a person walks towards the radar"
 FRAMES = 3

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Seat
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.affordances.seats import complete_planks, cut_beds
 from mmweaver.scene.layout.height_map import CELL_M, make_height_map
 from mmweaver.scene.procedural.lighting import LIGHTINGS

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.layout.doors_and_windows import find_openings
 from tests.motion.rooms import LEVEL
 

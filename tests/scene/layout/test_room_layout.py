@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.core.pinhole import unproject
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import ClassMask, Plane, Scene
-from mmweaver.geometry.pinhole import unproject
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.layout.room_layout import BEHIND_M
 from mmweaver.scene.reconstruction import reconstruct

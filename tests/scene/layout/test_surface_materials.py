@@ -27,7 +27,7 @@ def test_floor_by_colour(colour: tuple[float, ...], name: str):
 
 def classed(photo: RgbdPhoto, scene: Scene, name_of_wall: str, name_of_floor: str) -> RgbdPhoto:
     """The photo with a class mask of its back wall and floor, from their known positions."""
-    from mmweaver.geometry.pinhole import unproject
+    from mmweaver.core.pinhole import unproject
 
     points_m = unproject(photo.depth_m, photo.intrinsics) @ scene.radar_from_camera.T
     is_floor = points_m[..., 2] < scene.floor_z_m + 0.1

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.pinhole import viewing_rays
 from mmweaver.core.radar_pose import RadarPose
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.geometry.pinhole import viewing_rays
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.reconstruction import reconstruct
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import unproject
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_pose import RadarPose
-from mmweaver.geometry.pinhole import unproject
-from mmweaver.paths.paths import Interaction
-from mmweaver.paths.ray_traced import Simulator
+from mmweaver.propagation.paths import Interaction
+from mmweaver.propagation.ray_traced import Simulator
 from mmweaver.scene.procedural.arrangement import MIN_FREE_M2, MIN_WALKABLE_M2
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room

@@ -9,7 +9,7 @@ from mmweaver.core import optional_packages
 from mmweaver.core.errors import InputError
 from studies.baselines.codec_interface import library, merged, split
 from studies.fields.codecs import CODECS
-from tests.fields.echoes import crowd, error_db
+from tests.compression.echoes import crowd, error_db
 
 NEEDS = {
     "sz3": "imagecodecs", "sperr": "imagecodecs", "zfp": "imagecodecs", "jpeg2000": "imagecodecs",

@@ -10,7 +10,7 @@ from studies.baselines.coefficient_codecs import (
     unpacked_klt,
     unpacked_top,
 )
-from tests.fields.echoes import crowd
+from tests.compression.echoes import crowd
 
 
 def test_the_largest_cells_come_back_within_their_bits():

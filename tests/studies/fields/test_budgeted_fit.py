@@ -1,11 +1,11 @@
 import torch
 
-from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.fields.beams import beams_of
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.layers import Layers, rendered, static_cells
+from mmweaver.compression.beams import beams_of
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.layers import Layers, rendered, static_cells
+from mmweaver.signal.point_response import PointResponse, Points
 from studies.fields.budgeted_fit import BudgetedFit, BudgetedRecipe, num_values, static_values
-from tests.fields.echoes import SMALL, crowd
+from tests.compression.echoes import SMALL, crowd
 
 
 def test_the_parameter_budget_holds_and_useless_static_beams_are_dropped():

@@ -6,7 +6,7 @@ from pathlib import Path
 from studies.fields.codec_cuts import SIZES, measure_signals
 from studies.fields.field_signals import StudySignal
 from studies.manifest import StudyRun
-from tests.fields.echoes import crowd
+from tests.compression.echoes import crowd
 
 
 def test_other_signals_keep_their_rows_and_their_place(tmp_path: Path):

@@ -3,7 +3,7 @@ import pytest
 
 from studies.fields.codecs import CODECS, SCORES, codec_row, errors_db
 from studies.fields.field_signals import StudySignal
-from tests.fields.echoes import crowd
+from tests.compression.echoes import crowd
 
 
 def test_a_row_has_its_bytes_scores_and_floors():

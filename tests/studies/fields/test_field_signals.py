@@ -5,8 +5,8 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.paths.paths import Interaction
+from mmweaver.propagation.paths import Interaction
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power
 from studies.fields.field_signals import SIGNALS, sample_scene, simulated, simulator_of, without_room
 from studies.scores.cube_scores import cells_of
 from studies.scores.scorecard import scorecard

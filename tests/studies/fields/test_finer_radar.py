@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube, PoseSequence
-from mmweaver.dsp.cube import adc_from_cube, radar_cube
+from mmweaver.signal.cube import adc_from_cube, radar_cube
 from studies.fields.finer_radar import (
     interpolated,
     middle_delay_s,

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.signal.cube import radar_cube
 from studies.fields.phase_centring import centred, centring_phasor, centring_phasor_at
 from tests.cubes import SMALL, point_adc, point_cube
 

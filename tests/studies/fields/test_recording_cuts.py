@@ -4,7 +4,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import BGT60
 from mmweaver.core.records import AdcCube
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.signal.cube import radar_cube
 from studies.fields.codec_cuts import USUAL
 from studies.fields.codecs import CODECS
 from studies.fields.recording_cuts import CUTS, cut

@@ -6,13 +6,13 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.dsp.windows import hann
+from mmweaver.signal.cube import adc_from_cube, radar_cube
+from mmweaver.signal.windows import hann
 from studies.fields.budgeted_fit import BudgetedRecipe
 from studies.fields.sampling import finer_grid
 from studies.fields.scatterer_field import ScattererField, noise_of_shared_loops
-from tests.fields.echoes import SMALL, crowd, direction_of, error_db, exact_point, middle_s
-from tests.fields.scatterers.test_fit_window import overlapping
+from tests.compression.echoes import SMALL, crowd, direction_of, error_db, exact_point, middle_s
+from tests.compression.scatterers.test_fit_window import overlapping
 
 RECIPE = BudgetedRecipe(num_points=90, stages=10)
 

@@ -140,7 +140,7 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
     assert not torch.equal(new["first.weight"], old["first.weight"])
 
 
-@pytest.mark.slow  # tests/paths/test_background.py and test_generate.py: the room of a recording in a generated signal
+@pytest.mark.slow  # tests/propagation/test_background.py: the room of a recording in a generated signal
 def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
     """The network that was given the empty room has the truth's own resting echoes, behind the person.
 

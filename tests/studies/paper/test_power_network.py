@@ -9,9 +9,9 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
-from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from mmweaver.models.frame_motion import FrameMotion
 from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from studies.paper.power_cells import CellSizes
 from studies.paper.power_method import FieldRoom
 from studies.paper.power_network import PowerEncoding, PowerNetwork
@@ -57,8 +57,8 @@ def test_the_signal_is_where_its_cells_are(scene: Scene):
 
 def test_a_cell_turns_from_frame_to_frame_as_from_chirp_to_chirp():
     """One scatterer that moves with its velocity: the phase advances by 4 pi v T / wavelength."""
-    from mmweaver.paths.mean_scatterers import CellEchoes
-    from mmweaver.paths.speckle import sample_cells
+    from mmweaver.propagation.mean_scatterers import CellEchoes
+    from mmweaver.propagation.speckle import sample_cells
 
     cell = torch.tensor([[[7, 8]]]).expand(3, 1, 2)
     speed = torch.tensor([0.0, 0.5]).expand(3, 1, 2)

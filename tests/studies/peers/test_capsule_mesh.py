@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.propagation.body_model import ScatteringBody
 from studies.peers.capsule_mesh import capsule_mesh
 from tests.rooms import standing_person
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.signal.spectra import range_doppler_power
 from tests.rooms import standing_person
 
 pytest.importorskip("mitsuba")

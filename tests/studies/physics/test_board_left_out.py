@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mmweaver.comparison.compare_signals import FEATURES
+from mmweaver.evaluation.compare_signals import FEATURES
 from studies.physics.board_left_out import (
     accuracy,
     alone,

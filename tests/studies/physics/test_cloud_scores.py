@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.firmware import FirmwareCloud
+from mmweaver.signal.firmware import FirmwareCloud
 from studies.physics.cloud_scores import part_of, score
 
 

@@ -1,8 +1,8 @@
 import pytest
 
 from mmweaver.core.presets import IWR1443_MARS
-from mmweaver.paths.paths import Interaction
-from mmweaver.paths.ray_traced import Simulator
+from mmweaver.propagation.paths import Interaction
+from mmweaver.propagation.ray_traced import Simulator
 from studies.physics.empty_room_cube import empty_room
 
 

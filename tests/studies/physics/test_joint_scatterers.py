@@ -7,10 +7,10 @@ import pytest
 
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import PoseSequence
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.micro_motion import STILL
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.receiver import Impairments
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import Impairments
+from mmweaver.signal.cube import radar_cube
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
 from studies.physics.mars_data import joints_from_kinect

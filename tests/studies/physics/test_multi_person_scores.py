@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.paths.ray_traced import Simulator
+from mmweaver.propagation.ray_traced import Simulator
 from studies.fields.field_signals import sample_scene
 from studies.physics import multi_person_scores
 from studies.physics.multi_person_scores import ARRANGEMENTS, Pair, make_pair, row_of, scores_of

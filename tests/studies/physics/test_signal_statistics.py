@@ -9,7 +9,7 @@ import pytest
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
 from mmweaver.core.virtual_array import azimuth_row
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.signal.cube import radar_cube
 from studies.physics.signal_statistics import (
     CHEST_M,
     DEFINITIONS,

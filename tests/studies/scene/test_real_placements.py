@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from mmweaver.geometry.pinhole import project
+from mmweaver.core.pinhole import project
 from studies.scene.real_placements import deepest_m, floor_error_m, measured_m
 from tests.motion.rooms import FLOOR_Z_M, room
 from tests.rooms import standing_person

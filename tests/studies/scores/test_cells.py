@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.signal.spectra import range_doppler_power
 from studies.scores.cube_scores import cells_of, noise_floor
 from tests.cubes import SMALL, point_cube
 

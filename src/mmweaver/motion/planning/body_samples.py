@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from mmweaver.core.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
-from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.motion.animation.root_path import RootPath
 
 Array = np.ndarray

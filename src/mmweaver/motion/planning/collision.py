@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Plane, PoseSequence, Scene
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, DistanceField, distance_field, interior, thinned
 from mmweaver.motion.planning.floor_geometry import distances_m, unit_vector

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.motion.language.places import Place
 from mmweaver.motion.language.plan import Direction
 from mmweaver.motion.planning.floor_geometry import distances_m

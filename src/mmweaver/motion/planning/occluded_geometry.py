@@ -6,8 +6,8 @@ All points are (point, 3) in metres in the radar's frame; heights are above the 
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Plane, Scene
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 Points = Float[np.ndarray, "point 3"]
 _LOW_M, _EXTENDED_DOWN_M = (

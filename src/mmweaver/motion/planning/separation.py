@@ -3,9 +3,9 @@
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.body_capsules import TRUNK, TRUNK_WIDTH_PER_DEPTH, capsule_between, part_of, scale_of
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
-from mmweaver.geometry.body_capsules import TRUNK, TRUNK_WIDTH_PER_DEPTH, capsule_between, part_of, scale_of
 
 Array = np.ndarray
 MIN_PELVIS_DISTANCE_M, MIN_SURFACE_DISTANCE_M = 0.5, 0.02

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import FreeSpace, Plane
 from mmweaver.core.shapes import Array, GridMask
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.layout.connected_components import bounding_slices
 from mmweaver.scene.layout.height_map import CELL_M, HeightMap, nearest_squares, surface_behind_m
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import LANDMARK_KINDS, FreeSpace, Landmark, Plane, Scene, Seat
 from mmweaver.core.shapes import GridMask
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.affordances.seats import bed_squares
 from mmweaver.scene.layout.class_evidence import landmark_points
 from mmweaver.scene.layout.connected_components import label_components

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Bool, Int
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import ClassMask, Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Points
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.coco_stuff import LANDMARKS, NO_EVIDENCE, SITTABLE
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.layout.height_map import grid_axes, square_index

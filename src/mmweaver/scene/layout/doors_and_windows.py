@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Vec3
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.photo.depth_grid import depth_tolerance_m
 
 CELL_M = 0.05

@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.rotations import level_from_camera
 from mmweaver.core.shapes import Array, PerPoint, Points, Rotation, Vec3
-from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.layout.surfaces import AlignedGrid, Surface, find_surfaces, floor_cells
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, depth_tolerance_m
 

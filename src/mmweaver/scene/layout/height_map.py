@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from mmweaver.core.aligned_photo import AlignedPhoto
+from mmweaver.core.pinhole import subsampled
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.shapes import Array, GridMask, PerPoint, Points
-from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.geometry.pinhole import subsampled
 from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.photo.depth_grid import depth_tolerance_m, remove_outliers
 

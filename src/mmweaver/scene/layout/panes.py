@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from mmweaver.core.aligned_photo import AlignedPhoto
 from mmweaver.core.records import Plane, RgbdPhoto
 from mmweaver.core.shapes import DepthPixels, Points
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.coco_stuff import DOORS, GLASS, MATERIAL, MIRRORS, SCREENS, WALLS
 from mmweaver.scene.layout.class_evidence import PixelMask, indices_of, regions_of
 from mmweaver.scene.layout.connected_components import dilated

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.core.rotations import level_from_camera
 from mmweaver.core.shapes import Array, Points, Rotation, Vec3
-from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.layout.gravity import Gravity
 from mmweaver.scene.layout.height_map import nearest_squares
 from mmweaver.scene.layout.room_layout import room_azimuth_rad

@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import resized
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.geometry.pinhole import resized
 
 # RealSense D455, colour: 1280 x 800 pixels, 90 degrees horizontally (Intel's data sheet of the D400 series). Its
 # smaller pictures are centred crops of that, scaled: 640 x 480 has a focal length of 384 pixels.

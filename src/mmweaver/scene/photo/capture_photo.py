@@ -15,11 +15,11 @@ from jaxtyping import UInt8
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.optional_packages import need
+from mmweaver.core.pinhole import project, rotated_clockwise, unproject
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
-from mmweaver.geometry.pinhole import project, rotated_clockwise, unproject
 from mmweaver.scene.photo.picture_files import read_rgb
 from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.photo.video_frame import read_video_frame

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from mmweaver.core.pinhole import binned, normalized_coordinates, unproject
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.shapes import Array, ClassPixels, DepthPixels
-from mmweaver.geometry.pinhole import binned, normalized_coordinates, unproject
 
 GridBool = Bool[Array, "row column"]
 GridFloat = Float[Array, "row column"]

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Array, Points
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.procedural.palette import TABLES
 from mmweaver.scene.procedural.parts import Colour, PlacedPiece
 

@@ -8,10 +8,10 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_pose import RadarPose
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Landmark, Plane, RgbdPhoto, Scene, Seat
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array, DepthPixels, Faces, PerFace, Rotation, Vec3, Vertices
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.photo.camera_file import d455_intrinsics
 from mmweaver.scene.procedural.arrangement import Shell, arrange, sample_shell

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+from mmweaver.core.pinhole import viewing_rays
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import CameraIntrinsics, ClassMask
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array, DepthPixels, RgbPixels, Rotation, Vec3
-from mmweaver.geometry.pinhole import viewing_rays
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.procedural.lighting import LIGHTINGS, Lighting, area_lights, denoised, irradiance
 from mmweaver.scene.procedural.meshing import Mesh
 from mmweaver.scene.procedural.parts import PlacedPiece

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.geometry.rotations import pitch_and_roll_rad
+from mmweaver.core.rotations import pitch_and_roll_rad
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom
 
 DEPTH_UNIT_M = 0.0002  # 16 bits reach 13 m; the step is far below a sensor's noise

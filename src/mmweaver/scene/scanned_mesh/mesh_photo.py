@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.pinhole import viewing_rays
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import read_json
-from mmweaver.geometry.pinhole import viewing_rays
-from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.coco_stuff import CLASS_OF_MATERIAL, MATERIAL, NAMES, UNLABELED, coco_class
 from mmweaver.scene.photo.camera_file import centred_intrinsics
 from mmweaver.scene.photo.capture_photo import CapturedPhoto

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.shapes import Vec3
-from mmweaver.geometry.ray_caster import RayCaster
 
 EYE_HEIGHT_M = 1.2
 STEP_M, MIN_FREE = 0.4, 4  # between candidates; free neighbours of a place

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
+from mmweaver.core.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import OUTWARD, RIGHT
 from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
 from mmweaver.motion.animation.spans import MOVEMENTS, PerTime

@@ -1,1 +1,0 @@
-"""Labelled data sets of activities in one's own rooms: the same places and people for every label."""

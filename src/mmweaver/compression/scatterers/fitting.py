@@ -1,0 +1,178 @@
+"""Fits scatterers to a cube: alternates greedy selection with joint refinement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.compression.scatterers.fit_window import FitWindow
+from mmweaver.compression.scatterers.greedy import Greedy
+from mmweaver.compression.scatterers.layers import (
+    Layers,
+    compact,
+    fit_static,
+    no_points,
+    static_response,
+    strongest,
+    subtract_static,
+)
+from mmweaver.compression.scatterers.point_factors import PointFactors
+from mmweaver.compression.scatterers.refinement import Damping, refined_factors
+
+Array = np.ndarray
+
+# power of an antenna's echoes over that of the strongest, and of what was received in phase with them
+MIN_SHARE = 0.05
+CALIBRATED_EVERY = 4  # stages: gains change slowly
+NOISE_CELLS = 10_000  # of which the median tells the power of the noise
+MAX_GROUP = 160  # scatterers that are solved for together
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitRecipe:
+    """Budget and effort of a fit.
+
+    `num_points` is shared by all frames, wherever points explain most energy. A new scatterer must explain at least
+    `least_gain` times the noise power of a cell, so frames of pure noise get none.
+    """
+
+    num_points: int
+    with_static: bool = True
+    with_calibration: bool = False
+    stages: int = 30
+    growth: float = 1.0  # points after a share of the stages are that share of all to this power
+    last_steps: int = 8
+    least_gain: float = 8.0
+    most_noise: float | None = None  # noise power of a cell, where it is known; the residual may show less
+
+
+def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
+    """Layers that approximate working frames in least squares.
+
+    Args:
+        target: working frames (frame, range, doppler, antenna) in centred phase.
+        fit_window: of these frames.
+        recipe: budget and effort.
+    """
+    with torch.no_grad():
+        return ScattererFit(target, fit_window, recipe).run()
+
+
+class ScattererFit:
+    """State of one fit; invariants: `received` = target / calibration - static, `residual` = received - points."""
+
+    def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
+        self.target, self.recipe = target.contiguous().numpy(), recipe
+        self.response, self.axes = fit_window.response, fit_window.axes
+        self.greedy = Greedy.of(self.response, self.axes)
+        self.calibration = np.ones(target.shape[-1], np.complex64)
+        self.points = PointFactors.of(no_points(len(target)), self.response, self.axes)
+        self.damping = Damping.fresh(len(target))
+        self.static = np.zeros(self.target.shape[1::2], np.complex64)
+        self.static_response = static_response(self.response, self.axes)
+        self.received, self.residual = self.target.copy(), self.target.copy()
+        self.refinements = 0
+        self.update_static()
+
+    def run(self) -> Layers:
+        """The layers after all stages."""
+        recipe = self.recipe
+        for stage in range(1, recipe.stages + 1):
+            self._fill(round(self.most_points(stage) * (stage / recipe.stages) ** recipe.growth))
+            self._refine(1)
+        self._refine(recipe.last_steps)
+        return Layers(
+            points=compact(self.points.points()),
+            static=torch.from_numpy(self.static),
+            calibration=torch.from_numpy(self.calibration),
+            noise_power=self.noise_power(),
+        )
+
+    def most_points(self, stage: int) -> int:
+        """How many scatterers the fit may have after its last stage, as a stage knows it."""
+        return self.recipe.num_points
+
+    @property
+    def _num_points(self) -> int:
+        return int(np.count_nonzero(self.points.amplitude))
+
+    def _fill(self, wanted: int) -> None:
+        """Adds new scatterers, or removes the weakest, up to the wanted number."""
+        if self._num_points > wanted:
+            self._keep(wanted)
+        self._add(wanted)
+
+    def _keep(self, wanted: int) -> None:
+        """Keeps the strongest scatterers."""
+        kept = strongest(self.points.points(), wanted)
+        self.points = PointFactors.of(kept, self.response, self.axes)
+        self.residual = self.received - self.response.render(kept, self.axes).numpy()
+
+    def _add(self, wanted: int) -> None:
+        have = self._num_points
+        if wanted <= have:
+            return
+        least = self.recipe.least_gain * self.noise_power()
+        new = self.greedy.next_points(self.residual, count=wanted - have, least=least)
+        before = self.points.counts().tolist()
+        self.points = self.points.joined(new.frame, new.bins, new.direction, new.amplitude)
+        rest = _matrices(self.residual)
+        for frame, (first, count) in enumerate(zip(before, self.points.counts().tolist(), strict=True)):
+            if count > first:
+                rest[frame] -= self.points.rendered(frame, count, first)
+
+    def _refine(self, steps: int) -> None:
+        if not self._num_points:
+            return
+        self.points = refined_factors(
+            self.points, _matrices(self.received), _matrices(self.residual), self.damping,
+            steps=steps, largest=MAX_GROUP,
+        )  # fmt: skip
+        self.refinements += 1
+        if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
+            self._calibrate()
+        self.update_static()
+
+    def update_static(self) -> None:
+        """Moves the static part of the residual into the static layer."""
+        if not self.recipe.with_static:
+            return
+        before = self.static
+        self.static = self.whole_static()
+        for values in (self.received, self.residual):
+            subtract_static(values, self.static - before, self.static_response)
+
+    def whole_static(self) -> Array:
+        """The static layer with what the residual holds of it."""
+        return self.static + fit_static(self.residual, self.static_response)
+
+    def _calibrate(self) -> None:
+        """Least-squares gain of each antenna; the mean gain stays 1. Antennas without echoes keep theirs."""
+        model = self.received - self.residual
+        flat, received = (values.reshape(-1, values.shape[-1]) for values in (model, self.received))
+        power = np.einsum("caq,caq->a", *(2 * [flat.view(np.float32).reshape(*flat.shape, 2)]))
+        product = np.einsum("ca,ca->a", flat.conj(), received)
+        has_echo = (power > MIN_SHARE * power.max()) & (np.abs(product) > MIN_SHARE * power)
+        if not has_echo.any():
+            return
+        gain = np.ones(len(power), np.complex64)
+        gain[has_echo] = product[has_echo] / power[has_echo]
+        gain[has_echo] /= np.abs(gain[has_echo]).mean()
+        self.calibration = self.calibration * gain
+        self.static = self.static / gain
+        self.received = self.target * (1 / self.calibration)
+        subtract_static(self.received, self.static, self.static_response)
+        self.residual = self.received - model
+
+    def noise_power(self) -> float:
+        """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
+        some = self.residual.reshape(-1)[:: max(1, self.residual.size // NOISE_CELLS)]
+        found = float(np.median(np.square(some.real) + np.square(some.imag))) / 0.6931
+        most = self.recipe.most_noise
+        return found if most is None else min(found, most)
+
+
+def _matrices(values: Array) -> Array:
+    """Complex (frame, range, doppler, antenna) -> real (frame, range, (doppler, antenna, part)), the same memory."""
+    return values.view(np.float32).reshape(*values.shape[:2], -1)

@@ -1,0 +1,113 @@
+"""Parameters of a scatterer field: points per working frame over a static layer, with antenna calibration."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from mmweaver.signal.point_response import Axes, PointResponse, Points
+
+VALUES_OF_POINT = 4  # range, velocity, complex amplitude; plus one per direction the array resolves
+
+Array = np.ndarray
+StaticResponse = tuple[Float[Array, "bins"], slice]  # of Doppler bins, and which these are
+
+NO_RESPONSE = 1e-5  # relative to the peak
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layers:
+    """Parameters of one fit window, in units of its response.
+
+    `points` (frame, point) are padded with amplitude zero. `static` (range, antenna): static clutter, one complex
+    amplitude per range cell and antenna; its Doppler response is known. `calibration` (antenna,): complex gains of the
+    array. `noise_power`: per cell, not part of a rendered cube.
+    """
+
+    points: Points
+    static: Tensor
+    calibration: Tensor
+    noise_power: float
+
+    def counts(self) -> Tensor:
+        """Number of scatterers (frame,)."""
+        return (self.points.amplitude != 0).sum(dim=1)
+
+
+def values_of_point(response: PointResponse) -> int:
+    """Number of real parameters of one scatterer."""
+    return VALUES_OF_POINT + response.num_directions
+
+
+def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
+    """Renders points and static layer in centred phase.
+
+    Args:
+        layers: of one fit window.
+        response: of that window.
+        axes: cells to render.
+
+    Returns:
+        (frame, range, doppler, antenna), complex64.
+    """
+    cells = response.render(layers.points, axes, static_cells(layers.static, response, axes))
+    return cells * layers.calibration if bool((layers.calibration != 1).any()) else cells
+
+
+def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
+    """Static layer (range, antenna) -> its cells (range, doppler, antenna)."""
+    return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
+
+
+def subtract_static(residual: Array, static: Array, response: StaticResponse) -> None:
+    """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
+    kernel, bins = response
+    residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
+
+
+def fit_static(residual: Array, response: StaticResponse) -> Array:
+    """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
+    kernel, bins = response
+    return np.einsum("trda,d->ra", residual[:, :, bins], kernel) / (len(residual) * np.square(kernel).sum())
+
+
+def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
+    """Doppler response of zero velocity where it is not zero, and these bins: three for a Hann window."""
+    kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
+    found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
+    bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
+    return kernel[bins], bins
+
+
+def no_points(num_frames: int) -> Points:
+    return Points(
+        range_bin=torch.zeros(num_frames, 0),
+        doppler_bin=torch.zeros(num_frames, 0),
+        direction=torch.zeros(num_frames, 0, 2),
+        amplitude=torch.zeros(num_frames, 0, dtype=torch.complex64),
+    )
+
+
+def select_points(points: Points, order: Tensor) -> Points:
+    """Points of each frame selected by `order` (frame, selected)."""
+    return points[torch.arange(len(order))[:, None], order]
+
+
+def compact(points: Points) -> Points:
+    """Moves the padding to the end of each frame and trims it."""
+    is_padding = points.amplitude == 0
+    order = is_padding.to(torch.uint8).argsort(dim=1, stable=True)
+    size = int((~is_padding).sum(dim=1).max()) if is_padding.numel() else 0
+    return select_points(points, order[:, :size])
+
+
+def strongest(points: Points, count: int) -> Points:
+    """The `count` strongest points over all frames."""
+    size = points.amplitude.abs().flatten()
+    if count >= int((size > 0).sum()):
+        return compact(points)
+    least = size.sort(descending=True).values[count]
+    silent = torch.zeros_like(points.amplitude)
+    return compact(replace(points, amplitude=torch.where(points.amplitude.abs() > least, points.amplitude, silent)))

@@ -1,0 +1,141 @@
+"""Maps of two signals on the same ranges, velocities and azimuths, in the same decibels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.virtual_array import azimuth_row
+from mmweaver.evaluation.signal_evidence import ComparedSignal, SignalEvidence
+from mmweaver.signal.cube import remove_static
+from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
+
+MIN_BINS = 4
+AZIMUTHS = 61
+MIN_DB = -300.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommonAxes:
+    """Centres of the cells that both signals are shown in."""
+
+    range_m: np.ndarray
+    radial_velocity_mps: np.ndarray | None  # None where one of them has too few loops per frame
+    azimuth_rad: np.ndarray | None  # None where one of them has a row of fewer than three antennas
+    reference: str  # what 0 dB is
+
+    @property
+    def azimuth_deg(self) -> np.ndarray | None:
+        return None if self.azimuth_rad is None else np.degrees(self.azimuth_rad)
+
+
+def shown_m(signal: ComparedSignal) -> np.ndarray:
+    """Ranges of the bins that a signal shows: all of its samples' band, or what its cube keeps."""
+    if signal.adc is None:
+        return signal.cube.grid.range_m
+    config = signal.adc.config
+    return np.arange(config.num_unambiguous_range_bins) * config.range_resolution_m
+
+
+def common_window_m(
+    names: Sequence[str], ranges: Sequence[np.ndarray], wanted_m: tuple[float, float] | None = None
+) -> tuple[float, float]:
+    """The ranges that all signals show.
+
+    Args:
+        names: Names of the signals, for errors.
+        ranges: Ranges (bin,) of the bins of each, m.
+        wanted_m: Limits (near, far) that are wanted, too.
+
+    Returns:
+        (near, far) in m.
+
+    Raises:
+        InputError: for fewer than four bins.
+    """
+    if wanted_m is not None:
+        names, ranges = [*names, "--range"], [*ranges, np.linspace(*wanted_m, 2)]
+    near, far = max(float(one[0]) for one in ranges), min(float(one[-1]) for one in ranges)
+    shown = ranges if wanted_m is None else ranges[:-1]
+    step_m = max(float(np.diff(one[:2])[0]) if len(one) > 1 else np.inf for one in shown)
+    if far - near < (MIN_BINS - 1) * step_m:
+        apart = {[one[0] for one in ranges].index(near), [one[-1] for one in ranges].index(far)}
+        spans = [f"{names[at]} shows {ranges[at][0]:.2f} to {ranges[at][-1]:.2f} m" for at in sorted(apart)]
+        raise InputError(f"nothing to compare: {', '.join(spans)}; give recordings of common ranges")
+    return near, far
+
+
+def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
+    """Axes as coarse as the coarser of both, as far as both reach."""
+    configs = [one.cube.config for one in (a, b)]
+    near, far = common_window_m((a.signal.name, b.signal.name), (a.range_m, b.range_m))
+    near, far = max(near, a.window_m[0]), min(far, a.window_m[1])
+    step_m = max(one.range_resolution_m for one in configs)
+    velocity = None
+    if a.has_doppler and b.has_doppler:
+        step = max(one.velocity_resolution_mps for one in configs)
+        ends = [one.cube.grid.radial_velocity_mps[[0, -1]] / step for one in (a, b)]  # a Doppler axis has no +maximum
+        first, last = max(one[0] for one in ends), min(one[1] for one in ends)
+        velocity = np.arange(np.ceil(first - 1e-6), np.floor(last + 1e-6) + 1) * step
+    rows = [azimuth_row(one.cube.grid.antenna_position_m, one.cube.grid.wavelength_m) for one in (a, b)]
+    azimuth = azimuth_axis_rad(AZIMUTHS) if min(len(row) for row in rows) >= 3 else None
+    if all(np.isfinite(one.cube.scale) for one in (a, b)):
+        reference = "dBm at the receiver's port"
+    elif a.has_doppler and b.has_doppler:
+        reference = "dB over the noise of a sample"
+    else:
+        reference = "dB relative to the strongest static range"
+    return CommonAxes(
+        range_m=np.arange(near, far + 1e-9, step_m),
+        radial_velocity_mps=velocity,
+        azimuth_rad=azimuth,
+        reference=reference,
+    )
+
+
+def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> dict[str, np.ndarray]:
+    """The power of one signal in dB on common axes; energy is kept, whatever the size of its own cells.
+
+    Returns:
+        Mean over frames of "range_profile" (range,), static power, "range_doppler" (range, doppler) and
+        "range_azimuth" (range, azimuth); and "moving" (range, frame), mean chirp removed. Maps without axes are
+        missing.
+    """
+    cube, range_m = evidence.cube, evidence.range_m
+    power = {"range_profile": _resampled(evidence.still_power.mean(axis=0), range_m, axes.range_m)}
+    if axes.radial_velocity_mps is not None:
+        own = _resampled(evidence.power.mean(axis=0), range_m, axes.range_m)
+        power["range_doppler"] = _resampled(own.T, cube.grid.radial_velocity_mps, axes.radial_velocity_mps).T
+        over_time = range_doppler_power(remove_static(cube)).sum(axis=2)
+        power["moving"] = _resampled(over_time.T, range_m, axes.range_m)
+    if axes.azimuth_rad is not None:
+        own = range_azimuth_power(cube, axes.azimuth_rad).mean(axis=0)
+        power["range_azimuth"] = _resampled(own, range_m, axes.range_m)
+    gain, lowest = _gain(evidence, axes), 10 ** (MIN_DB / 10)
+    return {name: 10 * np.log10(np.maximum(one * gain, lowest)) for name, one in power.items()}
+
+
+def _gain(evidence: SignalEvidence, axes: CommonAxes) -> float:
+    """What power is multiplied with, so that 1 is 0 dB of the common reference."""
+    if axes.reference.startswith("dBm"):
+        return evidence.cube.scale**2
+    if "noise" in axes.reference:
+        return evidence.noise_share / max(float(np.median(evidence.noise)), 1e-300)
+    return 1 / max(float(evidence.still_power.mean(axis=0)[evidence.in_window].max()), 1e-300)
+
+
+def _resampled(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Power along the first axis, moved from cells at `own` to cells at `wanted` centres; sums are kept."""
+    from_edges, to_edges = _edges(own), _edges(wanted)
+    summed = np.concatenate([np.zeros((1, *power.shape[1:])), np.cumsum(power, axis=0)])
+    place = np.interp(to_edges, from_edges, np.arange(len(from_edges)))
+    low = np.minimum(place.astype(int), len(own) - 1)
+    share = (place - low).reshape(-1, *[1] * (power.ndim - 1))
+    at_edges = summed[low] + share * (summed[low + 1] - summed[low])
+    return np.diff(at_edges, axis=0)
+
+
+def _edges(centre: np.ndarray) -> np.ndarray:
+    half = (centre[1] - centre[0]) / 2
+    return np.append(centre - half, centre[-1] + half)

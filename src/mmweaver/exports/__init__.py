@@ -1,1 +1,0 @@
-"""Results in the layouts and containers that other people's tools read."""

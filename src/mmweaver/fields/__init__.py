@@ -1,1 +1,0 @@
-"""A radar cube as a continuous function, in few numbers."""

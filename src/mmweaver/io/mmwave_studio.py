@@ -1,0 +1,138 @@
+"""mmWave Studio's .mmwave.json: the radar configuration of a DCA1000 recording."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError, file_named
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.io.radar_options import RadarOptions
+from mmweaver.io.ti_chirps import MAX_TX, SHIFTER_DEG, TiChirp, TiFrame, TiProfile, TiSetup, radar_from_ti
+
+PLAIN_FRAMES = ("legacyFrameChirp", "singleFrameChirp")
+VARIATIONS = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec", "adcStartTimeVar_usec")
+
+
+def read_mmwave_studio(path: Path | str, options: RadarOptions | None = None) -> RadarConfig:
+    """The radar of the file's first device, named after the file.
+
+    Args:
+        path: The file.
+        options: A sub-frame of an advanced frame, and the board's antennas and lanes where they differ.
+
+    Raises:
+        InputError: where the file cannot be read, a key is missing or of the wrong type, chirps differ or cannot be
+            separated, or the radar could not exist.
+    """
+    path = Path(path)
+    values = read_json(path)
+    with file_named(path):
+        try:
+            return radar_from_ti(_setup(path.name.split(".")[0], values["mmWaveDevices"][0]), options or RadarOptions())
+        except InputError:
+            raise
+        except KeyError as error:
+            raise InputError(f"{path} lacks {error.args[0]}; is it an mmWave Studio .mmwave.json?") from None
+        except (AttributeError, TypeError, ValueError, IndexError, OverflowError) as error:
+            raise InputError(f"{path} is not an mmWave Studio .mmwave.json ({error})") from None
+
+
+def is_mmwave_studio(values: Any) -> bool:
+    """Whether this JSON looks like mmWave Studio's."""
+    return isinstance(values, dict) and "mmWaveDevices" in values
+
+
+def _setup(name: str, device: Any) -> TiSetup:
+    setup, capture = device["rfConfig"], device.get("rawDataCaptureConfig", {})
+    if _whole(setup["rlChanCfg_t"].get("cascading", 0)) != 0:
+        raise InputError("it is a cascade of several chips, which cannot be read; use one chip")
+    frames, period_ms = _frames(setup)
+    profiles = [entry["rlProfileCfg_t"] for entry in setup["rlProfiles"]]
+    lanes = _whole(capture.get("rlDevLaneEnable_t", {}).get("laneEn", 0))
+    swap = _whole(capture.get("rlDevDataFmtCfg_t", {}).get("iqSwapSel", 0))
+    found = TiSetup(
+        name=name,
+        profiles={_whole(profile["profileId"]): _profile(profile) for profile in profiles},
+        frames=frames,
+        has_sub_frames=len(frames) > 1,
+        frame_period_ms=period_ms,
+        rx_mask=_whole(setup["rlChanCfg_t"]["rxChannelEn"]),
+        tx_mask=_whole(setup["rlChanCfg_t"]["txChannelEn"]),
+        complex_samples=_whole(setup["rlAdcOutCfg_t"]["fmt"]["b2AdcOutFmt"]) != 0,
+        lvds_iq_order="qi" if swap == 1 else "iq",
+        lvds_lanes=4 if lanes.bit_count() == 4 else 2,
+    )
+    for entry in setup["rlChirps"]:
+        chirp = entry["rlChirpCfg_t"]
+        if varied := [key for key in VARIATIONS if float(chirp[key]) != 0]:
+            raise InputError(
+                f"chirp {chirp['chirpStartIdx']} has {varied[0]} {chirp[varied[0]]}; all must be identical"
+            )
+        one = TiChirp(profile=_whole(chirp["profileId"]), tx_mask=_whole(chirp["txEnable"]))
+        found.add_chirps(*_span(chirp), one)
+    for entry in setup.get("rlBpmChirps") or []:  # odd bits of constBpmVal invert a transmitter
+        chirp = entry["rlBpmChirpCfg_t"]
+        bits = _whole(chirp["constBpmVal"])
+        _turn(found, chirp, [180.0 * (bits >> (2 * tx + 1) & 1) for tx in range(MAX_TX)])
+    for entry in setup.get("rlRfPhaseShiftCfgs") or []:
+        chirp = entry["rlRfPhaseShiftCfg_t"]
+        _turn(found, chirp, [-SHIFTER_DEG * _whole(chirp.get(f"tx{tx}PhaseShift", 0)) for tx in range(MAX_TX)])
+    return found
+
+
+def _turn(setup: TiSetup, entry: Any, phase_deg: list[float]) -> None:
+    """Adds phases to the transmitters of a span of chirps."""
+    first, last = _span(entry)
+    for number, chirp in setup.chirps.items():
+        if first <= number <= last:
+            added = tuple(map(sum, zip(chirp.phase_deg, phase_deg, strict=True)))
+            setup.chirps[number] = replace(chirp, phase_deg=added)
+
+
+def _profile(profile: Any) -> TiProfile:
+    return TiProfile(
+        start_frequency_ghz=float(profile["startFreqConst_GHz"]),
+        idle_time_us=float(profile["idleTimeConst_usec"]),
+        adc_start_time_us=float(profile["adcStartTimeConst_usec"]),
+        ramp_end_time_us=float(profile["rampEndTime_usec"]),
+        slope_mhz_per_us=float(profile["freqSlopeConst_MHz_usec"]),
+        num_samples=_whole(profile["numAdcSamples"]),
+        sample_rate_ksps=float(profile["digOutSampleRate"]),
+        rx_gain_db=float(_whole(profile["rxGain_dB"]) & 0x3F),
+        phase_code=_whole(profile.get("txPhaseShifter", 0)),
+    )
+
+
+def _frames(setup: Any) -> tuple[list[TiFrame], float]:
+    """The plain frame, or the sub-frames of an advanced one; and the period of the whole frame in ms."""
+    waveform = setup.get("waveformType", PLAIN_FRAMES[0])  # writers other than mmWave Studio leave it out
+    if waveform in PLAIN_FRAMES:
+        frame = setup["rlFrameCfg_t"]
+        first, last = _span(frame)
+        frames = [TiFrame(first=first, last=last, num_loops=_whole(frame["numLoops"]))]
+        return frames, float(frame["framePeriodicity_msec"])
+    if waveform != "advancedFrameChirp":
+        raise InputError(f"waveform {waveform!r} cannot be read; use frames of chirps")
+    sequence = setup["rlAdvFrameCfg_t"]["frameSeq"]
+    entries = [entry["rlSubFrameCfg_t"] for entry in sequence["subFrameCfg"]][: _whole(sequence["numOfSubFrames"])]
+    frames = []
+    for index, entry in enumerate(entries):
+        if _whole(entry["numOfBurst"]) != 1 or _whole(entry["numOfBurstLoops"]) != 1:
+            raise InputError(f"sub-frame {index} has several bursts, which cannot be read; use one")
+        first, count, loops = (_whole(entry[key]) for key in ("chirpStartIdx", "numOfChirps", "numLoops"))
+        frames.append(TiFrame(first=first, last=first + count - 1, num_loops=loops))
+    return frames, sum(float(entry["subFramePeriodicity_msec"]) for entry in entries)
+
+
+def _span(entry: Any) -> tuple[int, int]:
+    return _whole(entry["chirpStartIdx"]), _whole(entry["chirpEndIdx"])
+
+
+def _whole(value: Any) -> int:
+    """An integer, or a hexadecimal string as mmWave Studio writes masks."""
+    if isinstance(value, str):
+        return int(value, 0)
+    if isinstance(value, bool) or value != int(value):
+        raise InputError(f"{value!r} must be a whole number")
+    return int(value)

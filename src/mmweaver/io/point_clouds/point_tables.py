@@ -1,0 +1,155 @@
+"""Point clouds as tables: CSV logs, MM-Fi's frames of float64, RadHAR's text, mHomeGes's archives.
+
+Reference: An and Ogras, MARS (CSV of frame, count, x, y, z, Doppler, intensity); Yang et al., MM-Fi (frames of x, y, z,
+Doppler, intensity as float64); Singh et al., RadHAR (text of ROS messages, x ahead and y to the left).
+"""
+
+import csv
+import re
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, read_bytes
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import read_text
+from mmweaver.io.point_clouds.point_log import LoggedCloud, logged_cloud, point_format
+from mmweaver.io.point_clouds.ti_uart import MAGIC
+
+MAX_BYTES = 500 * MEGABYTE
+MAX_FRAME = 2**31
+MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
+# columns of a CSV, in letters and digits alone: name here
+COLUMNS = {
+    "frame": "frame",
+    "framenumber": "frame",
+    "framenum": "frame",
+    "x": "x",
+    "y": "y",
+    "z": "z",
+    "doppler": "velocity",
+    "velocity": "velocity",
+    "v": "velocity",
+    "intensity": "intensity",
+    "snr": "snr",
+    "snrdb": "snr",
+}
+RADHAR_LINE = re.compile(rb"^(point_id|x|y|z|velocity|intensity): *(\S+)", re.MULTILINE)
+NUMBERED = re.compile(r"(\d+)")
+
+
+@point_format(
+    "csv", "CSV with Frame, X, Y, Z, Doppler (MARS, mRI, mHomeGes)", lambda path, head: path.suffix.lower() == ".csv"
+)
+def read_csv_points(path: Path) -> LoggedCloud:
+    """A CSV with a header that names frame, x, y, z and Doppler (m, m/s), as MARS and mRI have. Raises InputError."""
+    text = read_text(path, max_bytes=MAX_BYTES)
+    with foreign_errors(path, "no CSV ({reason}); export it again"):
+        rows = list(csv.reader(StringIO(text)))
+    at = csv_columns(rows[0] if rows else [], str(path))
+    try:
+        table = np.array([[float(row[index]) for index in at.values()] for row in rows[1:] if row])
+    except (ValueError, IndexError):
+        raise InputError(f"{path} holds a line that is not a number in each column; leave it out") from None
+    column = dict(zip(at, table.reshape(-1, len(at)).T, strict=True))
+    return logged_cloud(
+        _renumbered(path, column["frame"]),
+        np.column_stack([column[axis] for axis in "xyz"]),
+        column["velocity"],
+        snr_db=column.get("snr"),
+        intensity=column.get("intensity"),
+    )
+
+
+def csv_columns(header: list[str], place: str) -> dict[str, int]:
+    """Where the header of a CSV has frame, x, y, z, velocity, snr and intensity. Raises InputError for missing ones."""
+    names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in header]
+    at = {name: index for index, name in enumerate(names) if name is not None}
+    if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
+        raise InputError(f"{place}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
+    return at
+
+
+def _is_mmfi(path: Path, head: bytes) -> bool:
+    return path.is_dir() or (
+        path.suffix.lower() == ".bin" and len(head) % (8 * MMFI_COLUMNS) == 0 and MAGIC not in head
+    )
+
+
+@point_format("mmfi", "frames of float64 (MM-Fi), a file or a folder", _is_mmfi)
+def read_mmfi(path: Path) -> LoggedCloud:
+    """A frame of MM-Fi (.bin of float64), or a folder of frames in the order of their numbers. Raises InputError.
+
+    The frame with no points is kept: frames are numbered by their files.
+    """
+    files = sorted(path.glob("*.bin"), key=_number) if path.is_dir() else [path]
+    if not files:
+        raise InputError(f"{path} holds no frames (.bin)")
+    tables = []
+    for file in files:
+        raw = read_bytes(file, max_bytes=MAX_BYTES)
+        if len(raw) % (8 * MMFI_COLUMNS):
+            raise InputError(f"{file} has {len(raw)} bytes; a frame of MM-Fi has 40 per point, five float64")
+        table = np.frombuffer(raw, "<f8").reshape(-1, MMFI_COLUMNS)
+        if not np.isfinite(table).all() or np.abs(table[:, :3]).max(initial=0.0) > 1e3:
+            raise InputError(f"{file} holds no point cloud of MM-Fi: float64 x, y, z, Doppler, intensity")
+        tables.append(table)
+    frame, table = np.repeat(np.arange(len(tables)), list(map(len, tables))), np.concatenate(tables)
+    return logged_cloud(frame, table[:, :3], table[:, 3], intensity=table[:, 4])
+
+
+@point_format("radhar", "text of RadHAR", lambda path, head: b"point_id:" in head)
+def read_radhar_text(path: Path) -> LoggedCloud:
+    """RadHAR's text: one message per point, point_id 0 begins a frame; x ahead, y left. Raises InputError."""
+    columns: dict[bytes, list[float]] = {}
+    for name, word in RADHAR_LINE.findall(read_bytes(path, max_bytes=MAX_BYTES)):
+        try:
+            columns.setdefault(name, []).append(float(word))
+        except ValueError:
+            raise InputError(f"{path} holds {word[:20]!r} where a number should be; leave it out") from None
+    needed = [columns.get(name, []) for name in (b"point_id", b"x", b"y", b"z", b"velocity")]
+    if not needed[0] or len({len(column) for column in needed}) != 1:
+        raise InputError(f"{path} is no text of RadHAR: point_id, x, y, z and velocity, one line each")
+    point, ahead, left, up, velocity = (np.array(column) for column in needed)
+    frame = np.cumsum(point == 0) - (point[0] == 0)
+    own = columns.get(b"intensity", [])
+    intensity = np.array(own) if len(own) == len(point) else None
+    return logged_cloud(frame, np.column_stack([-left, ahead, up]), velocity, intensity=intensity)
+
+
+@point_format(
+    "npz",
+    "archive with frame and pts (mHomeGes, RadHAR)",
+    lambda path, head: path.suffix.lower() == ".npz" and {"frame", "pts"} <= set(read_npz(path)),
+)
+def read_point_npz(path: Path) -> LoggedCloud:
+    """mHomeGes: `frame`, `pts` (x, y, z, velocity, intensity); RadHAR as .npz: eight columns. Raises InputError."""
+    held = read_npz(path)
+    if not {"frame", "pts"} <= set(held):
+        raise InputError(f"{path} holds {', '.join(held)}, not frame and pts")
+    frame = held.numbers("frame", ("point",))
+    points = held.numbers("pts", ("point", "column"), nan=True).astype(float)
+    if points.shape[1] not in (5, 8):
+        raise InputError(f"{path}: pts is {points.shape}; 5 columns (mHomeGes) or 8 (RadHAR) are known")
+    frame = _renumbered(path, frame)
+    if points.shape[1] == 5:
+        return logged_cloud(frame, points[:, :3], points[:, 3], intensity=points[:, 4])
+    return logged_cloud(
+        frame, points[:, [1, 0, 2]] * [-1, 1, 1], points[:, 4], intensity=points[:, 7]
+    )  # x ahead, y left
+
+
+def _renumbered(path: Path, frame: np.ndarray) -> np.ndarray:
+    """Frames counted from 0, gaps kept. Raises InputError where they are no rising whole numbers."""
+    frame = np.asarray(frame, float)
+    is_whole = bool((np.abs(frame) < MAX_FRAME).all()) and not (frame % 1).any()
+    if not is_whole or (np.diff(frame) < 0).any():
+        raise InputError(f"{path} has frame numbers that are not whole or not in order; leave it out")
+    return (frame - frame[0]).astype(int) if len(frame) else frame.astype(int)
+
+
+def _number(file: Path) -> tuple[int, str]:
+    found = NUMBERED.findall(file.stem)
+    return (int(found[-1]) if found else -1), file.name

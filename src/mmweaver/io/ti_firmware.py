@@ -1,0 +1,94 @@
+"""The lines of an mmWave SDK .cfg that configure the demo's point cloud.
+
+Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format": cfarCfg, peakGrouping, clutterRemoval,
+multiObjBeamForming.
+"""
+
+import math
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError, file_named
+from mmweaver.core.firmware_settings import AVERAGE_MODES, SDK3_MAX_OBJECTS, FirmwareCfar, FirmwareSettings
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.io.ti_cfg import Line, adc_buffer, read_ti_cfg, ti_cfg_lines
+
+# SDK 2 and later put the sub-frame before these numbers, so lines have one more than in SDK 1.
+PLAIN_LENGTH = {"cfarCfg": 7, "peakGrouping": 5, "clutterRemoval": 1, "multiObjBeamForming": 2}
+SDK3_CFAR_LENGTH = 9
+DB_PER_OCTAVE = 20 * math.log10(2)
+
+
+def read_ti_firmware(path: Path | str) -> FirmwareSettings:
+    """The settings of the point cloud; those that the file does not hold are the demo's defaults.
+
+    The device follows from adcbufCfg: the IWR1443's demo uses interleaved channels (0), those of other devices do
+    not (1); without the line it is the IWR1443. SDK 3 has thresholds in dB, grouping in each cfarCfg and a longer list
+    of points. Raises InputError where the file cannot be read, has no cfarCfg, or a number is out of range.
+    """
+    path = Path(path)
+    lines = ti_cfg_lines(path, PLAIN_LENGTH)
+    if "cfarCfg" not in lines:
+        raise InputError(
+            f"{path} has no cfarCfg, so its firmware's point cloud is unknown; add the line or use --points cfar"
+        )
+    config = read_ti_cfg(path)
+    device = "xwr16xx" if adc_buffer(lines)[1] == 1 else "xwr14xx"
+    own = {command: _drop_sub_frame(found[-1]) for command, found in lines.items() if command in PLAIN_LENGTH}
+    with file_named(path):
+        cfars = {line.values[0]: line for line in map(_drop_sub_frame, lines["cfarCfg"])}
+        if unknown := sorted(set(cfars) - {0.0, 1.0}):
+            raise InputError(f"cfarCfg is for direction {unknown[0]:g}; known are 0 (range) and 1 (Doppler)")
+        values: dict[str, Any] = {}
+        if "peakGrouping" in own:
+            _, in_range, in_doppler, first, last = own["peakGrouping"].wholes(5)
+            values = {"group_range": in_range == 1, "group_doppler": in_doppler == 1}
+            values |= {"first_range_bin": first, "last_range_bin": last}
+        for direction, name in ((0.0, "group_range"), (1.0, "group_doppler")):
+            if direction in cfars and _is_of_sdk3(cfars[direction]):
+                values[name] = cfars[direction].whole(SDK3_CFAR_LENGTH - 2) == 1
+        beams = own.get("multiObjBeamForming")
+        return FirmwareSettings(
+            device=device,
+            range_cfar=_cfar(cfars.get(0.0), device, config),
+            doppler_cfar=_cfar(cfars.get(1.0), device, config),
+            static_removal="clutterRemoval" in own and own["clutterRemoval"].values[0] == 1,
+            second_peak=None if beams is None or beams.values[0] != 1 else float(beams.values[1]),
+            most_objects=SDK3_MAX_OBJECTS if any(map(_is_of_sdk3, cfars.values())) else None,
+            **values,
+        )
+
+
+def _drop_sub_frame(line: Line) -> Line:
+    """A line with the numbers of SDK 1 first."""
+    return Line(line.number, line.command, line.values[len(line.values) > PLAIN_LENGTH[line.command] :])
+
+
+def _is_of_sdk3(line: Line) -> bool:
+    return len(line.values) >= SDK3_CFAR_LENGTH - 1
+
+
+def _cfar(line: Line | None, device: str, config: RadarConfig) -> FirmwareCfar | None:
+    if line is None:
+        return None
+    _, average, window, guard, shift, cyclic = line.wholes(6)
+    if not 0 <= average < len(AVERAGE_MODES):
+        raise InputError(f"line {line.number}: cfarCfg has average mode {average}; known are 0, 1 and 2")
+    in_db = _is_of_sdk3(line)
+    if in_db and average != 0:
+        shift += 1  # SDK 3 divides the one side that CASO and CAGO take by 2^shift, older ones by half of that
+    return FirmwareCfar(
+        average=AVERAGE_MODES[average],
+        window=window,
+        guard=guard,
+        noise_shift=shift,
+        cyclic=cyclic == 1,
+        threshold=_counts(line.values[6], device, config) if in_db else line.whole(6),
+    )
+
+
+def _counts(threshold_db: float, device: str, config: RadarConfig) -> int:
+    """Converts a threshold in dB to the units of the detection matrix."""
+    num = config.num_antennas
+    per_octave = 256 * num if device == "xwr16xx" else 512 * num / 2 ** (num - 1).bit_length()
+    return round(threshold_db / DB_PER_OCTAVE * per_octave)

@@ -1,0 +1,326 @@
+"""Paths -> noise-free ADC samples, exact in time: fast time x (slow time . antennas), one matrix product a block.
+
+Phases are counted in double precision, all else in single, on the CPU or a GPU. `reference_sum.py` is the sum that
+these factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
+"""
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.propagation.fast_time import FastTime, phasor
+from mmweaver.propagation.frame_clock import NUM_NODES, FrameClock, Segment
+from mmweaver.propagation.paths import Paths, ScenePaths, StaticPaths
+from mmweaver.propagation.transmit_elements import TransmitElements
+
+if TYPE_CHECKING:
+    from mmweaver.propagation.board_effects import BoardEffects
+
+ROWS_AT_ONCE = 2048  # static paths, which bounds memory
+
+
+class AdcSynthesis:
+    """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded.
+
+    `board`: whose antennas and range bias they are recorded with; paths are given with its IF already. `is_faded`: for
+    paths that step between the segments of a frame, as the network's do (`FrameClock.faded_segments`).
+    """
+
+    def __init__(
+        self, config: RadarConfig, device: str | torch.device = "cpu", board: "BoardEffects | None" = None, *,
+        is_faded: bool = False,
+    ):  # fmt: skip
+        self._elements = TransmitElements(config)
+        self.config, self.device = self._elements.config, torch.device(device)
+        self.clock = FrameClock(self.config)
+        mixing = None if board is None or board.channels is None else self._elements.mixing(board.channels)
+        self.array = ArrayPhases(self.config, self.device, mixing)
+        # how much a beat turns at each sample where its path is a metre longer
+        per_m = 2j * math.pi * self.config.chirp_slope_hz_per_s / SPEED_OF_LIGHT_MPS
+        since_middle_s = (np.arange(self.config.num_samples) - self.config.num_samples / 2) / self.config.sample_rate_hz
+        self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
+        self._extra_m = 0.0 if board is None else board.extra_length_m
+        self._fast = FastTime(self.config)
+        # with their share of each chirp, where segments fade into each other
+        self._segments: list[tuple[_SegmentFactors, Tensor | None]] = [
+            (_SegmentFactors(one, self.device), None) for one in self.clock.segments
+        ]
+        if is_faded and len(self._segments) > 1:
+            self._segments = [
+                (_SegmentFactors(one.segment, self.device), self._share(one.share)) for one in self.clock.faded_segments
+            ]
+
+    def moving(self, paths: Paths) -> Tensor:
+        """Samples of moving paths.
+
+        Args:
+            paths: (frame * segment, path), amplitudes in sqrt(mW).
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
+        """
+        config, count = self.config, len(self._segments)
+        frames = len(paths) // count
+        adc = torch.empty(
+            frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples,
+            dtype=torch.complex64, device=self.device,
+        )  # fmt: skip
+        # On the CPU frame by frame: nothing is padded, and the caches hold it.
+        batches = [slice(0, frames)] if self.device.type != "cpu" else [slice(at, at + 1) for at in range(frames)]
+        if any(share is not None for _, share in self._segments):
+            adc.zero_()
+        for index, (segment, share) in enumerate(self._segments):
+            of_segment = paths[index::count].to(self.device)
+            for batch in batches:
+                some = unpadded(of_segment[batch])
+                own = adc[batch, segment.loops]
+                if share is None:
+                    self._add_segment(some, segment, own)
+                    continue
+                part = torch.empty_like(own)
+                self._add_segment(some, segment, part)
+                own += part * share
+        return self._elements.slots(adc, 2)
+
+    def _share(self, share: np.ndarray) -> Tensor:
+        """Shares (loop, tx) as factors of samples (frame, loop, tx, rx, sample)."""
+        return torch.from_numpy(share[..., None, None].astype(np.float32)).to(self.device)
+
+    def static(self, paths: StaticPaths, weight: Tensor | None = None) -> Tensor:
+        """Samples of static paths, the same in every loop.
+
+        Args:
+            paths: (path,).
+            weight: (set, path), real or complex: so many sums of weighted paths; by default one plain sum.
+
+        Returns:
+            Samples (tx, rx, sample), or (set, tx, rx, sample) with weights; complex64, in sqrt(mW).
+        """
+        weights = torch.ones(1, len(paths)) if weight is None else weight
+        some = weights.ne(0).any(dim=0).nonzero()[:, 0]
+        chosen = paths if len(some) == len(paths) else paths[some]
+        total = None
+        for first in range(0, max(len(some), 1), ROWS_AT_ONCE):
+            rows = slice(first, first + ROWS_AT_ONCE)
+            part = self._static_factors(chosen[rows]).summed(weights[:, some[rows]].to(self.device))
+            total = part if total is None else total + part
+        assert total is not None
+        samples = self._recorded(total)
+        return samples[0] if weight is None else samples
+
+    def _static_factors(self, paths: StaticPaths) -> "_StaticFactors":
+        length_m = self._elements.lengths(paths.length_m).to(self.device)
+        mean_m = length_m.mean(dim=(1, 2))
+        amplitude = paths.amplitude.to(torch.complex64).to(self.device)
+        slow = phasor(length_m / self.config.wavelength_m) * amplitude[:, None, None]
+        late = slow * (length_m - mean_m[:, None, None]).float()
+        fast = self._fast.factor((mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS, 0.0)
+        return _StaticFactors(pairs=torch.stack([slow, late], dim=1), fast=fast)
+
+    def _recorded(self, plain_and_tilted: Tensor) -> Tensor:
+        """Samples (set, tx, rx, sample) of sums (2, set, tx, rx, sample) of the factors of static paths."""
+        plain, tilted = plain_and_tilted
+        return self._elements.slots(self.array.mixed(plain.addcmul(tilted, self._turn_per_m), 1), 1)
+
+    def occluded(self, paths: ScenePaths) -> Tensor:
+        """Samples of the static paths that are occluded in each frame, complex64 (frame, tx, rx, sample)."""
+        weight = paths.occluded.float()
+        if self.device.type != "cpu":
+            return self.static(paths.static, weight)
+        some = weight.any(dim=0).nonzero()[:, 0]
+        factors = self._static_factors(paths.static[some])
+        # each frame on its own: its bits do not depend on which others are asked for
+        return torch.cat([self._recorded(factors.summed(frame[None])) for frame in weight[:, some]])
+
+    def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
+        """Samples of leakage, the same in every loop.
+
+        Args:
+            length_m: path lengths (tap,), as `BoardEffects.leakage` gives them.
+            amplitude: (tap, tx, rx) in sqrt(mW).
+
+        Returns:
+            Samples (tx, rx, sample), complex64.
+        """
+        fast = self._fast.factor(length_m / SPEED_OF_LIGHT_MPS, 0.0)  # (tap, sample)
+        adc = torch.tensordot(self._elements.pair_values(amplitude), fast, dims=([0], [0]))
+        return self._elements.slots(adc, 0)
+
+    def static_rate(self, paths: StaticPaths) -> Tensor:
+        """How fast the samples of static paths change within a chirp, complex64 (tx, rx, sample) in sqrt(mW)/s."""
+        delay_s = paths.length_m.mean(dim=(1, 2)) / SPEED_OF_LIGHT_MPS
+        beat_rad_per_s = 2 * math.pi * self.config.chirp_slope_hz_per_s * delay_s
+        return self.static(paths, 1j * beat_rad_per_s[None])[0]
+
+    def _add_segment(self, paths: Paths, segment: "_SegmentFactors", adc: Tensor) -> None:
+        """Writes the samples of one segment of frames, paths (frame, path), to adc (frame, loop, tx, rx, sample)."""
+        config = self.config
+        if paths.amplitude.shape[-1] == 0:
+            adc.zero_()
+            return
+        bands = None
+        if self.device.type == "cpu" and len(paths) == 1:
+            paths = paths[:, paths.length_m[0].argsort()]
+            bands = self._fast.bands(paths.length_m[0] / SPEED_OF_LIGHT_MPS)
+        # (frame, time, 3, path): paths come last, as loops over few antennas or chirps cost more than they compute
+        ends = paths.departure.positions_m(segment.place_s), paths.arrival.positions_m(segment.place_s)
+        out_m, back_m = (distance_m(end[:, :NUM_NODES]) for end in ends)
+        length_m = out_m + back_m  # (frame, node, path)
+        by_chirp_m = (segment.to_chirps @ length_m).unflatten(1, (-1, config.num_tx))  # (frame, loop, tx, path)
+        by_block_m = segment.to_blocks @ length_m  # (frame, block, path)
+        shift_hz = segment.slope_at_blocks @ length_m / config.wavelength_m
+        carrier = phasor(by_chirp_m / config.wavelength_m) * paths.amplitude[:, None, None]
+        array = self.array(*(end[:, NUM_NODES:] for end in ends), paths.is_reciprocal)
+        at_blocks = torch.view_as_real(array.phase).flatten(2)
+        for index, block in enumerate(segment.segment.blocks):
+            phases = (segment.between_blocks[block] @ at_blocks).unflatten(2, (*array.phase.shape[2:], 2))
+            later_m = (by_chirp_m[:, block] - by_block_m[:, index, None, None]).to(phases.dtype)
+            chirp = carrier[:, block, :, None]
+            left = carrier.new_empty(len(paths), 2, *phases.shape[1:-1])
+            slow, late = left.unbind(1)  # (frame, loop, tx, rx, path)
+            torch.mul(chirp, torch.view_as_complex(phases), out=slow)
+            torch.mul(chirp, array.excess[:, index, None], out=late)
+            late += slow * later_m[:, :, :, None]
+            delay_s = (by_block_m[:, index] + self._extra_m) / SPEED_OF_LIGHT_MPS
+            both = self._fast.summed(left.flatten(1, 4), delay_s, shift_hz[:, index], bands)
+            plain, tilted = both.unflatten(1, left.shape[1:-1]).unbind(1)
+            torch.addcmul(plain, tilted, self._turn_per_m, out=adc[:, block])
+
+
+@dataclass(frozen=True, kw_only=True)
+class _StaticFactors(TensorRecord):
+    """Static paths as sums over them need them."""
+
+    pairs: Tensor  # (path, 2, tx, rx) complex64: of each pair of antennas, and the same times how much longer it is
+    fast: Tensor  # (path, sample) complex64
+
+    def summed(self, weight: Tensor) -> Tensor:
+        """Sums (2, set, tx, rx, sample) of paths with weights (set, path), real or complex."""
+        some = weight.ne(0).any(dim=0).nonzero()[:, 0]
+        # `index_select` takes half as long as an index
+        chosen = self if len(some) == len(weight[0]) else self.map(lambda factor: factor.index_select(0, some))
+        left = weight[:, some].T.to(torch.complex64)[:, None, :, None, None] * chosen.pairs[:, :, None]
+        shape = (*left.shape[1:], self.fast.shape[-1])
+        return (left.flatten(1).T @ chosen.fast).view(shape)
+
+
+class _SegmentFactors:
+    """A segment of the frame's clock as tensors."""
+
+    def __init__(self, segment: Segment, device: torch.device):
+        self.segment, self.loops = segment, segment.loops
+        self.place_s = _double(np.concatenate([segment.node_s, segment.block_s]), device)
+        self.to_chirps = _double(segment.weights(segment.chirp_s.ravel()).T, device)  # (loop * tx, node)
+        self.to_blocks = _double(segment.weights(segment.block_s).T, device)  # (block, node)
+        self.slope_at_blocks = _double(segment.slopes(segment.block_s).T, device)
+        in_between = interpolation(segment.block_s, segment.chirp_s.mean(axis=1)).T
+        self.between_blocks = _double(in_between, device).float()  # (loop, block)
+
+
+class ArrayPhases:
+    """Near-field phases of a radar's antennas relative to the array's centre.
+
+    `mixing` (tx * rx, tx * rx): what a board records of each pair, of what each would receive alone.
+    """
+
+    def __init__(self, config: RadarConfig, device: torch.device, mixing: Tensor | None = None):
+        self._mixing = None if mixing is None else mixing.to(device)
+        self.wavelength_m = config.wavelength_m
+        self.tx_m = _double(np.asarray(config.tx_position_m), device)
+        self.rx_m = _double(np.asarray(config.rx_position_m), device)
+
+    def __call__(self, departure_m: Tensor, arrival_m: Tensor, is_reciprocal: Tensor) -> "PairPhases":
+        """Of paths between these places (frame, ..., 3, path); both orders of reciprocal ones (frame, path)."""
+        pairs = self._pairs(departure_m, arrival_m)
+        some = is_reciprocal.any(dim=0).nonzero()[:, 0]
+        if len(some):
+            back = self._pairs(arrival_m[..., some], departure_m[..., some])
+            counts = is_reciprocal[:, some].unflatten(0, (-1, *[1] * (departure_m.dim() - 1)))
+            pairs.phase[..., some] += back.phase * counts
+            pairs.excess[..., some] += back.excess * counts
+        return PairPhases(phase=self.mixed(pairs.phase, -3), excess=self.mixed(pairs.excess, -3))
+
+    def mixed(self, values: Tensor, axis: int) -> Tensor:
+        """Values of antenna pairs, transmitters on an axis and receivers on the next, as the board records them."""
+        if self._mixing is None:
+            return values
+        axis %= values.dim()
+        pairs = values.flatten(axis, axis + 1).movedim(axis, -1) @ self._mixing.T
+        return pairs.movedim(-1, axis).unflatten(axis, values.shape[axis : axis + 2])
+
+    def _pairs(self, departure_m: Tensor, arrival_m: Tensor) -> "PairPhases":
+        out_m, back_m = excess_m(departure_m, self.tx_m)[..., None, :], excess_m(arrival_m, self.rx_m)[..., None, :, :]
+        phase = phasor(out_m / self.wavelength_m) * phasor(back_m / self.wavelength_m)
+        return PairPhases(phase=phase, excess=phase * (out_m + back_m).float())
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairPhases:
+    """What a path's length from each transmitter to each receiver does to its phase, relative to the array's centre."""
+
+    phase: Tensor  # (..., tx, rx, path) complex64, the sum over both orders of a reciprocal path
+    excess: Tensor  # the same, each times how much longer the path is, in m
+
+
+def distance_m(place_m: Tensor) -> Tensor:
+    """(..., path) from the array's centre to places (..., 3, path)."""
+    return place_m.square().sum(dim=-2).sqrt()
+
+
+def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
+    """|p - a| - |p| (..., antenna, path) of places p (..., 3, path) and antennas a, written so that nothing cancels."""
+    distance = distance_m(place_m)[..., None, :]
+    excess = antenna_m.square().sum(dim=-1)[:, None] - 2 * (antenna_m @ place_m)
+    both_m = (distance.square() + excess).clamp(min=0).sqrt() + distance
+    return excess / both_m.clamp(min=1e-12)  # 0 for the place of an antenna itself, as padding is
+
+
+def interpolation(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Weights of linear interpolation, continued beyond the ends.
+
+    Args:
+        nodes: places (node,), rising.
+        at: places (time,) of interpolation.
+
+    Returns:
+        (node, time): values at nodes times this are values in between.
+    """
+    if len(nodes) == 1:
+        return np.ones((1, len(at)))
+    left = np.clip(np.searchsorted(nodes, at) - 1, 0, len(nodes) - 2)
+    share = (at - nodes[left]) / (nodes[left + 1] - nodes[left])
+    weights = np.zeros((len(nodes), len(at)))
+    weights[left, np.arange(len(at))] = 1 - share
+    weights[left + 1, np.arange(len(at))] += share
+    return weights
+
+
+def unpadded(paths: Paths) -> Paths:
+    """Paths (frame, path) without the padding that all frames have."""
+    there = paths.amplitude.ne(0).any(dim=0).nonzero()[:, 0]
+    longest = int(there[-1]) + 1 if len(there) else 0
+    return paths if longest == paths.amplitude.shape[1] else paths[:, :longest]
+
+
+def _double(values: np.ndarray, device: torch.device) -> Tensor:
+    return torch.from_numpy(np.ascontiguousarray(values, np.float64)).to(device)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

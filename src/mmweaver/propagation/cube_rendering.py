@@ -1,0 +1,249 @@
+"""Paths -> the range-Doppler cube without ADC samples: each path's range kernel x (Doppler spectrum . antennas).
+
+What `adc_synthesis` and the transforms give together, for a fraction of the cost. In range a path leaves the window's
+spectrum K, in Doppler the transform of its own chirps. Within a time segment a path moves by a share of a range bin: K
+is taken to first order, K(r - b - d) = K(r - b) - d K'(r - b), with d for each chirp and antenna.
+Reference: docs/radar_primer.md, equations 7 and 12.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.propagation.adc_synthesis import ArrayPhases, unpadded
+from mmweaver.propagation.fast_time import phasor
+from mmweaver.propagation.frame_clock import FadedSegment, FrameClock
+from mmweaver.propagation.paths import Paths, StaticPaths
+from mmweaver.propagation.transmit_elements import TransmitElements
+from mmweaver.signal.cube import doppler_weight, slot_compensation, tdm_compensation
+from mmweaver.signal.window_kernels import WindowKernel
+from mmweaver.signal.windows import hann
+
+if TYPE_CHECKING:
+    from mmweaver.propagation.board_effects import BoardEffects
+
+FRAMES_AT_ONCE = 4  # stay in the cache
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticResponse(TensorRecord):
+    """What each static path leaves in the cube at zero Doppler: a sum of two products of range and antenna."""
+
+    at_range: Tensor  # (path, range) range kernel
+    range_slope: Tensor  # (path, range) its slope
+    echo: Tensor  # (path, antenna) complex
+    tilted: Tensor  # (path, antenna) complex: the same times how many bins an antenna is off the array's mean
+
+    def layer(self) -> Tensor:
+        """The sum of all paths, complex (range, antenna)."""
+        in_range = torch.cat([self.at_range, self.range_slope])
+        antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
+        return torch.view_as_complex((in_range.T @ antennas).unflatten(1, (-1, 2)))
+
+    def layers(self, chosen: Tensor) -> Tensor:
+        """The sums of the chosen paths (frame, path), complex (frame, range, antenna)."""
+        in_range = torch.cat([self.at_range, self.range_slope])
+        antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
+        share = chosen.float().repeat(1, 2)  # with their slopes
+        changes = torch.cat([share[:1], share.diff(dim=0)])  # few are hidden anew from frame to frame
+        rows = [one.nonzero()[:, 0] for one in changes]
+        each = [in_range[row].T @ (antennas[row] * one[row, None]) for row, one in zip(rows, changes, strict=True)]
+        return torch.view_as_complex(torch.stack(each).cumsum(dim=0).unflatten(2, (-1, 2)))
+
+    def each(self) -> Tensor:
+        """Every path's own, complex (range * antenna, path)."""
+        both = self.at_range[..., None] * self.echo[:, None] + self.range_slope[..., None] * self.tilted[:, None]
+        return both.flatten(1).T
+
+    def scaled(self, factor: Tensor) -> "StaticResponse":
+        """Of paths whose amplitudes are multiplied by factors (path,)."""
+        return StaticResponse(
+            at_range=self.at_range, range_slope=self.range_slope,
+            echo=self.echo * factor[:, None], tilted=self.tilted * factor[:, None],
+        )  # fmt: skip
+
+
+class CubeRenderer:
+    """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them.
+
+    `board`: whose antennas, range bias and first chirps it is recorded with; paths are given with its IF already.
+    """
+
+    def __init__(self, config: RadarConfig, board: "BoardEffects | None" = None):
+        self._elements = TransmitElements(config)
+        self._static_mixing = _static_mixing(config) if config.is_coded else None
+        config = self._elements.config
+        self.config, self.clock = config, FrameClock(config)
+        mixing = None if board is None or board.channels is None else self._elements.mixing(board.channels)
+        self._array = ArrayPhases(config, torch.device("cpu"), mixing)
+        self._range_kernel = WindowKernel(hann(config.num_samples))
+        bins = config.first_range_bin + np.arange(config.num_range_bins)
+        self._range_bin = torch.from_numpy(bins).float()
+        # the kernel counts phase from the middle of the window, the transform from its beginning
+        self._range_sign = torch.from_numpy((-1.0) ** bins).float()
+        weight = torch.from_numpy(doppler_weight(config.num_loops))
+        compensation = torch.from_numpy(tdm_compensation(config))
+        self._extra_m = 0.0 if board is None else board.extra_length_m
+        static = torch.fft.fft(weight)[:, None] * compensation
+        chirps = None if board is None else _chirps(config, board.first_chirp)
+        if chirps is not None:
+            by_antenna = (weight[:, None] * chirps).repeat_interleave(config.num_rx, dim=1)
+            static = torch.fft.fft(by_antenna, dim=0) * compensation
+        self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
+        self._static_doppler = static[self.static_bins]
+        fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
+        by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
+        by_tx = by_tx if chirps is None else by_tx * chirps.T[..., None]
+        self._segments = [_SegmentDoppler.of(one, by_tx) for one in self.clock.faded_segments]
+
+    def moving(self, paths: Paths) -> Tensor:
+        """Cube values of moving paths.
+
+        Args:
+            paths: (frame * segment, path), amplitudes in sqrt(mW).
+
+        Returns:
+            Values (frame, range, doppler, antenna), complex64, in sqrt(mW).
+        """
+        config, count = self.config, len(self._segments)
+        frames = len(paths) // count
+        values = torch.empty(
+            frames, config.num_range_bins, config.num_antennas, config.num_loops, dtype=torch.complex64
+        )  # Doppler last: loops over few antennas cost more than they compute
+        flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 antenna doppler)
+        for index, segment in enumerate(self._segments):
+            self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
+        return self._elements.decoded(values.transpose(2, 3).contiguous())
+
+    def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
+        """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
+        config = self.config
+        length_m, rate_mps = paths.length_m, paths.rate_mps
+        pairs = self._array(paths.departure.position_m.mT, paths.arrival.position_m.mT, paths.is_reciprocal)
+        amplitude = paths.amplitude[:, None, None]
+        array, longer_m = ((part * amplitude).movedim(-1, 1)[..., None] for part in (pairs.phase, pairs.excess))
+        longer = longer_m / (2 * config.range_resolution_m)  # in bins, than the centre's; (frame, path, tx, rx, 1)
+        plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
+        late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
+        plain, late = plain[..., None, :], late[..., None, :]  # (frame, path, tx, 1, doppler)
+        shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
+        place = (length_m + self._extra_m) / (2 * config.range_resolution_m) + shift_bin
+        kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
+        in_range = torch.cat([kernel * self._range_sign, slope * -self._range_sign], dim=1).transpose(1, 2)
+        count = length_m.shape[1]
+        cells = array.new_empty(FRAMES_AT_ONCE, 2 * count, *array.shape[2:4], config.num_loops)
+        for first in range(0, len(values), FRAMES_AT_ONCE):
+            some = slice(first, first + FRAMES_AT_ONCE)
+            here = cells[: len(values[some])]
+            torch.mul(plain[some], array[some], out=here[:, :count])
+            torch.mul(late[some], array[some], out=here[:, count:]).addcmul_(plain[some], longer[some])
+            right = torch.view_as_real(here).flatten(2)
+            torch.baddbmm(values[some], in_range[some], right, beta=0 if is_first else 1, out=values[some])
+
+    def _cycles(self, paths: Paths, length_m: Tensor, rate_mps: Tensor, time_s: Tensor) -> Tensor:
+        """Phase at each chirp, in cycles, (frame, path, tx * loop), at times (tx * loop,)."""
+        delay_s = (length_m + self._extra_m) / SPEED_OF_LIGHT_MPS
+        residual = self.config.chirp_slope_hz_per_s * delay_s**2 / 2
+        motion = torch.stack([length_m, rate_mps, paths.acceleration_mps2 / 2], dim=-1) / self.config.wavelength_m
+        motion[..., 0] -= residual
+        return motion @ torch.stack([torch.ones_like(time_s), time_s, time_s**2])
+
+    def static(self, paths: StaticPaths) -> StaticResponse:
+        """What static paths (path,) leave at zero Doppler."""
+        config = self.config
+        length_m = self._elements.lengths(paths.length_m).flatten(1)  # (path, antenna)
+        mean_m = length_m.mean(dim=1)
+        delay_s = (mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS
+        cycles = length_m / config.wavelength_m - (config.chirp_slope_hz_per_s * delay_s**2 / 2)[:, None]
+        echo = phasor(cycles) * paths.amplitude.to(torch.complex64)[:, None]
+        off_bin = ((length_m - mean_m[:, None]) / (2 * config.range_resolution_m)).float()
+        place = ((mean_m + self._extra_m) / (2 * config.range_resolution_m)).float()
+        kernel, slope = self._range_kernel(self._range_bin - place[:, None])
+        at_range, range_slope = (part * self._range_sign for part in (kernel, slope))
+        echo, tilted = (self._decoded(part) for part in (echo, -off_bin * echo))
+        return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=tilted)
+
+    def _decoded(self, echo: Tensor) -> Tensor:
+        return self._elements.decoded(self._array.mixed(echo.unflatten(1, (self.config.num_tx, -1)), 1).flatten(1))
+
+    def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
+        """What leakage leaves at zero Doppler, complex64 (range, antenna); `BoardEffects.leakage` gives it."""
+        at_range = self.leakage_response(length_m)
+        return at_range.T @ self._elements.decoded(self._elements.pair_values(amplitude).flatten(1))
+
+    def leakage_response(self, length_m: Tensor) -> Tensor:
+        """Range response of leakage of amplitude 1.
+
+        Args:
+            length_m: path lengths (tap,).
+
+        Returns:
+            (tap, range), complex64.
+        """
+        config = self.config
+        delay_s = length_m / SPEED_OF_LIGHT_MPS
+        kernel, _ = self._range_kernel(self._range_bin - (length_m / (2 * config.range_resolution_m)).float()[:, None])
+        turn = phasor(-config.chirp_slope_hz_per_s * delay_s**2 / 2)
+        return (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
+
+    def add_static(self, values: Tensor, layer: Tensor) -> None:
+        """Adds static layers to cube values, in place.
+
+        Args:
+            values: (frame, range, doppler, antenna).
+            layer: (range, antenna), or (frame, range, antenna).
+        """
+        if self._static_mixing is not None:
+            tx = layer.unflatten(-1, (self._static_mixing.shape[-1], -1))
+            mixed = torch.einsum("bvw,...wr->...bvr", self._static_mixing, tx)
+            values[:, :, self.static_bins] += mixed.flatten(-2)
+            return
+        values[:, :, self.static_bins] += layer[..., None, :] * self._static_doppler
+
+
+def _chirps(config: RadarConfig, first: complex) -> Tensor:
+    """What a board multiplies each chirp (loop, tx) by."""
+    chirps = np.ones((config.num_loops, config.num_tx), np.complex64)
+    chirps[0, config.tx_delay_s == 0] = first
+    return torch.from_numpy(chirps)
+
+
+def _static_mixing(config: RadarConfig) -> Tensor:
+    """What a static signal of each (virtual) transmitter leaves in each static Doppler bin, (bin, tx, tx).
+
+    The slots' compensation is made for a bin's velocity, so away from zero Doppler it mixes the transmitters slightly.
+    """
+    encoder = np.linalg.pinv(config.tx_decoder)  # (slot, tx)
+    each = np.einsum("vs,ds,sw->dvw", config.tx_decoder, slot_compensation(config)[:, :: config.num_rx], encoder)
+    weight = np.fft.fft(doppler_weight(config.num_loops))
+    seen = np.abs(weight) > 1e-6
+    return torch.from_numpy((weight[:, None, None] * each)[seen]).to(torch.complex64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _SegmentDoppler(TensorRecord):
+    """The chirps of one time segment, and their windowed and TDM-compensated transform."""
+
+    time_s: Tensor  # (tx * loop,) since the segment's middle
+    transform: Tensor  # (tx, loop, 2 doppler): of values at the chirps, and of the same times their time
+
+    @classmethod
+    def of(cls, faded: FadedSegment, by_tx: Tensor) -> "_SegmentDoppler":
+        """Of a segment of the clock, with its share of each chirp, and the whole frame's transform."""
+        time_s = torch.from_numpy(np.ascontiguousarray(faded.segment.chirp_s.T))  # (tx, loop)
+        own = by_tx[:, faded.segment.loops] * torch.from_numpy(faded.share.T).float()[..., None]
+        return cls(time_s=time_s.flatten(), transform=torch.cat([own, own * time_s.float()[..., None]], dim=-1))
+
+    def spectra(self, cycles: Tensor) -> tuple[Tensor, Tensor]:
+        """Doppler spectra (frame, path, tx, doppler) of phases (frame, path, tx * loop), and of them times time."""
+        num_tx, loops, width = self.transform.shape
+        chirps = phasor(cycles).unflatten(-1, (num_tx, loops)).flatten(0, 1).transpose(0, 1)  # (tx, ..., loop)
+        both = (chirps @ self.transform).unflatten(1, cycles.shape[:2]).unflatten(-1, (2, width // 2))
+        plain, late = both.permute(3, 1, 2, 0, 4).contiguous()
+        return plain, late

@@ -1,0 +1,93 @@
+"""Mean power maps of echoes of unknown phase: what can be predicted of a radar signal.
+
+Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman).
+"""
+
+import math
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.core.virtual_array import azimuth_row, elevation_columns
+from mmweaver.signal.point_response import Axes, PointResponse, Points
+from mmweaver.signal.spectra import azimuth_axis_rad, elevation_axis_rad
+from mmweaver.signal.windows import noise_share
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerMaps(TensorRecord):
+    """Power in mW, as `dsp.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
+
+    range_doppler: Tensor
+    range_azimuth: Tensor
+    range_elevation: Tensor  # no elevation cells where the array cannot tell elevation
+
+
+class MeanPower:
+    """Mean power maps of points for one radar; differentiable in everything the points hold."""
+
+    def __init__(self, config: RadarConfig):
+        self.config = config
+        self.response = PointResponse(config)
+        self.axes: Axes = self.response.axes()
+        place = config.antenna_position_m
+        row = azimuth_row(place, config.wavelength_m)
+        wave = 2 * math.pi / config.wavelength_m
+        self._row_x = torch.tensor(wave * place[row, 0], dtype=torch.float32)
+        self._sin_azimuth = torch.tensor(azimuth_axis_rad(), dtype=torch.float32).sin()
+        columns = elevation_columns(place, config.wavelength_m)
+        self._column_z = torch.tensor(wave * place[columns[0], 2] if columns else [], dtype=torch.float32)
+        self._sin_elevation = torch.tensor(elevation_axis_rad(), dtype=torch.float32).sin()
+        self.noise = config.noise_power_mw * noise_share(config.num_samples, config.num_loops)
+        self.noise *= float(config.tx_noise_gain.mean())
+
+    def to(self, device: torch.device) -> "MeanPower":
+        """Itself, on a device."""
+        self.axes = self.axes.to(device)
+        for name in ("_row_x", "_column_z", "_sin_azimuth", "_sin_elevation"):
+            setattr(self, name, getattr(self, name).to(device))
+        return self
+
+    def maps(self, points: Points) -> PowerMaps:
+        """Mean power maps of points whose phases are independent.
+
+        Args:
+            points: (..., point) in bins of the response; their amplitudes' absolute square is the mean power.
+
+        Returns:
+            Power in mW (..., range, doppler), (..., range, azimuth), (..., range, elevation).
+        """
+        power = points.amplitude.abs().square()
+        at_range = self.response.range_kernel(self.axes.range_bin - points.range_bin[..., None])[0].square()
+        weighted = (at_range * power[..., None]).transpose(-1, -2)
+        at_doppler = self.response.doppler_kernel(self.axes.doppler_bin - points.doppler_bin[..., None])[0].square()
+        along_doppler = at_doppler.sum(dim=-1, keepdim=True)
+        return PowerMaps(
+            range_doppler=weighted @ at_doppler,
+            range_azimuth=weighted @ (along_doppler * _beam(points.direction[..., 0], self._row_x, self._sin_azimuth)),
+            range_elevation=weighted @ (along_doppler * self._elevation_beam(points.direction[..., 1])),
+        )
+
+    def noise_maps(self) -> tuple[float, float, float]:
+        """Mean power of the receiver's noise in a cell of each map."""
+        beam = self.noise * len(self.axes.doppler_bin)
+        return self.noise, beam / len(self._row_x), beam / max(len(self._column_z), 1)
+
+    def _elevation_beam(self, cosine_z: Tensor) -> Tensor:
+        if not len(self._column_z):
+            return cosine_z.new_zeros((*cosine_z.shape, 0))
+        return _beam(cosine_z, self._column_z, self._sin_elevation)
+
+
+def _beam(cosine: Tensor, place: Tensor, sine: Tensor) -> Tensor:
+    """Power pattern (..., point, angle) of a line of antennas at `place` (radians of phase) steered to each angle."""
+    own = cosine[..., None] * place
+    steered = place[:, None] * sine
+    # the line's sum of exp(j steered - j own), by two products of matrices
+    both = torch.cat([own.cos(), own.sin()], dim=-1)
+    real = both @ torch.cat([steered.cos(), steered.sin()])
+    imaginary = both @ torch.cat([steered.sin(), -steered.cos()])
+    return (real.square() + imaginary.square()) / len(place) ** 2

@@ -1,0 +1,66 @@
+"""Several people at once: each occludes the others, their ghosts and the room as a body occludes itself.
+
+Paths from one person over another to the radar are of second order: `second_order`; see docs/several_people.md.
+"""
+
+from itertools import combinations
+
+import numpy as np
+import torch
+
+from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.propagation.body_paths import BodyPaths
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.paths import Paths, ScenePaths
+from mmweaver.propagation.second_order import BodyBodyPaths
+from mmweaver.propagation.static_paths import RayTracedRoom
+from mmweaver.propagation.visible_body import hulls_of, occluded_by
+
+
+class PeoplePaths:
+    """Paths of all people in one room, frame by frame; without people an empty room.
+
+    What two of them occlude of the room is taken away once.
+    """
+
+    def __init__(
+        self,
+        room: RayTracedRoom,
+        bodies: list[ScatteringBody],
+        clock: FrameClock,
+        joints_m: list[np.ndarray],
+        chests_m: list[np.ndarray] | None = None,
+    ):
+        """`joints_m`: (frame, node, 22, 3) for each body; `chests_m`: how far its chest is raised (frame, node)."""
+        self.room, self.num_segments = room, len(clock.segments)
+        self.hulls = hulls_of(bodies, joints_m) if bodies else []
+        self.each = [
+            BodyPaths(room, body, clock, own, chest, self.hulls)
+            for body, own, chest in zip(bodies, joints_m, chests_m or [None] * len(bodies), strict=True)
+        ]
+        seconds = [one.second for one in self.each if one.second is not None]
+        self.between = [BodyBodyPaths(*pair) for pair in combinations(seconds, 2)]
+
+    def scene(self, num_frames: int) -> ScenePaths:
+        """The paths of the room and of all people in so many frames."""
+        segments = [paths for frame in range(num_frames) for paths in self.paths(frame)]
+        occluded = np.stack([self.occluded(frame) for frame in range(num_frames)])
+        return ScenePaths(
+            static=self.room.paths, moving=Paths.padded(segments), occluded=torch.from_numpy(occluded.astype(np.uint8))
+        )
+
+    def paths(self, frame: int) -> list[Paths]:
+        """All paths over people in one frame, a record (path,) for each time segment."""
+        each = [one.paths(frame) for one in self.each]
+        for between in self.between:
+            paths = between.paths(slice(frame, frame + 1))
+            each.append([paths[index] for index in range(self.num_segments)])
+        return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
+
+    def occluded(self, frame: int) -> np.ndarray:
+        """Which static paths a person occludes in one frame, bool (path,)."""
+        found = np.zeros(len(self.room.paths), bool)
+        if self.each:
+            near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))
+            found[occluded_by(self.hulls[frame], self.room.paths, near)] = True
+        return found

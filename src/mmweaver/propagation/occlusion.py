@@ -1,0 +1,96 @@
+"""What a body stands in front of, from joints alone: the average body's capsules, without a ray caster.
+
+Reference: docs/decisions/network-predicts-echoes.md.
+"""
+
+import torch
+from torch import Tensor
+
+from mmweaver.propagation.body_model import average_body
+
+MAX_FLESH_M = 0.2  # from a bone to the skin at most
+BEHIND_M = 0.1  # farther than the body at least
+FRAMES_AT_ONCE = 5  # stay in the cache
+CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer's bodies occlude
+
+
+def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
+    """Whether a body blocks the line from the radar to places.
+
+    The body has the capsules of the ray tracer, about the bones of a person of average height.
+
+    Args:
+        ends_m: places (path, 3), or (frame, path, 3).
+        joints_m: (frame, 22, 3).
+
+    Returns:
+        Bool (frame, path).
+    """
+    body = average_body()
+    posed = body.posed(joints_m.double().cpu().numpy())
+    starts, axes, rotations = (torch.from_numpy(part).float() for part in (posed.start_m, posed.axis_m, posed.rotation))
+    radius = CORNERS * torch.from_numpy(body.radii_m).float()
+    width = torch.from_numpy(body.widths).float()
+    ends = ends_m.cpu().float()
+    distance = ends.norm(dim=-1)
+    rays = (ends / distance.clamp(min=1e-6)[..., None]).expand(len(starts), -1, -1)
+    distance = distance.expand(len(starts), -1)
+    near = _towards(rays, starts, starts + axes)
+    out = torch.zeros_like(near)
+    for first in range(0, len(rays), FRAMES_AT_ONCE):
+        some = slice(first, first + FRAMES_AT_ONCE)
+        asked = torch.nonzero(near[some].any(dim=0))[:, 0]
+        far = distance[some, asked] - BEHIND_M
+        met = _met(rays[some, asked], far, radius, width, starts[some], axes[some], rotations[some, ..., 0])
+        out[some, asked] = met & near[some, asked]
+    return out.to(joints_m.device)
+
+
+def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
+    """Which unit vectors (frame, ray, 3) may meet the body, flesh included, (frame, ray): a cone, within a wedge."""
+    ends = torch.cat(ends_m, dim=1)
+    distance = ends.norm(dim=-1)
+    unit = ends / distance[..., None]
+    middle = torch.nn.functional.normalize(unit.mean(dim=1), dim=-1)
+    flesh = torch.asin((MAX_FLESH_M / distance.amin(dim=1)).clamp(max=1.0))
+    widest = torch.acos((unit @ middle[..., None])[..., 0].amin(dim=1).clamp(-1, 1)) + flesh
+    in_cone = (rays @ middle[..., None])[..., 0] > torch.cos(widest.clamp(max=torch.pi))[:, None]
+    return in_cone & (rays @ _sides(ends, middle) >= 0).all(dim=-1)
+
+
+def _sides(ends_m: Tensor, middle: Tensor) -> Tensor:
+    """Inward normals (frame, 3, 2) of two vertical planes through the radar with the body between them.
+
+    Zero where the body fills half of the horizon or more.
+    """
+    ahead = middle[:, None, :2]
+    along, across = (ends_m[..., :2] * ahead).sum(-1), ends_m[..., 1] * ahead[..., 0] - ends_m[..., 0] * ahead[..., 1]
+    azimuth = torch.atan2(across, along) + torch.atan2(ahead[..., 1], ahead[..., 0])
+    flesh = torch.asin((MAX_FLESH_M / ends_m[..., :2].norm(dim=-1).amin(dim=1)).clamp(max=1.0))
+    right, left = azimuth.amin(dim=1) - flesh, azimuth.amax(dim=1) + flesh
+    level = torch.zeros_like(left)
+    normals = (torch.stack([-right.sin(), right.cos(), level], -1), torch.stack([left.sin(), -left.cos(), level], -1))
+    return torch.stack(normals, dim=-1) * (left - right < torch.pi)[:, None, None]
+
+
+def _met(
+    rays: Tensor, far_m: Tensor, radius_m: Tensor, width: Tensor, start_m: Tensor, axis_m: Tensor, right: Tensor
+) -> Tensor:
+    """Whether each ray (frame, ray, 3) comes nearer to a capsule than its radius before it gets `far_m` (frame, ray).
+
+    Capsules (frame, capsule, 3), their radii (capsule, 2).
+    """
+    along, begun, across_m = (part @ rays.mT for part in (axis_m, start_m, right))  # (frame, capsule, ray)
+
+    def dot(one: Tensor, other: Tensor) -> Tensor:
+        return (one * other).sum(-1, keepdim=True)
+
+    length2, slope, start2 = dot(axis_m, axis_m), dot(axis_m, start_m), dot(start_m, start_m)
+    # the point of the bone nearest to the ray, both seen along the ray
+    share = ((along * begun).sub_(slope) / (length2 - along.square()).clamp_(min=1e-9)).clamp_(0, 1)
+    gone = (share * along).add_(begun)
+    sideways = (share * dot(axis_m, right)).add_(dot(start_m, right)).sub_(across_m.mul_(gone))
+    gap2 = (share * length2).add_(2 * slope).mul_(share).add_(start2).sub_(gone.square())
+    reach = share.mul_(radius_m[:, 1:] - radius_m[:, :1]).add_(radius_m[:, :1])
+    within = reach.square_().sub_(gap2).add_(sideways.square_().mul_(1 - width[:, None] ** -2))
+    return torch.minimum(within, torch.minimum(gone, far_m[:, None] - gone)).amax(dim=1) > 0

@@ -1,0 +1,40 @@
+"""Mean echoes as one radar sees them: the radar equation, and the units of its cells. Differentiable."""
+
+import math
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.propagation.antenna import pattern_db, scatterer_gain
+from mmweaver.propagation.mean_scatterers import MeanEchoes
+from mmweaver.signal.point_response import PointResponse, Points
+
+
+def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
+    """Scatterers in bins of the response, amplitudes real, in sqrt(mW). Reference: primer, equation 10."""
+    config = response.config
+    loss = direction_loss_db(echoes.direction, config)
+    gain = scatterer_gain(config) * 10 ** (-loss / 10)  # out and back
+    amplitude = gain * echoes.cross_section_m2.clamp(min=1e-30).sqrt() / echoes.range_m.clamp(min=0.1) ** 2
+    doppler_bin = echoes.velocity_mps / response.velocity_a_bin_mps
+    return Points(
+        range_bin=echoes.range_m / response.range_a_bin_m + response.coupling * doppler_bin,
+        doppler_bin=doppler_bin,
+        direction=echoes.direction,
+        amplitude=amplitude,
+    )
+
+
+def direction_loss_db(direction: Tensor, config: RadarConfig) -> Tensor:
+    """Loss of one antenna in dB towards direction cosines (..., 2) along x and z, ahead of the radar."""
+    x, z = direction.unbind(-1)
+    ahead = (1 - x.square() - z.square()).clamp(min=1e-4).sqrt()
+    return pattern_db(torch.stack([x, ahead, z], dim=-1), config)
+
+
+def carrier(range_m: Tensor, config: RadarConfig) -> Tensor:
+    """exp(j 4 pi R / wavelength), the phase of an echo from there; cycles are wrapped in double precision."""
+    cycles = 2 * range_m.double() / config.wavelength_m
+    angle = (2 * math.pi * (cycles - cycles.round())).to(torch.float32)
+    return torch.polar(torch.ones_like(angle), angle)

@@ -1,0 +1,287 @@
+"""The ray tracer: scene + poses -> paths -> ADC samples. The room is traced once, people frame by frame."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from scipy.interpolate import CubicSpline
+
+from mmweaver.core.assumptions import UsualAssumption
+from mmweaver.core.board import Board
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
+from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.propagation.adc_synthesis import AdcSynthesis, one_thread
+from mmweaver.propagation.background import BackgroundRecording, check_recording
+from mmweaver.propagation.board_effects import BoardEffects
+from mmweaver.propagation.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
+from mmweaver.propagation.body_paths import BodyPaths
+from mmweaver.propagation.cube_rendering import CubeRenderer
+from mmweaver.propagation.diffuse_clutter import diffuse_clutter
+from mmweaver.propagation.frame_clock import FrameClock
+from mmweaver.propagation.image_sources import static_points
+from mmweaver.propagation.mean_power import MeanPower
+from mmweaver.propagation.multi_person_paths import PeoplePaths
+from mmweaver.propagation.paths import Interaction, ScenePaths, StaticPaths
+from mmweaver.propagation.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
+from mmweaver.propagation.skin_scattering import SkinEcho
+from mmweaver.propagation.static_paths import Propagation, RayTracedRoom
+from mmweaver.propagation.visibility import Visibility
+from mmweaver.signal.cube import static_samples
+
+CHUNK_FRAMES = 20  # frames of samples that exist at once, which bounds memory
+
+_SENTENCES = (
+    "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
+    " makers' documents; they are not calibrated against a recording",
+    "the body is made of capsules with a wrinkled skin with a specular lobe towards the radar (reflectivity 0.14, slope"
+    " 0.10); clothes are in that figure and not modelled",
+    "who stands or sits still sways, trembles and breathes by typical amounts",
+    "nothing passes through furniture, and waves do not bend around edges",
+)
+ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
+SEVERAL_PEOPLE = (
+    "people occlude each other; multipath between people is there with paths of second order alone"
+    " (see docs/several_people.md)"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulation:
+    """What the receivers recorded, and what was assumed to get there."""
+
+    adc: AdcCube
+    assumptions: tuple[str, ...]
+
+
+class Simulator:
+    """One radar in one room. Making it traces the room; `run` may then be called for many motions.
+
+    The room's and the body's micro-phases belong to the room and the person; the seed samples the receiver's noise.
+    """
+
+    def __init__(
+        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
+        background: RadarCube | None = None, board: Board | None = None, propagation: Propagation | None = None,
+        room: RayTracedRoom | None = None,
+    ):  # fmt: skip
+        """Traces the room.
+
+        Args:
+            scene: room and place of the radar.
+            config: the radar.
+            impairments: of an ideal board's receiver; by default all.
+            micro_seed: samples the phases of the room's surfaces.
+            background: a recording by this radar without people, whose static clutter and noise are used.
+            board: whose errors all signals have; by default those of `impairments` alone.
+            propagation: which paths there are.
+            room: the scene as it was traced for another board with the same places of antennas.
+
+        Raises:
+            InputError: for the recording of another radar.
+        """
+        self.config, self.radar_pose = config, scene.radar_pose
+        self.impairments = impairments or Impairments()
+        self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
+        built = config if self.board is None else self.board.radar
+        self.synthesis = AdcSynthesis(built, board=self.board)
+        self.clock = self.synthesis.clock
+        self.room = (room or RayTracedRoom(scene, built, micro_seed, propagation)).for_radar(built)
+        if self.room.propagation.clutter:
+            self.room.paths = StaticPaths.cat([self.room.paths, diffuse_clutter(built, micro_seed)])
+        if self.board is not None:
+            self.room.paths = self.board.recorded_static(self.room.paths)
+        self.background: BackgroundRecording | None = None
+        with one_thread():
+            if background is not None:
+                self.background = self._use(background)
+                samples = static_samples(self.background.static.numpy(), config)
+                self._static = torch.from_numpy(samples)
+            else:
+                self._static = self.synthesis.static(self.room.paths)
+                self._static += self._leakage()
+            self._static_rate = self.synthesis.static_rate(self.room.paths)
+            if self.board is not None:  # how static samples change with the carrier's relative error
+                self._drift_rate = self._static_rate * (config.centre_frequency_hz / config.chirp_slope_hz_per_s)
+                if background is None:
+                    self._drift_rate = self._drift_rate + self.synthesis.leakage(*self.board.leakage_rate)
+
+    def _receiver(self, seed: int) -> Receiver:
+        """The radar's own, or that of the background recording."""
+        receiver = Receiver(self.room.config, self.impairments, self.radar_pose.noise_seed(seed), self.board)
+        if self.background is None:
+            return receiver
+        return receiver.adopt_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
+
+    def _leakage(self) -> torch.Tensor:
+        """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
+        if self.board is not None and len(self.board.board.leakage_range_m):
+            return self.synthesis.leakage(*self.board.leakage)
+        return self.synthesis.static(leakage_path(self.config, self.impairments))
+
+    def _use(self, recording: RadarCube) -> BackgroundRecording:
+        """Gives the room's static paths the amplitudes that a recording makes most likely."""
+        check_recording(recording, self.config)
+        radar, paths = MeanPower(self.room.config), self.room.paths
+        expected = radar.maps(static_points(paths, radar.response)).range_azimuth
+        background = BackgroundRecording.of(recording, expected, radar)
+        self.room.paths = background.conditioned(paths, CubeRenderer(self.room.config, self.board))
+        return background
+
+    @property
+    def room_adc(self) -> np.ndarray:
+        """Samples of the room without people and of the leakage, complex64 (tx, rx, sample), in sqrt(mW)."""
+        return self._static.numpy()
+
+    def run(self, pose: PoseSequence | Sequence[PoseSequence], **options: Any) -> Simulation:
+        """ADC samples of the posed people, all frames at once, with the options of `chunks`: mind the memory."""
+        chunks = self.chunks(pose, **options)
+        samples = np.concatenate([chunk.samples for chunk in chunks])
+        scale = 1.0 if self.background is None else self.background.unit
+        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=scale), assumptions=ASSUMPTIONS)
+
+    def chunks(
+        self,
+        pose: PoseSequence | Sequence[PoseSequence],
+        *,
+        num_frames: int,
+        seed: int,
+        first_frame: int = 0,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
+        motions: MicroMotionSettings | None = None,
+    ) -> Iterator[AdcCube]:
+        """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
+
+        Args:
+            pose: one person, several, or an empty tuple for the room alone.
+            num_frames: number of frames.
+            seed: of the receiver's noise and of micro-motion.
+            first_frame: number of the first one, in the time of the poses; noise and micro-motion continue from there.
+            num_points: skin points of each body.
+            echo: how skin scatters.
+            motions: sway, tremor and breathing, by default typical ones; STILL holds the joints alone.
+
+        Raises:
+            InputError: where a pose does not cover the frames or holds values that are not finite.
+        """
+        poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
+        for one in poses:
+            self._check(one, num_frames, first_frame)
+        bodies = [body_of(one, num_points, echo) for one in poses]
+        receiver = self._receiver(seed)
+        unit = 1.0 if self.background is None else self.background.unit
+        micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
+        for first in range(first_frame, first_frame + num_frames, CHUNK_FRAMES):
+            frames = np.arange(first, min(first + CHUNK_FRAMES, first_frame + num_frames))
+            people = self._people(poses, bodies, micro_motions, frames)
+            samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
+            samples = samples if unit == 1.0 else samples / np.float32(unit)
+            yield AdcCube(samples=samples, config=self.config, scale=unit)
+
+    def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
+        """What the receiver records of paths.
+
+        Args:
+            paths: of the frames.
+            frames: their numbers (frame,), which noise and drift depend on.
+            receiver: noise and converter.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
+        """
+        with one_thread():
+            static, moving = self._static - self.synthesis.occluded(paths), paths.moving
+            if self.board is not None:
+                static = static + self._drifted(frames, receiver.seed)
+                moving = self.board.recorded_moving(moving, frames, receiver.seed)
+            return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
+
+    def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
+        """What the carrier's drift adds to the static samples of frames: (frame, tx, rx, sample)."""
+        assert self.board is not None
+        return torch.from_numpy(self.board.drift(frames, seed)).float()[:, None, None, None] * self._drift_rate
+
+    def _people(
+        self,
+        poses: tuple[PoseSequence, ...],
+        bodies: list[ScatteringBody],
+        micro_motions: list[MicroMotion],
+        frames: np.ndarray,
+    ) -> PeoplePaths:
+        joints_m, chests_m = [], []
+        for pose, own in zip(poses, micro_motions, strict=True):
+            level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
+            joints, chest = add_micro_motion(own, level_m, frames, self.clock, pose.height_m)
+            joints_m.append(self.radar_pose.seen(joints))
+            chests_m.append(chest)
+        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
+
+    def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
+        """What `Resynthesis` needs of a motion.
+
+        Returns:
+            Joints at the clock's nodes (frame, node, 22, 3) in m, and the visibility that rays decided.
+
+        Raises:
+            InputError: as `chunks` does.
+        """
+        self._check(pose, num_frames)
+        frames = np.arange(num_frames)
+        joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
+        own = MicroMotion(pose.subject, seed, MicroMotionSettings())
+        moved, chest = add_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
+        return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
+
+    def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose continues at its velocity: held, it would be a person who freezes.
+        """
+        times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
+        spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
+
+    def _check(self, pose: PoseSequence, num_frames: int, first_frame: int = 0) -> None:
+        begin_s = first_frame * self.config.frame_period_s
+        needed_s = (first_frame + num_frames - 1) * self.config.frame_period_s
+        if pose.time_s[-1] < needed_s - 1e-9 or pose.time_s[0] > begin_s + 1e-9:
+            raise InputError(
+                f"the motion covers {pose.time_s[0]:.2f} to {pose.time_s[-1]:.2f} s, but {num_frames} frames need"
+                f" {begin_s:g} to {needed_s:.2f} s; give a longer motion or fewer frames"
+            )
+        if not np.isfinite(pose.joints_m).all():
+            raise InputError("the motion has joints that are not numbers; mend the pose file")
+
+
+def add_micro_motion(
+    motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Adds a person's micro-motion.
+
+    Args:
+        motion: of the person.
+        joints_m: at the nodes of frames (frame, node, 22, 3).
+        frames: their numbers (frame,).
+        clock: of the radar.
+        height_m: of the person.
+
+    Returns:
+        The joints with micro-motion, and by how much the chest is raised, (frame, node) in m.
+    """
+    time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
+    moved = motion.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
+    return moved.reshape(joints_m.shape), motion.chest_m(time_s).reshape(joints_m.shape[:2])
+
+
+def leakage_path(config: RadarConfig, impairments: Impairments) -> StaticPaths:
+    """The transmitters' direct path into the receivers, (1,), which no one can occlude."""
+    length_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
+    amplitude, nowhere = np.array([leakage(config, impairments)]), np.zeros((1, 3))
+    return StaticPaths.of(amplitude, length_m, nowhere, nowhere, Interaction.SPECULAR)

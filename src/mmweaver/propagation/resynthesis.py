@@ -1,0 +1,114 @@
+"""Prepared rooms and traced motions -> ADC samples, without a ray caster: the `Simulator` again, on any device.
+
+Simulator.trace(pose) -> joints, Visibility -----.
+Room -> static_paths_store.room_arrays ----------+--> Resynthesis.samples
+"""
+
+from copy import copy
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.seeding import stream
+from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.propagation.adc_synthesis import AdcSynthesis
+from mmweaver.propagation.body_model import ScatteringBody
+from mmweaver.propagation.body_paths import BodyPaths
+from mmweaver.propagation.paths import Paths, ScenePaths
+from mmweaver.propagation.ray_traced import add_micro_motion, leakage_path
+from mmweaver.propagation.receiver import Impairments, Receiver
+from mmweaver.propagation.static_paths import PreparedRoom
+from mmweaver.propagation.static_paths_store import resampled_phases
+from mmweaver.propagation.visibility import Visibility
+
+ROOM_REALIZATIONS = 4  # sets of phases of a room: each costs 30 ms and is kept
+
+
+@dataclass(frozen=True, kw_only=True)
+class TracedMotion:
+    """A motion whose rays were cast once: joints at the clock's nodes (frame, node, 22, 3), and their visibility."""
+
+    joints_m: np.ndarray
+    visibility: Visibility
+    subject: int
+    height_m: float
+    seed: int  # of the micro-motion and of the noise
+
+
+class Resynthesis:
+    """One prepared room for one radar: `samples` of any of its traced motions, any frames, and any realization."""
+
+    def __init__(self, room: PreparedRoom, device: str | torch.device = "cpu", impairments: Impairments | None = None):
+        self.room, self.config = room, room.config
+        self.impairments = impairments or Impairments()
+        self.synthesis = _synthesis(self.config, str(device))
+        self._realizations: dict[int, tuple[PreparedRoom, Tensor, Tensor]] = {}
+
+    def samples(self, motion: TracedMotion, frames: np.ndarray, *, realization: int = 0) -> Tensor:
+        """ADC samples of a motion.
+
+        Args:
+            motion: traced in this room.
+            frames: numbers of the frames.
+            realization: 0 is what the simulator gave when it traced, to single precision; any other has other
+                micro-phases of room and skin and other noise.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), complex64.
+        """
+        room, static, rate = self._room(realization)
+        body = _body(motion.subject, motion.height_m)
+        if realization:
+            body = _rephased(body, stream(motion.subject, "body", "other phases", realization))
+        person = self._person(room, body, motion, frames)
+        moving = Paths.padded([paths for index in range(len(frames)) for paths in person.paths(index)])
+        occluded = torch.from_numpy(motion.visibility.occluded[frames])
+        paths = ScenePaths(static=room.paths, moving=moving, occluded=occluded)
+        seed = motion.seed if realization == 0 else int(stream(motion.seed, "twin", realization).integers(2**31))
+        on_device = bool(realization) and self.synthesis.device.type != "cpu"
+        receiver = Receiver(self.config, self.impairments, seed)
+        return receiver.receive(
+            self.synthesis.moving(paths.moving), static - self.synthesis.occluded(paths), rate, frames.tolist(),
+            on_device=on_device,
+        )  # fmt: skip
+
+    def person(self, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
+        """The person's paths, and which static ones the person occludes, in frames of these numbers."""
+        return self._person(self.room, _body(motion.subject, motion.height_m), motion, frames)
+
+    def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
+        micro_motion = MicroMotion(motion.subject, motion.seed, MicroMotionSettings())
+        joints_m, chest_m = add_micro_motion(
+            micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
+        )
+        known = motion.visibility.frames(frames)
+        return BodyPaths(room, body, self.synthesis.clock, joints_m, chest_m, known=known)
+
+    def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:
+        key = 1 + realization % ROOM_REALIZATIONS if realization else 0
+        if key not in self._realizations:
+            room = resampled_phases(self.room, key) if key else self.room
+            static = self.synthesis.static(room.paths)
+            static += self.synthesis.static(leakage_path(self.config, self.impairments))
+            self._realizations[key] = room, static, self.synthesis.static_rate(room.paths)
+        return self._realizations[key]
+
+
+@lru_cache(maxsize=4)
+def _synthesis(config: RadarConfig, device: str) -> AdcSynthesis:
+    return AdcSynthesis(config, device)
+
+
+@lru_cache(maxsize=32)
+def _body(subject: int, height_m: float) -> ScatteringBody:
+    return ScatteringBody(subject, height_m)
+
+
+def _rephased(body: ScatteringBody, rng: np.random.Generator) -> ScatteringBody:
+    other = copy(body)
+    other.micro_phase = np.exp(2j * np.pi * rng.random(len(body.micro_phase)))
+    return other

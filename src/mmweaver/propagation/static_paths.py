@@ -1,0 +1,332 @@
+"""The static paths of a room: diffuse surfaces, specular reflections and edges."""
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.ray_caster import RayCaster
+from mmweaver.core.records import Scene
+from mmweaver.core.rotations import directions, unit
+from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Values
+from mmweaver.propagation.antenna import pattern, scatterer_gain, specular_gain
+from mmweaver.propagation.edge_scattering import find_edges
+from mmweaver.propagation.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
+from mmweaver.propagation.materials import MATERIALS, Material, mean_reflectivity, transmission
+from mmweaver.propagation.paths import STATIC_KINDS, Interaction, StaticPaths
+from mmweaver.propagation.room_patches import RoomPatches
+from mmweaver.propagation.room_room_paths import room_room_paths
+
+AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
+AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
+EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
+EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
+MIN_RANGE_M = 0.15
+THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is the whole wall: furniture has other faces behind
+SAME_WALL_M = 0.3  # nearer behind a wall lies the same one: a photo's bumps, the other face of a scan
+
+
+@dataclass(frozen=True, kw_only=True)
+class Propagation:
+    """Which paths a room has."""
+
+    bounces: int = 2  # 1: off rough surfaces once, off the body once; 2: body and room, room and room, body-radar-body
+    clutter: bool = False  # whether there is static clutter that photo and mesh do not resolve
+    slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
+    straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
+    through_walls: bool = True  # whether what lies behind a thin wall returns through it
+    fine_roughness: bool = True  # whether plaster, concrete and brick scatter by their fine roughness, too
+    hidden_faces: bool = True  # whether a face right before another, as a locker's door or a window, takes its place
+
+
+ALL_PATHS = Propagation(clutter=True)  # what a radar receives, as far as we know
+FIRST_ORDER = Propagation(bounces=1)  # what the network learns, and what data sets with geometry keep
+# What studies published before there was a second order were computed with, and data sets kept.
+AS_PUBLISHED = replace(
+    FIRST_ORDER, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False, hidden_faces=False
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Struck:
+    """Rays of the radar and the faces that they meet."""
+
+    direction: np.ndarray  # (ray, 3) unit
+    distance_m: np.ndarray  # (ray,)
+    normal: np.ndarray  # (ray, 3) unit, of either sign
+    cos: np.ndarray  # (ray,) of incidence
+    material: np.ndarray  # (ray,) index into the scene's material_names
+    solid_angle: np.ndarray  # (ray,)
+
+    @classmethod
+    def of(
+        cls, scene: Scene, direction: np.ndarray, distance: np.ndarray, face: np.ndarray, solid_angle: np.ndarray
+    ) -> "_Struck":
+        """Rays that meet faces of these indices."""
+        corners = scene.vertices_m[scene.faces[face]].astype(float)
+        normal = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+        return cls(
+            direction=direction,
+            distance_m=distance,
+            normal=normal,
+            cos=np.abs((normal * direction).sum(axis=1)),
+            material=scene.face_material[face],
+            solid_angle=solid_angle,
+        )
+
+    def __getitem__(self, which: np.ndarray) -> "_Struck":
+        return _Struck(**{name: getattr(self, name)[which] for name in self.__dataclass_fields__})
+
+    @property
+    def place_m(self) -> np.ndarray:
+        """(ray, 3)."""
+        return self.direction * self.distance_m[:, None]
+
+    @property
+    def cross_section_m2(self) -> np.ndarray:
+        """(ray,) of perfectly diffuse patches, by Lambert's law."""
+        return 4 * self.cos * self.distance_m**2 * self.solid_angle
+
+    def share(self, names: tuple[str, ...], of_material: Callable[[Material, np.ndarray, str], Values]) -> np.ndarray:
+        """Shares of power (ray,), a function of the material, the cosine of incidence and the polarisation."""
+        is_flat, share = np.abs(self.normal[:, 2]) > 0.7, np.zeros(len(self.cos))
+        for index, name in enumerate(names):
+            for flat, polarisation in ((True, "tm"), (False, "te")):
+                some = (self.material == index) & (is_flat == flat)
+                share[some] = of_material(MATERIALS[name], self.cos[some], polarisation)
+        return share
+
+
+class PreparedRoom:
+    """What of a room needs no more rays: its specular reflectors and its static paths, for one radar.
+
+    The paths are in the order of STATIC_KINDS, then those of second order. `static_paths_store` keeps the first as
+    arrays.
+    """
+
+    def __init__(
+        self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths, propagation: Propagation
+    ):  # fmt: skip
+        self.config, self.reflectors, self.paths, self.propagation = config, reflectors, paths, propagation
+
+    @cached_property
+    def counts(self) -> dict[Interaction, int]:
+        """How many static paths of first order are of which kind."""
+        return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
+
+    @property
+    def first_order(self) -> StaticPaths:
+        """The static paths of STATIC_KINDS, in their order."""
+        return self.paths[: sum(self.counts.values())]
+
+    @property
+    def frequencies_hz(self) -> np.ndarray:
+        """Those over which the power is averaged that faces and edges throw back."""
+        centre_hz, reach_hz = self.config.centre_frequency_hz, 0.4 * self.config.bandwidth_hz  # the window's weight
+        if self.propagation.slab_echoes == 1:
+            return np.array([centre_hz])
+        return np.linspace(centre_hz - reach_hz, centre_hz + reach_hz, 9)
+
+    @cached_property
+    def vertex_directions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (path, 3) from the radar to the first and the last vertex of each static path."""
+        return unit(self.paths.departure_vertex_m.numpy()), unit(self.paths.arrival_vertex_m.numpy())
+
+
+class RayTracedRoom(PreparedRoom):
+    """A scene prepared for one radar: its ray caster, its specular reflectors and its static paths.
+
+    `micro_seed` samples the phases of its surfaces: another seed is another realization of the same room.
+    """
+
+    def __init__(
+        self, scene: Scene, config: RadarConfig, micro_seed: int = 0, propagation: Propagation | None = None
+    ):  # fmt: skip
+        self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
+        self.caster = RayCaster(scene.vertices_m, scene.faces)
+        self.config, self._scene = config, scene
+        self.reflectors = specular_reflectors(
+            scene.planes, rough=self.propagation.fine_roughness, hidden=self.propagation.hidden_faces
+        )
+        paths = StaticPaths.cat([*self._diffuse(), self._specular(), self._edges()])
+        super().__init__(config, self.reflectors, paths, self.propagation)
+        if self.propagation.bounces > 1:
+            self.paths = StaticPaths.cat([paths, room_room_paths(self)])
+
+    def for_radar(self, config: RadarConfig) -> "RayTracedRoom":
+        """The same rays for a radar that differs in its noise figure alone; its paths may be replaced."""
+        other = copy(self)
+        other.config = config
+        return other
+
+    @cached_property
+    def patches_all_round(self) -> RoomPatches:
+        """`patches`, and those left, right, above, below and behind the radar, outside the rays of the static paths.
+
+        Their own echoes are suppressed by two antenna patterns; a body's wave over them is by one only, appears at the
+        body's own velocity, and they are near.
+        """
+        rng = stream(self.micro_seed, "room", "patches all round")
+        shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
+        azimuth = (np.arange(AZIMUTH_CELLS)[None] + rng.random(shape)) * 2 * np.pi / AZIMUTH_CELLS - np.pi
+        height = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * 2 / ELEVATION_CELLS - 1
+        is_new = (np.abs(azimuth) > AZIMUTH_LIMIT_RAD) | (np.abs(height) > np.sin(ELEVATION_LIMIT_RAD))
+        azimuth, height = azimuth[is_new], height[is_new]
+        level = np.sqrt(1 - height**2)
+        direction = np.stack([np.sin(azimuth) * level, np.cos(azimuth) * level, height], axis=1)
+        struck, _ = self._struck(direction, np.full(len(direction), 4 * np.pi / is_new.size))
+        cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
+        phase = np.exp(2j * np.pi * rng.random(len(cross_section)))
+        found = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        return self.patches.joined(found.merged(rng))
+
+    @cached_property
+    def patches(self) -> RoomPatches:
+        """What second bounces of the static paths are computed over."""
+        all_of_them = self._patches.joined(self._edge_patches)
+        return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
+
+    def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
+        """Whether nothing of the room lies between two points.
+
+        Args:
+            start_m: (..., 3).
+            end_m: (..., 3).
+            margin_m: at either end, within which faces do not count.
+
+        Returns:
+            Bool (...).
+        """
+        shape = np.broadcast_shapes(start_m.shape, end_m.shape)
+        start = np.broadcast_to(start_m, shape).reshape(-1, 3).astype(float)
+        end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
+        return self.caster.is_clear(start, end, margin_m).reshape(shape[:-1])
+
+    def _diffuse(self) -> list[StaticPaths]:
+        """One path for each cell of a grid of rays: a patch that scatters by Lambert's law; and those behind walls."""
+        rng = stream(self.micro_seed, "room", "diffuse")
+        shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
+        step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
+        azimuth = (np.arange(AZIMUTH_CELLS)[None] + rng.random(shape)) * step_az - AZIMUTH_LIMIT_RAD
+        elevation = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * step_el - ELEVATION_LIMIT_RAD
+        cycles = rng.random(azimuth.size)
+        solid_angle = (np.cos(elevation) * step_az * step_el).ravel()
+        struck, hit = self._struck(directions(azimuth, elevation).reshape(-1, 3), solid_angle)
+        cross_section = struck.cross_section_m2 * self._diffuse_share(struck)
+        phase = np.exp(2j * np.pi * cycles[hit])
+        self._patches = RoomPatches.surfaces(struck.place_m, struck.normal, cross_section, phase, struck.material)
+        paths = [self._scattered(struck.place_m, cross_section, cycles[hit], Interaction.DIFFUSE)]
+        return [*paths, self._behind_walls(struck)] if self.propagation.through_walls else paths
+
+    def _struck(self, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
+        """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
+        distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
+        hit = (face >= 0) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
+        return _Struck.of(self._scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
+
+    def _behind_walls(self, struck: "_Struck") -> StaticPaths:
+        """Patches that rays meet behind the first thin wall, fainter by the way through it and back."""
+        names = np.array(self._scene.material_names)
+        wall = struck[np.isin(names[struck.material], THIN)]
+        distance, face = self.caster.first_hit(wall.place_m + SAME_WALL_M * wall.direction, wall.direction)
+        distance += wall.distance_m + SAME_WALL_M
+        hit = (face >= 0) & (distance < self.config.max_range_m)
+        wall = wall[hit]
+        behind = _Struck.of(self._scene, wall.direction, distance[hit], face[hit], wall.solid_angle)
+        cross_section = behind.cross_section_m2 * self._diffuse_share(behind) * self._passed(wall) ** 2
+        cycles = stream(self.micro_seed, "room", "behind walls").random(len(cross_section))
+        return self._scattered(behind.place_m, cross_section, cycles, Interaction.DIFFUSE)
+
+    def _passed(self, wall: "_Struck") -> np.ndarray:
+        """Share of the power (ray,) that passes a wall once."""
+
+        def passed(material: Material, cos: np.ndarray, polarisation: str) -> Values:
+            each = [transmission(material, cos, one, polarisation=polarisation) for one in self.frequencies_hz]
+            return np.mean(np.abs(each) ** 2, axis=0)
+
+        return wall.share(self._scene.material_names, passed)
+
+    def _diffuse_share(self, struck: "_Struck") -> np.ndarray:
+        """Power of each patch that is not reflected as by a mirror: |S Gamma|^2 (effective roughness), or more."""
+
+        def scattered(material: Material, cos: np.ndarray, polarisation: str) -> Values:
+            part: Values = np.float64(material.scattering**2)
+            if self.propagation.fine_roughness:
+                part = part + (1 - part) * material.fine_loss(cos, self.config.centre_frequency_hz)
+            return part * mean_reflectivity(material, cos, self.frequencies_hz, polarisation)
+
+        return struck.share(self._scene.material_names, scattered)
+
+    def _specular(self) -> StaticPaths:
+        """One path for each echo of each specular reflection that nothing blocks."""
+        config, found = self.config, []
+        tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+        for path in specular_paths(
+            self.reflectors, config.wavelength_m, config.centre_frequency_hz, self.propagation.slab_echoes
+        ):
+            stops = np.concatenate([np.zeros((1, 3)), path.corners_m, np.zeros((1, 3))])
+            if path.length_m / 2 > config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
+                continue
+            image = tx @ path.rotation.T + path.shift_m
+            length_m = np.linalg.norm(image[:, None] - rx[None], axis=-1)
+            gains = pattern(unit(stops[[1, -2]]), config)
+            level = specular_gain(config) * gains.prod() / path.length_m
+            for coefficient, longer_m in path.echoes:
+                found.append((level * coefficient, length_m + longer_m, stops[1], stops[-2]))
+        amplitude, length, first, last = zip(*found, strict=True) if found else ((), (), (), ())
+        return StaticPaths.of(
+            np.array(amplitude, complex),
+            np.array(length).reshape(-1, len(tx), len(rx)),
+            np.array(first).reshape(-1, 3),
+            np.array(last).reshape(-1, 3),
+            Interaction.SPECULAR,
+        )
+
+    def _edges(self) -> StaticPaths:
+        """One path for each piece of rim or leg; sigma = k a L^2 |Gamma|^2 where it lies across the line of sight."""
+        edges = find_edges(self._scene, self.caster, straight=self.propagation.straight_edges)
+        rng = stream(self.micro_seed, "room", "edges")
+        distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
+        cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
+        lobe = np.exp(-2 * (cos / EDGE_LOBE) ** 2)
+        materials = [MATERIALS[name] for name in self._scene.material_names]
+        frontal = np.float64(1.0)
+        reflectivity = np.array([mean_reflectivity(one, frontal, self.frequencies_hz, "te") for one in materials])
+        wave_number = 2 * np.pi / self.config.wavelength_m
+        cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * reflectivity[edges.material]
+        cross_section *= lobe
+        cycles = rng.random(len(cos))
+        keep = (cross_section > 1e-7) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
+        place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
+        # into other directions than straight back an edge scatters as if it were seen from the side
+        level = cross_section / lobe[keep] * EDGE_LOBE
+        self._edge_patches = RoomPatches.edges(place_m, level, np.exp(2j * np.pi * cycles), edges.material[keep])
+        return self._scattered(place_m, cross_section, cycles, Interaction.EDGE)
+
+    def _scattered(
+        self, place_m: np.ndarray, cross_section_m2: np.ndarray, cycles: np.ndarray, kind: Interaction
+    ) -> StaticPaths:
+        """Paths to scatterers (path, 3) and back, of cross section and phase (path,)."""
+        distance = np.linalg.norm(place_m, axis=1)
+        gain = pattern(unit(place_m), self.config) ** 2
+        amplitude = scatterer_gain(self.config) * gain * np.sqrt(cross_section_m2) / np.maximum(distance, 1e-3) ** 2
+        return scattered_paths(place_m, amplitude * np.exp(2j * np.pi * cycles), kind, self.config)
+
+
+def scattered_paths(place_m: np.ndarray, amplitude: np.ndarray, kind: Interaction, config: RadarConfig) -> StaticPaths:
+    """Static paths to scatterers and straight back.
+
+    Args:
+        place_m: (path, 3).
+        amplitude: (path,) complex, in sqrt(mW).
+        kind: of all paths.
+        config: the radar, for its antennas.
+    """
+    tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+    out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
+    back = np.linalg.norm(place_m[:, None] - rx, axis=-1)
+    return StaticPaths.of(amplitude, out[:, :, None] + back[:, None, :], place_m, place_m, kind)

@@ -1,0 +1,143 @@
+"""Micro-Doppler: the Doppler spectrum over time, by short-time Fourier transforms over the chirps.
+
+Frequencies reach as far as the chirps of one transmitter allow, and the time step is a fraction of a frame; a spectrum
+over frames has neither. Where chirps follow each other from frame to frame without a pause, windows run on over them.
+Reference: Chen, "The Micro-Doppler Effect in Radar", 2nd ed., ch. 2.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy import fft
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.signal.cube import remove_static_adc
+from mmweaver.signal.spectra import range_doppler_power
+from mmweaver.signal.windows import MIN_HANN_LOOPS, doppler_window, hann
+
+MAX_WINDOW = 64  # loops
+OVERLAP = 4  # windows per window length
+MIN_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
+SIGNAL_DB = 15.0  # range bins this far below the strongest still count
+FRAMES_A_BLOCK = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class MicroDoppler:
+    """A spectrogram: power (time, doppler), mean of the antennas, over the range bins that hold movement."""
+
+    power: Float[np.ndarray, "time doppler"]
+    time_s: Float[np.ndarray, " time"]  # middle of each window
+    radial_velocity_mps: Float[np.ndarray, " doppler"]  # ascending
+    range_m: tuple[float, float]  # of the nearest and farthest range bin used
+
+
+def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDoppler:
+    """The spectrogram of a recording minus its static clutter, over the radar's range window.
+
+    Clutter is the mean chirp of each frame, or of the recording where windows run on over frames.
+
+    Args:
+        adc: the samples.
+        window_loops: length of a window; by default the loops of a frame, at most 64.
+
+    Raises:
+        InputError: for radars of fewer than four loops per frame that pause between frames (see `dsp.slow_time`).
+    """
+    config = adc.config
+    pause_s = config.frame_period_s - config.active_time_s
+    runs_on = pause_s < 0.5 * config.loop_period_s
+    longest = config.num_loops * (len(adc.samples) if runs_on else 1)
+    width = min(window_loops or min(config.num_loops, MAX_WINDOW), longest)
+    if width < MIN_HANN_LOOPS:
+        raise InputError(
+            f"radar {config.name!r} has {config.num_loops} loops per frame, too few for a micro-Doppler spectrum"
+        )
+    still = adc.samples.mean(axis=(0, 1), dtype=np.complex128).astype(np.complex64) if runs_on else None
+    chirps, first_bin = _moving_chirps(adc, still)  # (frame, loop, antenna, range)
+    frames, loops = chirps.shape[:2]
+    if runs_on:
+        chirps = chirps.reshape(1, frames * loops, *chirps.shape[2:])
+    power = np.stack(
+        [one.sum(axis=2) for one in _window_powers(chirps, width, max(1, width // OVERLAP))], 1, dtype=np.float64
+    )
+    bins = np.array([first_bin, first_bin + chirps.shape[-1] - 1])
+    frame_s = np.arange(len(chirps)) * config.frame_period_s
+    return _spectrogram(power, frame_s, config, bins * config.range_resolution_m)
+
+
+def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
+    """Short-time spectra within each frame, mean of the antennas. The cube's own Doppler window is undone first.
+
+    Args:
+        cube: of any radar.
+        width: loops of a window.
+        hop: loops from one window to the next.
+
+    Returns:
+        Power (frame, window, range, doppler); a windowed tone of amplitude a shows a^2.
+    """
+    loops = cube.values.shape[2]
+    if width == loops:
+        return range_doppler_power(cube)[:, None]
+    own = doppler_window(loops) / doppler_window(loops).sum()
+    own = np.maximum(own, MIN_WEIGHT * own.max()).astype(np.float32)[:, None]
+    chirps = (np.asarray(fft.ifft(np.fft.ifftshift(one, axes=1), axis=1)) / own for one in cube.values)
+    return np.array([list(_window_powers(one, width, hop)) for one in chirps], np.float64)
+
+
+def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
+    """The spectrogram of a cube, of the strongest range bin at each time and velocity; windows as `micro_doppler` has.
+
+    Clutter is taken away beforehand (`dsp.cube.remove_static`).
+    """
+    width = min(cube.config.num_loops, MAX_WINDOW)
+    power = cube_spectrogram(cube, width, max(1, width // OVERLAP)).max(axis=2)
+    return _spectrogram(power, cube.grid.frame_time_s, cube.config, cube.grid.range_m)
+
+
+def _window_powers(chirps: np.ndarray, width: int, hop: int) -> Iterator[np.ndarray]:
+    """Power (first, doppler, ...) of each window over chirps (first, loop, antenna, ...), mean of the antennas."""
+    window = (doppler_window(width) / doppler_window(width).sum()).astype(np.float32)
+    window = window.reshape(-1, *[1] * (chirps.ndim - 2))
+    for start in range(0, chirps.shape[1] - width + 1, hop):
+        spectrum = np.asarray(fft.fft(chirps[:, start : start + width] * window, axis=1))
+        yield (np.abs(np.fft.fftshift(spectrum, axes=1)) ** 2).mean(axis=2)
+
+
+def _spectrogram(power: np.ndarray, frame_s: np.ndarray, config: RadarConfig, range_m: np.ndarray) -> MicroDoppler:
+    """Of power (frame, window, doppler) of frames that begin at these times, over ranges from first to last."""
+    _, windows, width = power.shape
+    middle_s = (np.arange(windows) * max(1, width // OVERLAP) + width / 2) * config.loop_period_s
+    step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
+    return MicroDoppler(
+        power=power.reshape(-1, width),
+        time_s=(frame_s[:, None] + middle_s).ravel(),
+        radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
+        range_m=(float(range_m[0]), float(range_m[-1])),
+    )
+
+
+def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, int]:
+    """Range profiles of every chirp (frame, loop, slot * rx, range) where something moves, and the first range bin.
+
+    `still` (slot, rx, sample) is taken away; without it each frame's mean chirp.
+    """
+    config = adc.config
+    window = hann(config.num_samples)
+    weight = (window / window.sum()).astype(np.float32)
+    kept = slice(config.first_range_bin, config.first_range_bin + config.num_range_bins)
+    blocks = []
+    for start in range(0, len(adc.samples), FRAMES_A_BLOCK):
+        part = AdcCube(samples=adc.samples[start : start + FRAMES_A_BLOCK], config=config, scale=adc.scale)
+        moving = remove_static_adc(part).samples if still is None else part.samples - still
+        profile = np.asarray(fft.fft(moving * weight, axis=-1))[..., kept]
+        blocks.append(profile.reshape(*profile.shape[:2], -1, profile.shape[-1]))
+    level = sum((np.abs(block) ** 2).sum(axis=(0, 1, 2)) for block in blocks)
+    near = np.flatnonzero(level >= np.max(level) * 10 ** (-SIGNAL_DB / 10))
+    some = slice(int(near[0]), int(near[-1]) + 1)
+    return np.concatenate([block[..., some] for block in blocks]), config.first_range_bin + some.start

@@ -1,0 +1,184 @@
+"""Point clouds: CFAR detections with interpolated range, velocity, azimuth and elevation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float, Int
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PointCloud, RadarCube
+from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
+from mmweaver.core.virtual_array import azimuth_row, elevation_rows
+from mmweaver.signal.cfar import CfarCells, CfarResult, ca_cfar
+from mmweaver.signal.spectra import moving_doppler, range_doppler_power, steering
+from mmweaver.signal.windows import MIN_HANN_LOOPS
+
+LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
+AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; in a cell
+NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Cells:
+    """Detected cells, one row each."""
+
+    frame: Int[np.ndarray, " cell"]
+    range_m: Float[np.ndarray, " cell"]
+    radial_velocity_mps: Float[np.ndarray, " cell"]
+    snr_db: Float[np.ndarray, " cell"]
+    signal: Complex[np.ndarray, "cell antenna"]
+
+
+def point_cloud(
+    cube: RadarCube,
+    *,
+    false_alarm_rate: float = 1e-4,
+    max_points_per_frame: int = 128,
+    moving_only: bool = False,
+) -> PointCloud:
+    """Detections in the radar's frame of reference, range, velocity and azimuth interpolated between bins.
+
+    1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
+    2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the cell's highest is a point of its own,
+       three at most.
+    3. Elevation from the phase between two rows, 0 where the array has none.
+
+    Args:
+        cube: of any radar.
+        false_alarm_rate: of a cell of noise.
+        max_points_per_frame: the strongest (by SNR) are kept.
+        moving_only: without the Doppler bins of static clutter.
+
+    Raises:
+        InputError: for a limit below 1.
+    """
+    if max_points_per_frame < 1:
+        raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
+    power = range_doppler_power(cube)
+    used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
+    found = ca_cfar(
+        power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1],
+        cells=CfarCells().within(power.shape[2]),
+    )  # fmt: skip
+    detections = _detected_cells(cube, power, found, used_bins)
+    which, direction, gain_db = _azimuth_peaks(cube, detections.signal)
+    up = _elevation(cube, detections.signal[which], direction)
+    ahead_squared = 1 - direction**2 - up**2
+    snr_db = detections.snr_db[which] + gain_db
+    strongest = _strongest(detections.frame[which], snr_db, ahead_squared > 0, max_points_per_frame)
+    which, direction, up = which[strongest], direction[strongest], up[strongest]
+    range_m = detections.range_m[which]
+    return PointCloud(
+        frame=detections.frame[which],
+        x_m=range_m * direction,
+        y_m=range_m * np.sqrt(ahead_squared[strongest]),
+        z_m=range_m * up,
+        radial_velocity_mps=detections.radial_velocity_mps[which],
+        snr_db=snr_db[strongest],
+    )
+
+
+def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, used_bins: np.ndarray) -> _Cells:
+    """Interpolated peaks of the detections, with the residual TDM phase of their antenna signals removed."""
+    candidates = found.is_detected & _peaks(power)[:, :, used_bins] & ~_is_wrapped(cube.config)[:, None]
+    frame, row, column = np.nonzero(candidates)
+    snr = power[:, :, used_bins][frame, row, column] / np.maximum(found.noise_power[frame, row, column], 1e-300)
+    doppler = np.flatnonzero(used_bins)[column]
+    config = cube.config
+    num_range, num_doppler = power.shape[1:]
+    at = power[frame, row, doppler]
+    nearer, farther = (
+        power[frame, np.maximum(row - 1, 0), doppler],
+        power[frame, np.minimum(row + 1, num_range - 1), doppler],
+    )
+    range_offset = np.where((row > 0) & (row < num_range - 1), _parabola(nearer, at, farther), 0.0)
+    slower, faster = power[frame, row, doppler - 1], power[frame, row, (doppler + 1) % num_doppler]
+    doppler_offset = _parabola(slower, at, faster) if num_doppler > 2 else np.zeros(len(at))
+    step_mps = config.velocity_resolution_mps
+    velocity = cube.grid.radial_velocity_mps[doppler] + doppler_offset * step_mps
+    delay_s = config.antenna_delay_s
+    residual_hz = 2 * doppler_offset * step_mps / cube.grid.wavelength_m
+    signal = cube.values[frame, row, doppler].astype(np.complex128)
+    return _Cells(
+        frame=frame,
+        range_m=cube.grid.range_m[row] + range_offset * config.range_resolution_m,
+        radial_velocity_mps=(velocity + config.max_velocity_mps) % (2 * config.max_velocity_mps)
+        - config.max_velocity_mps,
+        snr_db=10 * np.log10(snr),
+        signal=signal * np.exp(-2j * np.pi * residual_hz[:, None] * delay_s),
+    )
+
+
+def _is_wrapped(config: RadarConfig) -> Bool[np.ndarray, " range"]:
+    """The end of the range axis of complex samples: it follows on range 0, whose leakage it shows again, and lies
+    beyond the receiver's passband."""
+    bins = config.first_range_bin + np.arange(config.num_range_bins)
+    return (bins >= LAST_SHARE * config.num_samples) & config.complex_samples
+
+
+def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
+    """Local maxima along range, or along Doppler (cyclic); with fewer than four loops the strongest of each range."""
+    padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
+    along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
+    if power.shape[2] < MIN_HANN_LOOPS:
+        return along_range & (power == power.max(axis=2, keepdims=True))
+    along_doppler = (power >= np.roll(power, 1, 2)) & (power >= np.roll(power, -1, 2))
+    return along_range | along_doppler
+
+
+def _parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Vertex of the parabola through three levels in dB, in bins from the middle, at most half a bin away.
+
+    A cell on a slope shifts towards the adjacent peak; 0 at a minimum.
+    """
+    low, middle, high = (np.log(np.maximum(level, 1e-300)) for level in (before, at, after))
+    bend = low - 2 * middle + high
+    return np.where(bend < 0, np.clip(0.5 * (low - high) / np.where(bend < 0, bend, -1), -0.5, 0.5), 0.0)
+
+
+def _azimuth_peaks(
+    cube: RadarCube, signal: Complex[np.ndarray, "cell antenna"]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(index of the cell, direction cosine to the right, dB relative to the cell's highest peak), each (peak,)."""
+    row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
+    if len(row) < 2 or not len(signal):
+        return np.arange(len(signal)), np.zeros(len(signal)), np.zeros(len(signal))
+    cosine = np.linspace(-1, 1, NUM_DIRECTION_COSINES)
+    direction = np.stack([cosine, np.zeros_like(cosine), np.zeros_like(cosine)])
+    # Not BLAS: on some processors a row of its product depends on how many rows there are.
+    spectrum = np.abs(np.einsum("ca,ad->cd", signal[:, row], steering(cube, row, direction))) ** 2
+    inner = spectrum[:, 1:-1]
+    is_peak = (inner >= spectrum[:, :-2]) & (inner > spectrum[:, 2:])
+    level = np.where(is_peak, inner, 0)
+    highest = level.max(axis=1, keepdims=True)
+    order = np.argsort(-level, axis=1)[:, :MAX_AZIMUTH_PEAKS]
+    ordered = np.take_along_axis(level, order, axis=1)
+    which, rank = np.nonzero((ordered > 0) & (ordered >= highest * 10 ** (-AZIMUTH_PEAK_DB / 10)))
+    at = order[which, rank] + 1
+    offset = _parabola(spectrum[which, at - 1], spectrum[which, at], spectrum[which, at + 1])
+    gain_db = 10 * np.log10(spectrum[which, at] / highest[which, 0])
+    return which, cosine[at] + offset * (cosine[1] - cosine[0]), gain_db
+
+
+def _elevation(cube: RadarCube, signal: Complex[np.ndarray, "point antenna"], right: np.ndarray) -> np.ndarray:
+    """Direction cosine upwards (point,), from the phase between two rows steered to each point's azimuth."""
+    pair = elevation_rows(cube.grid.antenna_position_m, cube.grid.wavelength_m)
+    if pair is None:
+        return np.zeros(len(signal))
+    per_metre = 2j * np.pi / cube.grid.wavelength_m
+    column_m = cube.grid.antenna_position_m[:, 0]
+    low, high = (
+        np.sum(signal[:, row] * np.exp(per_metre * right[:, None] * column_m[row]), axis=1)
+        for row in (pair.lower, pair.upper)
+    )
+    return -np.angle(high * low.conj()) / (2 * np.pi) * cube.grid.wavelength_m / pair.spacing_m
+
+
+def _strongest(frame: np.ndarray, snr_db: np.ndarray, is_possible: np.ndarray, most: int) -> np.ndarray:
+    """Indices of up to `most` valid points of each frame, by frame and decreasing SNR."""
+    index = np.flatnonzero(is_possible)
+    index = index[np.lexsort((-snr_db[index], frame[index]))]
+    _, first, count = np.unique(frame[index], return_index=True, return_counts=True)
+    rank = np.arange(len(index)) - np.repeat(first, count)
+    return index[rank < most]

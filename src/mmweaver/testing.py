@@ -1,3 +1,0 @@
-"""Checks of extensions: the documented import path of `mmweaver.weaver.testing`."""
-
-from mmweaver.weaver.testing import *  # noqa: F403

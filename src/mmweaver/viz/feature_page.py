@@ -1,0 +1,130 @@
+"""Pictures of features: the arrays of `mmweaver.signal.features` with their axes, on one scale of decibels."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
+from mmweaver.core.virtual_array import resolves_elevation
+from mmweaver.signal.features import (
+    DRAI_SIZE,
+    dynamic_range_angle,
+    micro_doppler_db,
+    range_azimuth_db,
+    range_doppler_db,
+    range_elevation_db,
+)
+from mmweaver.signal.spectra import azimuth_axis_rad, elevation_axis_rad
+from mmweaver.viz.figure_data import Fan, FigureData
+from mmweaver.viz.panels import VELOCITY, draw_points_top, velocity_bar
+from mmweaver.viz.power_scale import PowerScale
+from mmweaver.viz.theme import evenly_spaced, label_axes, page
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FEATURES = ("rd", "ra", "re", "drai", "micro_doppler", "points")  # names as `RadarDataset` has them
+OVER_TIME = "micro_doppler"  # one panel of all frames
+HEIGHT = {"ra": 0.58, "points": 0.56, "re": 1.28}  # of a panel relative to its width, where axes are in equal metres
+MAX_FRAMES = 8
+PANEL_INCH, LEFT_INCH, RIGHT_INCH, TOP_INCH, GAP_INCH = 2.9, 0.64, 1.1, 0.9, 0.8
+
+
+def features_of(cube: RadarCube, names: Sequence[str] | None) -> list[str]:
+    """The features that are drawn; by default all that the array resolves. Raises InputError for unknown names."""
+    if names is None:
+        return [name for name in FEATURES if name != "re" or resolves_elevation(cube.config)]
+    for name in names:
+        if name not in FEATURES:
+            raise InputError(f"unknown feature {name!r}; known: {', '.join(FEATURES)}")
+    return list(names)
+
+
+def frames_of(cube: RadarCube, frames: Sequence[int] | None) -> list[int]:
+    """The frames that are drawn; by default four, evenly spaced. Raises InputError for frames that there are not."""
+    if frames is None:
+        return evenly_spaced(len(cube.values), 4).tolist()
+    if not 1 <= len(frames) <= MAX_FRAMES:
+        raise InputError(f"give 1 to {MAX_FRAMES} frames, not {len(frames)}")
+    for frame in frames:
+        if not 0 <= frame < len(cube.values):
+            raise InputError(f"there is no frame {frame}; the frames are 0 to {len(cube.values) - 1}")
+    return list(frames)
+
+
+def draw_features(
+    path: Path, view: FigureData, features: Sequence[str], frames: Sequence[int], *, moving: bool = False
+) -> None:
+    """Writes a PNG: a row for each feature, a column for each frame; `moving` removes each frame's mean chirp."""
+    step = PANEL_INCH + GAP_INCH
+    tall = [PANEL_INCH * HEIGHT.get(name, 1.0) for name in features]
+    width, height = LEFT_INCH + len(frames) * step + RIGHT_INCH, TOP_INCH + sum(tall) + GAP_INCH * len(tall)
+    grid = replace(view.cube.grid, frame_time_s=view.cube.grid.frame_time_s[list(frames)])
+    chosen = replace(view, poses=(), cube=replace(view.cube, values=view.cube.values[list(frames)], grid=grid))
+    when = [f"frame {frame} ({time_s:.2f} s)" for frame, time_s in zip(frames, grid.frame_time_s, strict=True)]
+    clutter = "no clutter" if moving else "with clutter"
+    with page(path, view.title, width, height) as figure:
+        for row, name in enumerate(features):
+            bottom = (height - TOP_INCH - sum(tall[: row + 1]) - row * GAP_INCH) / height
+            wide = len(frames) * step - GAP_INCH if name == OVER_TIME else PANEL_INCH
+            scale, left = view.scale, LEFT_INCH
+            if name == OVER_TIME:
+                scale = _summed(scale, len(grid.range_m))
+            elif name != "points":
+                maps = _maps(name, chosen, moving)
+            for column in range(1 if name == OVER_TIME else len(frames)):
+                axes = figure.add_axes(((left + column * step) / width, bottom, wide / width, tall[row] / height))
+                if name == OVER_TIME:
+                    scale.draw(axes, micro_doppler_db(view.cube).T, (*view.time_edges_s, *view.velocity_edges_mps))
+                    label_axes(axes, "Micro-Doppler, clutter removed", "time (s)", VELOCITY)
+                elif name == "points":
+                    own = view.points.select(view.points.frame == frames[column])
+                    draw_points_top(axes, replace(view, points=own))
+                    axes.set_title(f"Points from above, {when[column]}")
+                else:
+                    _draw_map(axes, name, maps[column], chosen, (clutter, when[column]))
+            if name == "points":
+                velocity_bar(axes, view)
+            else:
+                scale.bar(axes, share=PANEL_INCH / wide)
+
+
+def _summed(scale: PowerScale, cells: int) -> PowerScale:
+    """The scale of a sum over cells: the noise of all of them."""
+    if scale.noise_db is None:
+        return scale
+    more_db = 10 * float(np.log10(cells))
+    return replace(scale, low_db=scale.low_db + more_db, high_db=scale.high_db + 5, noise_db=scale.noise_db + more_db)
+
+
+def _maps(name: str, chosen: FigureData, moving: bool) -> np.ndarray:
+    """A feature's decibels of each chosen frame."""
+    if name == "drai":
+        return 10 * np.log10(np.maximum(dynamic_range_angle(chosen.cube) * chosen.scale.factor, 1e-30))
+    feature = {"rd": range_doppler_db, "ra": range_azimuth_db, "re": range_elevation_db}[name]
+    return feature(chosen.cube, moving=moving)
+
+
+def _draw_map(axes: "Axes", name: str, power_db: np.ndarray, view: FigureData, words: tuple[str, str]) -> None:
+    """The map of a feature in one frame; `words` say whether it shows clutter, and when it is."""
+    scale, (clutter, when) = view.scale, words
+    if name == "rd":
+        scale.draw(axes, power_db, (*view.velocity_edges_mps, *view.range_edges_m))
+        return label_axes(axes, f"Range-Doppler, {clutter}, {when}", VELOCITY, "range (m)")
+    if name == "drai":
+        edge = float(np.degrees(azimuth_axis_rad(DRAI_SIZE)[-1]))
+        scale.draw(axes, power_db, (-edge, edge, *view.range_edges_m))
+        return label_axes(axes, f"Dynamic range-angle, {when}", "azimuth (degrees), right +", "range (m)")
+    fan = Fan.over(view.cube.grid.range_m, azimuth_axis_rad(91) if name == "ra" else elevation_axis_rad(61))
+    low, high, near, far = fan.extent
+    if name == "ra":
+        scale.draw(axes, fan.lay(power_db), fan.extent)
+        label_axes(axes, f"Range-azimuth, {clutter}, {when}", "right (m)", "ahead (m)")
+    else:
+        scale.draw(axes, fan.lay(power_db).T, (near, far, low, high))
+        label_axes(axes, f"Range-elevation, {clutter}, {when}", "ahead (m)", "up (m)")
+    axes.set_aspect("equal", anchor="NW")

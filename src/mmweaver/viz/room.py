@@ -1,0 +1,58 @@
+"""A room as the page shows it: coloured points of the photo, surfaces, free floor, seats and landmarks."""
+
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.aligned_photo import AlignedPhoto
+from mmweaver.core.body_capsules import REFERENCE_HEIGHT_M
+from mmweaver.core.records import Plane, Scene
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.viz.sequence import Playback
+
+MAX_POINTS = 60_000
+_REFLECTORS = ("metal", "glass", "marble")
+
+
+def room_playback(
+    scene: Scene, name: str, range_window_m: tuple[float, float], *, max_points: int = MAX_POINTS
+) -> Playback:
+    """The room's header and arrays; `range_window_m` is the radar's.
+
+    Arrays: `room_points` (point, 3) int16 in millimetres and `room_colours` (point, 3) bytes; `free_floor` (cell, 2)
+    float32, the x and y in metres of the free cells of the floor, and `standable` (cell,), 1 where the planner lets a
+    person of average height stand in sight of the radar.
+    """
+    points_m = AlignedPhoto.of(scene).points_m
+    measured = np.isfinite(points_m).all(axis=-1)
+    step = max(1, int(np.ceil(np.sqrt(measured.sum() / max_points))))
+    chosen = np.zeros_like(measured)
+    chosen[::step, ::step] = True
+    chosen &= measured
+    free = scene.free_space
+    rows, columns = np.nonzero(free.is_free)
+    walkable = FloorMap(scene, range_window_m, REFERENCE_HEIGHT_M).walkable
+    cell_m = float(free.x_m[1] - free.x_m[0]) if len(free.x_m) > 1 else 0.05
+    header: dict[str, Any] = {
+        "kind": "room", "name": name,
+        "floor_z_m": scene.floor_z_m, "cell_m": cell_m,
+        "planes": [_plane(plane) for plane in scene.planes],
+        "seats": [seat.position_m for seat in scene.seats],
+        "landmarks": [{"kind": mark.kind, "place_m": mark.position_m} for mark in scene.landmarks],
+        "assumed": list(scene.assumptions),
+    }  # fmt: skip
+    arrays = {
+        "room_points": (points_m[chosen] * 1000).round().clip(-32768, 32767).astype(np.int16),
+        "room_colours": scene.photo.rgb[chosen].astype(np.uint8),
+        "free_floor": np.stack([free.x_m[columns], free.y_m[rows]], -1).astype(np.float32).reshape(-1, 2),
+        "standable": walkable[rows, columns].astype(np.uint8),
+    }
+    return Playback(header=header, arrays=arrays)
+
+
+def _plane(plane: Plane) -> dict[str, Any]:
+    """Corners in order around the rectangle, and what it is made of."""
+    return {
+        "kind": plane.kind, "material": plane.material, "corners_m": np.round(plane.corners_m, 3),
+        "reflects": any(word in plane.material for word in _REFLECTORS),
+    }  # fmt: skip

@@ -1,0 +1,131 @@
+"""A generated or recorded sequence as the page plays it: maps on one absolute dB scale, points and bodies by frame."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int, UInt8
+
+from mmweaver.core.body_capsules import CAPSULES, pose_capsules, radii_m
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
+from mmweaver.core.shapes import Array
+from mmweaver.core.skeleton import BONES, joint
+from mmweaver.signal.cube import remove_static
+from mmweaver.signal.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
+from mmweaver.viz.theme import evenly_spaced
+
+MAX_FRAMES = 600  # longer sequences are thinned out
+BELOW_NOISE_DB = 6.0  # of the scale's lower end
+_NUM_AZIMUTHS = 81
+
+
+@dataclass(frozen=True, kw_only=True)
+class Playback:
+    """A header for JSON and the arrays of a sequence, ready for `wire.pack`.
+
+    Arrays: `range_doppler`, `range_doppler_moving` (frame, range, doppler), `range_azimuth`, `range_azimuth_moving`
+    (frame, range, azimuth), `range_time` (frame, range) and `micro_doppler` (frame, doppler) as bytes of power in
+    decibels, 0 = `header["db"]["low"]`, 255 = `header["db"]["high"]`; `points` (point, 5): x, y, z in metres, radial
+    velocity in m/s, SNR in dB, with `point_frame` (point,); `joints` (person, frame, 22, 3) and `capsules` (person,
+    frame, capsule, 6): start and end of each part of the body in metres, with `radii` (person, capsule, 2).
+    """
+
+    header: dict[str, Any]
+    arrays: dict[str, np.ndarray]
+
+
+def make_playback(
+    cube: RadarCube,
+    points: PointCloud,
+    poses: tuple[PoseSequence, ...] = (),
+    meta: dict[str, Any] | None = None,
+    *,
+    scale_db: tuple[float, float] | None = None,
+) -> Playback:
+    """A sequence as the page plays it; `meta` is the content of its meta.json, `scale_db` a scale to keep to."""
+    count = len(cube.grid.frame_time_s)
+    shown = evenly_spaced(count, MAX_FRAMES)
+    time_s = cube.grid.frame_time_s[shown]
+    cube = replace(cube, values=cube.values[shown], grid=replace(cube.grid, frame_time_s=time_s))
+    maps, azimuth_rad = _maps(cube)
+    low_db, high_db, noise_db = _scale(maps)
+    low_db, high_db = scale_db or (low_db, high_db)
+    arrays: dict[str, np.ndarray] = {name: as_bytes(power_db, low_db, high_db) for name, power_db in maps.items()}
+    place_of = np.full(count, -1)
+    place_of[shown] = np.arange(len(shown))
+    visible = points.select(place_of[points.frame] >= 0)
+    columns = (visible.x_m, visible.y_m, visible.z_m, visible.radial_velocity_mps, visible.snr_db)
+    arrays["points"] = np.stack(columns, -1).astype(np.float32).reshape(-1, 5)
+    arrays["point_frame"] = place_of[visible.frame].astype(np.int32)
+    if poses:
+        arrays |= _bodies(poses, shown)
+    config = cube.config
+    header = {
+        "kind": "sequence",
+        "frames": len(shown), "frames_in_all": count,
+        "time_s": time_s, "frame_period_s": config.frame_period_s,
+        "range_m": _edges(cube.grid.range_m, config.range_resolution_m),
+        "velocity_mps": _edges(cube.grid.radial_velocity_mps, config.velocity_resolution_mps),
+        "azimuth_rad": _edges(azimuth_rad, float(azimuth_rad[1] - azimuth_rad[0])),
+        "db": {
+            "low": low_db, "high": high_db, "noise": noise_db,
+            "unit": "dBm" if np.isfinite(cube.scale) else "dB, uncalibrated",
+        },
+        "people": len(poses), "bones": BONES, "pelvis": joint("pelvis"),
+        "radar": config.name, "meta": meta or {},
+    }  # fmt: skip
+    return Playback(header=header, arrays=arrays)
+
+
+def as_bytes(power_db: Float[Array, "*shape"], low_db: float, high_db: float) -> UInt8[Array, "*shape"]:
+    """Decibels as bytes: 0 at `low_db` and below, 255 at `high_db` and above."""
+    share = (power_db - low_db) / (high_db - low_db)
+    return (np.clip(share, 0, 1) * 255).round().astype(np.uint8)
+
+
+def _maps(cube: RadarCube) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """All maps in decibels, and the azimuths of the range-azimuth ones."""
+    azimuth_rad = azimuth_axis_rad(_NUM_AZIMUTHS)
+    moving = remove_static(cube)
+    doppler, doppler_moving = range_doppler_power(cube), range_doppler_power(moving)
+    power = {
+        "range_doppler": doppler,
+        "range_doppler_moving": doppler_moving,
+        "range_azimuth": range_azimuth_power(cube, azimuth_rad),
+        "range_azimuth_moving": range_azimuth_power(moving, azimuth_rad),
+        "range_time": doppler_moving.max(axis=2),
+        "micro_doppler": doppler_moving.max(axis=1),
+    }
+    scale = cube.scale if np.isfinite(cube.scale) else 1.0
+    floor = np.finfo(np.float64).tiny
+    return {name: 10 * np.log10(np.maximum(values * scale**2, floor)) for name, values in power.items()}, azimuth_rad
+
+
+def _scale(maps: dict[str, np.ndarray]) -> tuple[float, float, float]:
+    """Lower end, upper end and noise level in decibels, for all maps alike."""
+    cells = maps["range_doppler_moving"]
+    used = cells[cells > -1000]
+    noise_db = float(np.median(used)) if used.size else -100.0
+    high_db = max(float(maps["range_doppler"].max()), float(maps["range_azimuth"].max()), noise_db + 20)
+    return noise_db - BELOW_NOISE_DB, high_db, noise_db
+
+
+def _bodies(poses: tuple[PoseSequence, ...], shown: Int[Array, " frame"]) -> dict[str, np.ndarray]:
+    joints, capsules, radii = [], [], []
+    for pose in poses:
+        chosen = pose.joints_m[shown]
+        posed = pose_capsules(chosen, pose.height_m)
+        joints.append(chosen)
+        capsules.append(np.concatenate([posed.start_m, posed.start_m + posed.axis_m], axis=-1))
+        width = np.sqrt([capsule.width_per_depth for capsule in CAPSULES])[:, None]
+        radii.append(radii_m(pose.height_m) * width)
+    return {
+        "joints": np.stack(joints).astype(np.float32),
+        "capsules": np.stack(capsules).astype(np.float32),
+        "radii": np.stack(radii).astype(np.float32),
+    }
+
+
+def _edges(values: np.ndarray, step: float) -> tuple[float, float]:
+    """Outer edges of the first and the last bin."""
+    return float(values[0]) - step / 2, float(values[-1]) + step / 2

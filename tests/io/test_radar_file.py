@@ -1,0 +1,65 @@
+"""Radars by name or file, and their table."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843, BGT60, PRESETS
+from mmweaver.io.radar_file import describe_radar, load_radar
+
+
+@pytest.mark.parametrize("name", list(PRESETS))
+def test_presets_and_their_json(tmp_path: Path, name: str):
+    assert load_radar(name) is PRESETS[name]
+    path = tmp_path / "mine.JSON"
+    path.write_text(PRESETS[name].to_json())
+    assert load_radar(str(path)) == PRESETS[name]
+
+
+def test_a_cfg(tmp_path: Path):
+    path = tmp_path / "board.cfg"
+    path.write_text(
+        "channelCfg 15 1 0\nadcCfg 2 1\nprofileCfg 0 77 7 7 58 0 0 68 1 256 5500 0 0 30\n"
+        "chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 32 0 100 1 0\n"
+    )
+    assert load_radar(str(path)).name == "board"
+
+
+@pytest.mark.parametrize("name", ["awr1834", "", "none.cfg", "none.json", "/"])
+def test_the_error_of_an_unknown_name_lists_the_known_ones(name: str):
+    with pytest.raises(InputError, match=", ".join(PRESETS)):
+        load_radar(name)
+
+
+def test_the_error_of_another_file_lists_the_formats(tmp_path: Path):
+    (tmp_path / "radar.xml").write_text("<radar/>")
+    with pytest.raises(InputError, match=r"neither \.cfg nor \.json"):
+        load_radar(str(tmp_path / "radar.xml"))
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps({"schema_version": 1, "name": "x"})])
+def test_a_json_that_is_not_a_radar(tmp_path: Path, text: str):
+    path = tmp_path / "radar.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"radar\.json"):
+        load_radar(str(path))
+
+
+def test_the_table_of_the_papers_radar():
+    text = describe_radar(AWR1843)
+    for fact in (
+        "77.000 to 80.901 GHz", "60.012 MHz/us", "256 complex at 4.510 Msps", "3 TX x 4 RX = 12", "0, 2, 1",
+        "14.3 deg", "4.40 cm", "up to 11.26 m", "0.70 to 3.48 m (bins 16 to 79)", "0.274 m/s", "+-4.39 m/s",
+        "64 range x 32 Doppler x 12 antennas", "elevation                  yes", "10.00 per second",
+    ):  # fmt: skip
+        assert fact in text
+
+
+def test_the_table_of_other_radars():
+    assert "64 real at 2.000 Msps" in describe_radar(BGT60)
+    single = replace(AWR1843, tx_position_m=AWR1843.tx_position_m[:1], rx_position_m=((0.0, 0.0, 0.0),), tx_order=(0,))
+    assert "one column" in describe_radar(single)
+    assert all(describe_radar(config).startswith(f"radar {name}\n") for name, config in PRESETS.items())

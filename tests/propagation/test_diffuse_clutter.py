@@ -1,0 +1,88 @@
+"""Static clutter that photo and mesh do not resolve: level, distribution and where it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.stages import Stages
+from mmweaver.models.methods import Physics
+from mmweaver.propagation.diffuse_clutter import diffuse_clutter, room_level, seed_of_room
+from mmweaver.propagation.paths import Interaction
+from mmweaver.propagation.ray_traced import Simulator
+from mmweaver.propagation.receiver import IDEAL
+from mmweaver.propagation.static_paths import Propagation
+from tests.rooms import back_wall, floor, scene_of
+
+# docs/decisions/diffuse-clutter.md: 300 patches a metre from 1 m on, to 75 degrees, rooms that differ by 12 dB
+PATCHES_A_METRE, NEAREST_M, AZIMUTH_DEG, LEVELS_DB = 300, 1.0, 75.0, 12.0
+ASIDE_M = 5.0
+
+
+def test_as_much_comes_back_from_every_metre_as_was_recorded():
+    """The mean power a metre of range is that of the stated cross section at 2 m, up to 12 dB more by the room."""
+    # the radar equation (docs/radar_primer.md, 10): 12 dBm, 10.5 dBi each way, 79 GHz, 1.5e-4 m2 at 2 m, in mW
+    wavelength_m = 299_792_458 / 79.06e9
+    stated = 10 ** ((12 + 2 * 10.5) / 10) * wavelength_m**2 * 1.5e-4 / ((4 * np.pi) ** 3 * 2.0**4)
+    profiles = []
+    for seed in range(20):
+        paths = diffuse_clutter(AWR1843, seed)
+        range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
+        profiles.append(np.histogram(range_m, np.arange(1.0, 7.1), weights=np.abs(paths.amplitude.numpy()) ** 2)[0])
+        profiles[-1] = profiles[-1] / room_level(seed)
+        assert range_m.min() > NEAREST_M - 1e-3
+    assert np.mean(profiles, axis=0) == pytest.approx(stated, rel=0.25)
+    levels_db = 10 * np.log10([room_level(seed) for seed in range(100)])
+    assert 0 <= levels_db.min() < 1 < 11 < levels_db.max() <= LEVELS_DB
+
+
+def test_as_much_comes_back_from_the_sides_as_from_ahead_but_not_from_beyond_five_metres():
+    power, across = np.zeros(4), np.linspace(0, np.sin(np.radians(AZIMUTH_DEG)), 5)
+    for seed in range(8):
+        paths = diffuse_clutter(AWR1843, seed)
+        place_m, each = paths.departure_vertex_m.numpy(), np.abs(paths.amplitude.numpy()) ** 2 / room_level(seed)
+        assert np.abs(place_m[:, 0]).max() < ASIDE_M
+        near = np.linalg.norm(place_m, axis=1) < ASIDE_M
+        sine = np.abs(np.sin(np.arctan2(place_m[near, 0], place_m[near, 1])))
+        power += np.histogram(sine, across, weights=each[near])[0]
+    assert power == pytest.approx(np.full(4, power.mean()), rel=0.3)
+
+
+def test_amplitudes_are_spikier_than_a_gaussian_sum():
+    """A gamma distribution with shape 0.5 has a variance of two means squared."""
+    paths = diffuse_clutter(AWR1843, 0)
+    range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
+    near = (range_m > 1) & (range_m < 8)
+    ahead = near & (np.abs(paths.departure_vertex_m.numpy()[:, 0]) < 0.2 * range_m)
+    power = np.abs(paths.amplitude.numpy()[ahead]) ** 2
+    assert power.var() / power.mean() ** 2 > 1.5
+    assert near.sum() / 7 == pytest.approx(PATCHES_A_METRE, rel=0.1)
+
+
+def test_the_front_door_has_it_and_the_ray_tracer_only_where_asked():
+    scene = scene_of((floor(), back_wall()))
+    counts = {}
+    for clutter in (False, True):
+        room = Simulator(scene, AWR1843, IDEAL, propagation=Propagation(clutter=clutter)).room
+        counts[clutter] = int((room.paths.interaction == int(Interaction.CLUTTER)).sum())
+    assert counts[False] == 0
+    assert counts[True] > 1000
+    assert Physics().propagation.clutter
+
+
+def test_rooms_have_clutter_of_their_own_and_keep_it():
+    """Whatever the sequence's seed is: clutter belongs to the room, and another room's is not this one's."""
+    rooms = [scene_of((floor(), back_wall())), scene_of((floor(),))]
+    seeds = [seed_of_room(room) for room in rooms]
+    assert seeds[0] != seeds[1]
+    moved = replace(rooms[0], vertices_m=rooms[0].vertices_m * (1 + 1e-7))  # as another processor rounds
+    assert seed_of_room(moved) == seeds[0]
+    physics = Physics()
+    clutter = []
+    for seed, room in ((0, rooms[0]), (1, rooms[0]), (0, rooms[1])):
+        physics(room, (), AWR1843, num_frames=1, seed=seed, keep_adc=False, stages=Stages())
+        paths = physics._prepared.get(room, AWR1843, None, None).room.paths
+        clutter.append(paths.amplitude[paths.interaction == int(Interaction.CLUTTER)].numpy())
+    assert np.array_equal(clutter[0], clutter[1])
+    assert not np.array_equal(clutter[0], clutter[2])
