@@ -1,4 +1,4 @@
-"""Tables of the older recogniser, which was developed on RadHAR: docs/zero_shot.md."""
+"""Tables of the older recogniser, which was developed on RadHAR: docs/evidence/zero_shot.md."""
 
 from studies.report.table_layouts import PivotTable, RowTable
 

@@ -21,11 +21,19 @@ from tests.recognition.test_train_recogniser import TASK
 from tests.training.moving_arm import moving_arm
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = {page.name: page for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md")))}
+PAGES = {
+    page.name: page
+    for page in (
+        ROOT / "README.md",
+        ROOT / "CONTRIBUTING.md",
+        *sorted(ROOT.glob("docs/*.md")),
+        *sorted(ROOT.glob("docs/evidence/*.md")),
+    )
+}
 # Pages whose code is run by a test of their own.
 ELSEWHERE = {
     "README.md": "tests/artifact/test_recipes.py",
-    "extend.md": "tests/test_register.py, in a process of its own, for it registers things",
+    "extend.md": "tests/weaver/test_register.py, in a process of its own, for it registers things",
     "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
 }
 # Their parts are tested in tests/comparison, tests/motion/motiongpt, and below.

@@ -1,7 +1,7 @@
 """Commands that die, or find the disk full, at an event of the file system: run again, they end with the same bits.
 
 Here a sample of events of the quick commands; all events of all commands are the nightly test below, and
-`python -m studies run injected_faults` makes the table of docs/trust.md.
+`python -m studies run injected_faults` makes the table of docs/evidence/trust.md.
 """
 
 import sys

@@ -22,8 +22,8 @@ from mmweaver.io.result_folder import save_results
 from mmweaver.io.stream_folder import LIST, StreamFolder
 from tests.compression.echoes import SMALL, crowd
 from tests.faults.synced_disk import SyncedDisk
+from tests.io.test_stream_folder import add
 from tests.motion.rooms import room
-from tests.test_stream_folder import add
 from tests.viz.views import noise_view
 
 

@@ -1,7 +1,7 @@
 """Reading a MotionGPT checkpoint: nothing in it is executed, tensors are checked by name, sizes inferred from them.
 
 Reference: MotionGPT's checkpoint `motiongpt_s3_h3d.tar`: a torch archive whose `state_dict` holds `vae.*` and
-`lm.language_model.*` (docs/motiongpt.md).
+`lm.language_model.*` (docs/evidence/motiongpt.md).
 """
 
 from pathlib import Path
