@@ -4,7 +4,7 @@ The phase of the DFT of a window centred on sample N/2 rotates by -pi per bin: a
 at its grid's Nyquist frequency, where neither learning nor interpolation works. Referred to the middle of the window
 instead, the response of a scatterer is real, and the cube is smooth.
 
-`dsp.cube` uses the *periodic* Hann window, which is exactly symmetric about sample N/2, so the phasor is
+`signal.cube` uses the *periodic* Hann window, which is exactly symmetric about sample N/2, so the phasor is
 exp(+j pi r) exp(+j pi (d - M/2)). A symmetric window is centred on (N - 1)/2, which gives a factor (N - 1)/N; with a
 periodic window that would leave a slope of 180/N degrees per bin. r counts range bins of the radar's full transform,
 and d from zero Doppler, so cubes of radars with the same centre frequency agree after centring.

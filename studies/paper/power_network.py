@@ -9,7 +9,7 @@ Encoders are those of recipe `weaver` and stay as they are; their codes are whit
 what differs between rooms and poses reaches the hypernetwork at unit spread.
 
 Fields give the radar cross section of cells (`power_cells`); each cell that matters becomes one scatterer of unknown
-phase, and the radar's own response makes the signal of them (`paths.speckle`). Coordinates are those of the
+phase, and the radar's own response makes the signal of them (`propagation.speckle`). Coordinates are those of the
 radar and, next to them, counted from what photo and joints show: from the photographed surface in that direction, and
 from the pelvis. Reference: paper, section "Generalization via Hypernetworks".
 """

@@ -95,7 +95,7 @@ def test_commands_of_pages_are_understood():
 
 
 def test_source_files_that_pages_name_exist():
-    """`paths/reference_sum.py` is named from the package's folder, `studies/run.py` from the repository's."""
+    """`propagation/reference_sum.py` is named from the package's folder, `studies/run.py` from the repository's."""
     for page in PAGES:
         if page.name == "CHANGELOG.md":  # tells of files as they were
             continue

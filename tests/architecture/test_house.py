@@ -64,7 +64,7 @@ OPENERS = {
 READ_METHODS = {"read_text", "read_bytes"}
 ZARR_METHODS = {"open_group", "open_array", "open_consolidated"}  # writers say mode="w" or "a"
 # Writers, which open what they make, and files of the system.
-NOT_READERS = {"formats/npz_files.py", "core/atomic_files.py", "core/staging.py"}
+NOT_READERS = {"io/npz_files.py", "core/atomic_files.py", "core/staging.py"}
 
 
 def test_files_are_opened_by_the_safe_files_alone():

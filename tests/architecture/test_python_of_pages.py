@@ -22,13 +22,8 @@ from tests.training.moving_arm import moving_arm
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
-    page.name: page
-    for page in (
-        ROOT / "README.md",
-        ROOT / "CONTRIBUTING.md",
-        *sorted(ROOT.glob("docs/*.md")),
-        *sorted(ROOT.glob("docs/evidence/*.md")),
-    )
+    page.relative_to(ROOT).as_posix().removeprefix("docs/"): page
+    for page in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md")))
 }
 # Pages whose code is run by a test of their own.
 ELSEWHERE = {
@@ -37,7 +32,7 @@ ELSEWHERE = {
     "own_room_dataset.md": "tests/architecture/test_own_room_page.py, which makes its labelled set",
 }
 # Their parts are tested in tests/comparison, tests/motion/motiongpt, and below.
-SLOW = {"compare.md", "motiongpt.md"}
+SLOW = {"compare.md", "evidence/motiongpt.md"}
 NOT_INSTALLED = {"datasets": "Hugging Face datasets, which nothing here needs"}
 
 

@@ -1,4 +1,4 @@
-"""The networks' maps are those of dsp.spectra, in other units."""
+"""The networks' maps are those of signal.spectra, in other units."""
 
 from dataclasses import replace
 

@@ -70,7 +70,7 @@ class RadarConfig:
     frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
     loop_gap_s: float = 0.0  # pause between the last chirp of a loop and the next loop
     tx_code: TxCode = ()  # (slot, tx) weights of simultaneous transmitters; () = TDM-MIMO in tx_order
-    lvds_lanes: int = 2  # of a DCA1000's recording: 2 or 4, see formats.dca1000; 0: it cannot have one
+    lvds_lanes: int = 2  # of a DCA1000's recording: 2 or 4, see io.dca1000; 0: it cannot have one
     lvds_iq_order: str = "iq"  # which of a sample's parts comes first there, "iq" or "qi"
     rx_channels: tuple[int, ...] = ()  # the receivers' numbers on the board; () = 0, 1, 2 ...
     rx_inverted: tuple[int, ...] = ()  # receivers (indices) whose feed turns the phase by 180 degrees

@@ -85,7 +85,7 @@ class StoredRoom:
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
     def body_paths(self, index: int, frames: np.ndarray) -> Any:
-        """The person's paths (`paths.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
+        """The person's paths (`propagation.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
         return self.geometry.resynthesis("cpu").person(self._traced_motion(index), frames)
 

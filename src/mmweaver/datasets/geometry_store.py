@@ -1,9 +1,9 @@
 """The part of a data set that signals are made from on the fly: prepared rooms and traced motions.
 
     OUT/office_003/geometry/       instead of iq and iq_scale
-        node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of paths.frame_clock
-        visibility       (sequence, frame, byte)  bits of paths.visibility
-        room/, photographed/   paths.static_paths_store: the room as it is, and as its photo shows it
+        node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of propagation.frame_clock
+        visibility       (sequence, frame, byte)  bits of propagation.visibility
+        room/, photographed/   propagation.static_paths_store: the room as it is, and as its photo shows it
 
 No ray caster is needed to read it. Reference: docs/decisions/data-set-plan.md.
 """

@@ -27,7 +27,7 @@ RETRIES = 5  # attempts to place a motion in a room
 
 @dataclass(frozen=True, kw_only=True)
 class GeneratedSequence:
-    """A sequence: joints at the middle of each frame, and its signal or what `paths.resynthesis` makes it from."""
+    """Joints at the middle of each frame, and the signal or what `propagation.resynthesis` makes it from."""
 
     spec: SequenceSpec
     joints_m: np.ndarray  # (frame, 22, 3) float32

@@ -22,7 +22,7 @@ def load_radar(name_or_path: str) -> RadarConfig:
 
     Args:
         name_or_path: A preset, a TI .cfg, an mmWave Studio .json or .lua, or the .json of a RadarConfig. Options may
-            follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`).
+            follow: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`io.radar_options`).
 
     Returns:
         The radar.

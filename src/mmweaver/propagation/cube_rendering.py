@@ -70,7 +70,7 @@ class StaticResponse(TensorRecord):
 
 
 class CubeRenderer:
-    """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them.
+    """The cube that paths leave in one radar, on the CPU; values as `signal.cube.radar_cube` gives them.
 
     `board`: whose antennas, range bias and first chirps it is recorded with; paths are given with its IF already.
     """

@@ -19,7 +19,7 @@ from mmweaver.signal.windows import noise_share
 
 @dataclass(frozen=True, kw_only=True)
 class PowerMaps(TensorRecord):
-    """Power in mW, as `dsp.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
+    """Power in mW, as `signal.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
 
     range_doppler: Tensor
     range_azimuth: Tensor

@@ -98,7 +98,7 @@ def process_recording(
         path: The recording, as in `read_recording`.
         radar: Its radar, as in `read_recording`.
         points: Detector: "cfar", or "firmware" as TI's demo would report it with the settings of the radar's .cfg.
-        static_removal: How static clutter is removed from the cube and its points, see `dsp.cube.remove_static`.
+        static_removal: How static clutter is removed from the cube and its points, see `signal.cube.remove_static`.
         board: The board whose errors are removed first: a board.json (`mmweaver calibrate`) or a Board.
         analyse: Whether to look for slow movement, vital signs, micro-Doppler and people.
         strict: Whether samples that do not fit the settings are refused (`recordings.plausibility`) rather than

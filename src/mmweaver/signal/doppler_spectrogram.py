@@ -46,7 +46,7 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
         window_loops: length of a window; by default the loops of a frame, at most 64.
 
     Raises:
-        InputError: for radars of fewer than four loops per frame that pause between frames (see `dsp.slow_time`).
+        InputError: for radars of fewer than four loops per frame that pause between frames (see `signal.slow_time`).
     """
     config = adc.config
     pause_s = config.frame_period_s - config.active_time_s
@@ -93,7 +93,7 @@ def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray,
 def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
     """The spectrogram of a cube, of the strongest range bin at each time and velocity; windows as `micro_doppler` has.
 
-    Clutter is taken away beforehand (`dsp.cube.remove_static`).
+    Clutter is taken away beforehand (`signal.cube.remove_static`).
     """
     width = min(cube.config.num_loops, MAX_WINDOW)
     power = cube_spectrogram(cube, width, max(1, width // OVERLAP)).max(axis=2)

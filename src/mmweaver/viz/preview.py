@@ -1,6 +1,6 @@
 """preview.png: one page of radar maps and points with, where known, the photo and the ground truth.
 
-All panels of power share one scale of decibels (`figures.power_scale`). What has no meaning for a signal is replaced: a
+All panels of power share one scale of decibels (`viz.power_scale`). What has no meaning for a signal is replaced: a
 single frame has profiles in place of strips over time, slow movement is shown over frames, and only arrays that resolve
 elevation have a map of it.
 """

@@ -1,7 +1,7 @@
 """Scatterers of several frames and the short factors that their echoes are products of, as NumPy arrays.
 
-`dsp.point_response.PointResponse` in the form that a fit needs hundreds of times: bins that lie one apart, factors of
-all frames at once, products frame by frame.
+`signal.point_response.PointResponse` in the form that a fit needs hundreds of times: bins that lie one apart, factors
+of all frames at once, products frame by frame.
 """
 
 import math
