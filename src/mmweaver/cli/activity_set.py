@@ -29,9 +29,14 @@ def run_activity_set(asked: "Options") -> int:
     if not asked.room:
         raise InputError("which room? give --room DIR with rgb.png and depth.png")
     builder = SetBuilder(
-        asked.out, activities, [weaver.open_room(place) for place in asked.room], weaver, options,
-        command=_command(), activities_text=read_text(asked.activities),
-    )  # fmt: skip
+        asked.out,
+        activities,
+        [weaver.open_room(place) for place in asked.room],
+        weaver,
+        options,
+        command=_command(),
+        activities_text=read_text(asked.activities),
+    )
     if asked.dry_run:
         cost = builder.cost()
         return asked.report(asdict(cost), cost.summary(1))
@@ -51,9 +56,13 @@ def _run_from_results(asked: "Options") -> int:
             raise InputError(f"--from-results takes sequences as they are; leave out --{name.replace('_', '-')}")
     check_output_folder(asked.out, overwrite=False, inputs=[asked.from_results])
     report = set_of_results(
-        asked.from_results, asked.out, split_by=asked.split, seed=asked.seed, command=_command(),
+        asked.from_results,
+        asked.out,
+        split_by=asked.split,
+        seed=asked.seed,
+        command=_command(),
         activities=None if asked.activities is None else read_activities(asked.activities),
-    )  # fmt: skip
+    )
     return _print_report(asked, report, f"{report['of']['order']['sequences']} sequences")
 
 

@@ -93,8 +93,9 @@ class General:
     )
     config: Path | None = option(
         f"read options from a file, such as the {REQUEST_FILE} of an earlier run; options of the command line go first",
-        "TOML", is_setting=False,
-    )  # fmt: skip
+        "TOML",
+        is_setting=False,
+    )
 
 
 class Parser(argparse.ArgumentParser):
@@ -237,8 +238,10 @@ def check_mode(asked: General, mode: str, uses: dict[str, str]) -> None:
         if one.name in others and one.name not in own and getattr(asked, one.name) != one.default:
             is_named = not one.metadata.get("positional")
             name = f"--{option_name(one)}" if is_named else one.metadata["metavar"]
-            raise InputError(f"{name} is for {' or '.join(key for key in uses if one.name in uses[key].split())},"
-                             f" not for {mode}; leave it out")  # fmt: skip
+            raise InputError(
+                f"{name} is for {' or '.join(key for key in uses if one.name in uses[key].split())},"
+                f" not for {mode}; leave it out"
+            )
 
 
 # options from a file ------------------------------------------------------------------------------------------------

@@ -43,19 +43,30 @@ class BatchSequence:
         from mmweaver.datasets.paired_sampling import heading_deg
 
         return {
-            "folder": self.folder.name, "text": self.text, "seed": self.seed, "draw": self.draw.index,
-            "at": list(self.draw.start_m), "heading_deg": heading_deg(self.draw), "subject": self.draw.subject,
-        }  # fmt: skip
+            "folder": self.folder.name,
+            "text": self.text,
+            "seed": self.seed,
+            "draw": self.draw.index,
+            "at": list(self.draw.start_m),
+            "heading_deg": heading_deg(self.draw),
+            "subject": self.draw.subject,
+        }
 
     def options(self) -> dict[str, Any]:
         """The options of `mmweaver generate` that make it alone."""
         from mmweaver.weaver.request import Heading
 
         return {
-            "text": [self.text], "texts": None, "per_class": None, "seed": self.seed, "seconds": None,
-            "at": [self.draw.start_m], "heading_rad": Heading(self.draw.heading_rad), "subject": [self.draw.subject],
+            "text": [self.text],
+            "texts": None,
+            "per_class": None,
+            "seed": self.seed,
+            "seconds": None,
+            "at": [self.draw.start_m],
+            "heading_rad": Heading(self.draw.heading_rad),
+            "subject": [self.draw.subject],
             "height_m": None if self.height_m is None else [self.height_m],
-        }  # fmt: skip
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,9 +257,13 @@ def _parsed(asked: "Options", weaver: "Weaver", texts: list[str], **length: Any)
 
 
 def _sequences(
-    asked: "Options", texts: list[str], requests: "dict[str, ParsedRequest]", room: "Room", out: Path,
+    asked: "Options",
+    texts: list[str],
+    requests: "dict[str, ParsedRequest]",
+    room: "Room",
+    out: Path,
     given: "GivenPlacing",
-) -> tuple[list[BatchSequence], list[dict[str, Any]]]:  # fmt: skip
+) -> tuple[list[BatchSequence], list[dict[str, Any]]]:
     """All sentences --per-class times, and those that the room has no place for; more of each continue fewer.
 
     Raises InputError where no place serves one of them.

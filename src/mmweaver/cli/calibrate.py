@@ -52,9 +52,15 @@ def run(asked: Options) -> int:
     if len(asked.target or ()) > 2:
         raise InputError("--target is RANGE or RANGE,DBSM")
     found = calibrate(
-        *asked.recordings, radar=asked.radar_name(), range_m=asked.range_m, range_bins=asked.range_bins,
-        body_z_m=asked.body_z_m, doing=asked.action, name=asked.out.stem, **asked.reading(),
+        *asked.recordings,
+        radar=asked.radar_name(),
+        range_m=asked.range_m,
+        range_bins=asked.range_bins,
+        body_z_m=asked.body_z_m,
+        doing=asked.action,
+        name=asked.out.stem,
+        **asked.reading(),
         target=None if asked.target is None else KnownTarget(*asked.target),
-    )  # fmt: skip
+    )
     found.board.save(asked.out)
     return asked.report(found.to_values(), found.text(), f"wrote {asked.out}")

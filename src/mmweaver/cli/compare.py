@@ -25,9 +25,7 @@ class Options(Samples, Written):
     points; ranked by effect size, with pictures on the same axes and decibels.
     """
 
-    GROUPS: ClassVar[dict[str, str]] = {
-        "radar": "raw samples, which do not bring their radar", "overwrite": "output"
-    }  # fmt: skip
+    GROUPS: ClassVar[dict[str, str]] = {"radar": "raw samples, which do not bring their radar", "overwrite": "output"}
 
     a: Path = option("the signal to compare with, such as a recording", "A", default=MISSING, positional=True)
     b: Path = option("the signal that is compared with it, such as a simulation", "B", default=MISSING, positional=True)
@@ -53,9 +51,13 @@ def run(asked: Options) -> int:
     if len(radars) > 2:
         raise InputError("--radar is that of A, and once more that of B")
     found = compare(
-        asked.a, asked.b, radar=radars[0], radar_b=radars[1] if radars[1:] else None, range_m=asked.range_m,
+        asked.a,
+        asked.b,
+        radar=radars[0],
+        radar_b=radars[1] if radars[1:] else None,
+        range_m=asked.range_m,
         **asked.reading(),
-    )  # fmt: skip
+    )
     written = [] if asked.out is None else found.save(asked.out, overwrite=asked.overwrite)
     files = [f"\nwrote {', '.join(map(str, written))}"] if written else []
     return asked.report(found.to_values(), found.text(), *files)

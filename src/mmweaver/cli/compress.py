@@ -38,16 +38,20 @@ class Options(Written, Samples, Ranges):
     file: Path = option(
         "radar.npz or its folder, adc_data.bin of a DCA1000, raw ADC samples as .npy, a HuPR, mmMesh or RF-Genesis"
         " array, or a capture folder of mmwave-capture-std",
-        "FILE|DIR", default=MISSING, positional=True,
-    )  # fmt: skip
+        "FILE|DIR",
+        default=MISSING,
+        positional=True,
+    )
     out: Any = option("the .mmw or .mmwl file to write", "FILE", short="-o", kind=Path)
     bytes: int | None = option(
         "size of the file at most; less where the cube is exact in fewer", "N", group="size and quality"
     )
     quality: float | None = option(
         "signal-to-error ratio in the cells with signal; or lossless: every bit of an adc_data.bin, or of the samples"
-        " in a .pcap; decompress gives the same adc_data.bin", "DB|lossless", kind=quality,
-    )  # fmt: skip
+        " in a .pcap; decompress gives the same adc_data.bin",
+        "DB|lossless",
+        kind=quality,
+    )
     preset: Literal["full", "fast"] = option("fast: without the fit of scatterers", default="full")
     append: bool = option(
         "add the frames to those of the .mmw file; --bytes are those added", default=False, group="output"
@@ -87,17 +91,26 @@ def _compress_cube(asked: Options) -> int:
         before = asked.out.stat().st_size if is_appended else 0
         if is_appended or num_values > PIECE_VALUES:
             errors = compress_recording(
-                pieces, asked.out, num_bytes=asked.bytes, quality_db=asked.quality, effort=asked.preset,
-                append=is_appended, progress=bar,
-            )  # fmt: skip
+                pieces,
+                asked.out,
+                num_bytes=asked.bytes,
+                quality_db=asked.quality,
+                effort=asked.preset,
+                append=is_appended,
+                progress=bar,
+            )
         else:
             errors = _compress_at_once(asked, pieces.cube(range(frames)), bar)
     size = asked.out.stat().st_size - before
     summary = {
-        "out": str(asked.out), "bytes": size, "cube_bytes": 8 * num_values,
-        "ratio": round(8 * num_values / size, 1), "frames": frames, "seconds": round(time.monotonic() - start, 2),
+        "out": str(asked.out),
+        "bytes": size,
+        "cube_bytes": 8 * num_values,
+        "ratio": round(8 * num_values / size, 1),
+        "frames": frames,
+        "seconds": round(time.monotonic() - start, 2),
         **errors,
-    }  # fmt: skip
+    }
     return asked.report(
         summary,
         f"{'added to' if is_appended else 'wrote'} {asked.out}: {size:,} bytes for {frames} frames,"
@@ -127,9 +140,12 @@ def _compress_at_once(asked: Options, cube: Any, bar: Any) -> dict[str, float]:
     from mmweaver.core.atomic_files import atomic_file
 
     data = compress_cube(
-        cube, num_bytes=asked.bytes, quality_db=asked.quality,
-        effort=asked.preset, progress=bar,
-    )  # fmt: skip
+        cube,
+        num_bytes=asked.bytes,
+        quality_db=asked.quality,
+        effort=asked.preset,
+        progress=bar,
+    )
     bar("check")
     with atomic_file(asked.out) as temporary:
         temporary.write_bytes(data)
@@ -163,9 +179,13 @@ def _compress_samples(asked: Options) -> int:
         )
     before = check_regular(asked.file)
     summary = {
-        "out": str(asked.out), "bytes": size, "raw_bytes": before, "ratio": round(before / size, 2),
-        "max_error_counts": 0, "seconds": round(time.monotonic() - start, 2),
-    }  # fmt: skip
+        "out": str(asked.out),
+        "bytes": size,
+        "raw_bytes": before,
+        "ratio": round(before / size, 2),
+        "max_error_counts": 0,
+        "seconds": round(time.monotonic() - start, 2),
+    }
     kept = "every bit kept"
     if asked.file.suffix != ".bin":
         kept += " of the samples (zeros for lost packets), without the packets"

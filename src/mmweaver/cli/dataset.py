@@ -31,19 +31,20 @@ class LabelledSet:
     """Options that need --activities or --from-results."""
 
     activities: Path | None = option(
-        'a file with a table [activities] of lines such as: waving = ["a person waves with the left hand"]', "TOML",
+        'a file with a table [activities] of lines such as: waving = ["a person waves with the left hand"]',
+        "TOML",
         group="labelled activities in your own rooms",
-    )  # fmt: skip
+    )
     room: list[Path] | None = option(
         "a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders), views.json, a scan, a"
         " capture folder, a ROS bag or a mesh; once more for each further room",
         "DIR",
-    )  # fmt: skip
+    )
     from_results: Path | None = option(
         "instead of making sequences: the result folders in DIR, as mmweaver generate --texts writes them, become one"
         " set; without --activities each sentence is a label",
         "DIR",
-    )  # fmt: skip
+    )
     per_class: int | None = option("sequences of each label (default 20)", "N")
     seconds: float | None = option("length of every sequence (default 3)", "S")
     subjects: int | None = option("different people (default 10)", "N")
@@ -69,7 +70,7 @@ class RoomSet:
         "store prepared rooms, motions and visibility, but no signals: mmweaver train makes these as it goes, with new"
         " micro-motion each time, without a ray caster, on a GPU if there is one",
         default=False,
-    )  # fmt: skip
+    )
     workers: int = option("parallel processes", "N", default=1, group="running", is_setting=False)
     ray_address: str | None = option("run on this Ray cluster; 'local' starts one", "ADDRESS", is_setting=False)
     repair: bool = option(
@@ -134,11 +135,16 @@ def _run_rooms(asked: Options) -> int:
     config = asked.radar_config()
     board = asked.board or ("ideal" if asked.geometry_only else "typical")
     plan = DatasetPlan(
-        kinds=tuple(kind.strip() for kind in asked.rooms or KINDS), lightings=tuple(LIGHTINGS),
-        num_layouts=asked.layouts, sequences_a_room=asked.sequences, num_frames=asked.frames, radar=config.name,
-        seed=asked.seed, geometry_only=asked.geometry_only,
+        kinds=tuple(kind.strip() for kind in asked.rooms or KINDS),
+        lightings=tuple(LIGHTINGS),
+        num_layouts=asked.layouts,
+        sequences_a_room=asked.sequences,
+        num_frames=asked.frames,
+        radar=config.name,
+        seed=asked.seed,
+        geometry_only=asked.geometry_only,
         board=str(Path(board).absolute()) if Path(board).is_file() else board,
-    )  # fmt: skip
+    )
     cost = estimate_cost(plan, config, out)
     if asked.dry_run:
         return asked.report(asdict(cost), cost.summary(workers))
@@ -151,18 +157,25 @@ def _run_rooms(asked: Options) -> int:
     try:
         with tqdm(total=total, unit="room", disable=asked.quiet or None) as bar:
             reports = generate_dataset(
-                out, plan, config, workers=workers, ray_address=asked.ray_address, repair=asked.repair,
+                out,
+                plan,
+                config,
+                workers=workers,
+                ray_address=asked.ray_address,
+                repair=asked.repair,
                 listener=lambda report: bar.update(),
-            )  # fmt: skip
+            )
     except KeyboardInterrupt:
         left = estimate_cost(plan, config, out).rooms
         kept = f"{total - left} of {total} rooms are finished in {out}; the same command makes the rest"
         raise KeyboardInterrupt(kept if out.exists() else "") from None
     write_request(out, asked)
     summary = {
-        "out": str(out), "rooms_made": len(reports), "rooms_already_there": total - len(reports),
+        "out": str(out),
+        "rooms_made": len(reports),
+        "rooms_already_there": total - len(reports),
         "sequences_made": sum(report.num_sequences for report in reports),
         "sequences_refused": sum(len(report.refused) for report in reports),
-    }  # fmt: skip
+    }
     rooms = f"{len(reports)} new rooms ({total - len(reports)} were there)"
     return asked.report(summary, f"{summary['sequences_made']} sequences in {rooms} in {out}")

@@ -52,10 +52,14 @@ def _activities(asked: Options) -> dict[str, Any]:
     from mmweaver.recognition.recogniser import META_FILE, load_recogniser
     from mmweaver.recognition.scoring import score_recordings
 
-    folder = asked.weights or repository_file(
-        f"{SHIPPED_MODEL}/{META_FILE}", f"the recogniser of {SHIPPED_TASK}",
-        "give a model of mmweaver recognise train by --weights",
-    ).parent  # fmt: skip
+    folder = (
+        asked.weights
+        or repository_file(
+            f"{SHIPPED_MODEL}/{META_FILE}",
+            f"the recogniser of {SHIPPED_TASK}",
+            "give a model of mmweaver recognise train by --weights",
+        ).parent
+    )
     model = load_recogniser(folder)
     made = {name: model.meta.get(name) for name in ("task_file", "generated_windows", "with_disturbed_copies")}
     scores = score_recordings(model, read_task_recordings(asked.recordings, model.settings))
@@ -95,5 +99,6 @@ def pose_lines(scores: dict[str, Any]) -> list[str]:
 
 
 TASKS: dict[str, tuple[Callable[[Options], dict[str, Any]], Callable[[dict[str, Any]], list[str]]]] = {
-    "zero-shot-activity": (_activities, lines), "zero-shot-pose": (_poses, pose_lines),
-}  # fmt: skip
+    "zero-shot-activity": (_activities, lines),
+    "zero-shot-pose": (_poses, pose_lines),
+}

@@ -44,8 +44,14 @@ EXAMPLES = """examples:
 """
 _MESH_SETTINGS = {"eye": tuple[float, float, float], "look": float, "unit": str, "up": str, "materials": Path}
 _MOTION_SETTINGS = {
-    "fps": float, "unit": str, "up": str, "start": float, "clip": str, "body": Path, "for": str,
-}  # fmt: skip
+    "fps": float,
+    "unit": str,
+    "up": str,
+    "start": float,
+    "clip": str,
+    "body": Path,
+    "for": str,
+}
 
 
 @options
@@ -58,42 +64,46 @@ class RoomInput:
         "its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres; or a metric depth model that"
         " estimates it: auto (downloaded once), a folder or a Hub name",
         "FILE|auto|MODEL",
-    )  # fmt: skip
+    )
     camera: Path | None = option("fx, fy, cx, cy in pixels (default: a RealSense D455's)", "JSON")
     room: Path | None = option(
         "instead of --rgb: a folder with rgb.png, depth.png and camera.json; views.json, several photos with depth and"
         " roughly where each was taken (docs/photos.md); a scan or capture (mmwave-capture-std, Stray Scanner,"
         " Record3D, Polycam raw data, ScanNet, TUM RGB-D), a ROS bag (RealSense), or a mesh (.glb, .ply, .obj)",
         "PATH",
-    )  # fmt: skip
+    )
     background: Path | None = option(
         "a recording of this room by your radar with nobody present, a folder of mmweaver process or a capture folder:"
         " its static clutter is used as it is, and the person is added",
         "DIR|NPZ",
-    )  # fmt: skip
+    )
     classes: Source | None = option(
         "what each pixel shows, from which materials follow: a picture (COCO-Stuff's numbers), or a model that finds"
         " it: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or Hub name",
-        "PNG|builtin|MODEL", rare=True,
-    )  # fmt: skip
+        "PNG|builtin|MODEL",
+        rare=True,
+    )
     landmark: list[tuple[str, Place]] | None = option(
         "where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and ahead"
         " of the radar, for example door=0.9,2.8",
-        "KIND=X,Y", rare=True,
-    )  # fmt: skip
+        "KIND=X,Y",
+        rare=True,
+    )
     photo: int | None = option("which photo of a scan or capture (default 0)", "N", rare=True)
     extra_views: str | None = option(
         "further photos of a scan, joined to --photo by its poses, so that walls beside and behind the radar are known:"
         " numbers, or auto for up to five that show the most",
-        "N,N..|auto", rare=True,
-    )  # fmt: skip
+        "N,N..|auto",
+        rare=True,
+    )
     mesh_set: list[Setting] | None = option(
         "of a mesh: eye=X,Y,Z, the radar's place in the mesh's own axes and unit (default: near a wall, with the room"
         " ahead); look=DEG, degrees from the mesh's x axis, counterclockwise from above (default: most room); unit=m,"
         " cm, mm, inch or foot (default: what fits a room); up=y or z (default: y for .glb, else by the floor);"
         ' materials=JSON, what its names are: {"Material.003": "couch", "pane": "glass"}',
-        "KEY=VALUE", rare=True,
-    )  # fmt: skip
+        "KEY=VALUE",
+        rare=True,
+    )
 
     def read_room(self, weaver: "Weaver") -> "Room":
         """The room, reconstructed. Raises InputError for options that another kind of room has."""
@@ -144,30 +154,34 @@ class MotionInput:
     motion_file: Path | None = option(
         "a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
         " joints), .npy (22 joints, HumanML3D)",
-        "FILE", name="motion", group="motion",
-    )  # fmt: skip
+        "FILE",
+        name="motion",
+        group="motion",
+    )
     motion_model: Source | None = option(
         "a motion model for a --text that the built-in library does not know: MotionGPT (a checkpoint's file, folder or"
         " name on the Hub, or 'small'; needs the extra 'pretrained'), a plug-in's name, or module:attribute",
-        "PATH|NAME", rare=True,
-    )  # fmt: skip
+        "PATH|NAME",
+        rare=True,
+    )
     motion_set: list[Setting] | None = option(
         "of a recorded motion: fps=N, where the file does not say; unit=m, cm, mm, inch or metres in one unit (default:"
         " by body size); up=y, z, ... (default: where the head is); start=S, the second at which it begins; clip=NAME,"
         " where a file holds several; body=NPZ, your own SMPL model, for bones in the recorded shape; of a motion"
         " model: for=all, known sentences, too",
-        "KEY=VALUE", rare=True,
-    )  # fmt: skip
+        "KEY=VALUE",
+        rare=True,
+    )
     texts: Path | None = option(
         "many sequences, one sentence per line of this file, each in its own folder under --out; the room is read once,"
         " and finished sequences are kept",
         "FILE",
-    )  # fmt: skip
+    )
     stream: bool = option(
         "one recording of one person who does what every --text, line of --texts or of standard input (--texts -) says,"
         " without a break, written part by part for as long as sentences come",
         default=False,
-    )  # fmt: skip
+    )
     per_class: int | None = option("with --texts: N of each sentence (default 1), at the same places", "N", rare=True)
 
 
@@ -178,8 +192,10 @@ class Advanced(Layout):
     method: str = option(
         "which paths make the signal: weaver, those of the trained network (also called auto), or physics, those of the"
         " ray tracer, at about five times the cost",
-        "NAME", default="auto", group="advanced",
-    )  # fmt: skip
+        "NAME",
+        default="auto",
+        group="advanced",
+    )
     weights: Source | None = option(
         "the network's weights: a file or folder of mmweaver train, or a name on the Hub", "FILE|DIR|HUB"
     )
@@ -373,7 +389,5 @@ def _motion_of_model(asked: Options, request: Request, is_of_all: bool, weaver: 
         seconds = request.frames * (1 / request.fps if request.fps else weaver.radar.frame_period_s)
     path_m = tuple(request.path_m or ())
     start_m: Any = path_m[0] if path_m else request.at
-    task = MotionTask(
-        sentence=request.text, start_m=start_m, path_m=path_m, seconds=seconds, seed=request.seed
-    )  # fmt: skip
+    task = MotionTask(sentence=request.text, start_m=start_m, path_m=path_m, seconds=seconds, seed=request.seed)
     return clip_of(load_motion_model(asked.motion_model), task)

@@ -45,10 +45,14 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
 
     name = asked.radar_name(DEFAULT_RADAR) or ""
     return Weaver(
-        method=asked.method, radar=radar, listener=listener, points=asked.points, weights=asked.weights,
+        method=asked.method,
+        radar=radar,
+        listener=listener,
+        points=asked.points,
+        weights=asked.weights,
         firmware=load_firmware(asked.radar or DEFAULT_RADAR) if asked.points == "firmware" else None,
         calibration=read_ti_calibration(name),
-    )  # fmt: skip
+    )
 
 
 def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") -> "Room":

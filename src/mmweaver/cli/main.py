@@ -115,9 +115,12 @@ def parser_of(*names: str, rare: bool = False) -> "tuple[Parser, dict[str, tuple
             continue
         module = import_module(f"mmweaver.cli.{name}")
         command = subparsers.add_parser(
-            name, help=text, epilog=module.EXAMPLES, usage=getattr(module, "USAGE", None),
+            name,
+            help=text,
+            epilog=module.EXAMPLES,
+            usage=getattr(module, "USAGE", None),
             description=" ".join((module.Options.__doc__ or "").split()),
-        )  # fmt: skip
+        )
         add_options(command, module.Options, rare=rare)
         commands[name] = command, module.Options
     return parser, commands

@@ -28,8 +28,9 @@ class Options(Printed):
     subject: int | None = option("the person, 0 to 9999 (default: by the seed)", "N")
     out: list[Path] | None = option(
         "write 22 joints at 120 Hz, as pose.npz holds them, or draw the body at ten instants (.png, .pdf, .svg); once"
-        " more for both", "NPZ|PNG",
-    )  # fmt: skip
+        " more for both",
+        "NPZ|PNG",
+    )
 
 
 def run(asked: Options) -> int:
@@ -42,9 +43,12 @@ def run(asked: Options) -> int:
     if says_nobody(asked.text):
         raise InputError(f"{asked.text[:60]!r} is an empty place, which has no motion; say what a person does")
     motion = act_out(
-        asked.text, duration_s=asked.seconds, seed=asked.seed, height_m=asked.height,
+        asked.text,
+        duration_s=asked.seconds,
+        seed=asked.seed,
+        height_m=asked.height,
         subject=asked.subject,
-    )  # fmt: skip
+    )
     _write_files(asked, motion.pose)
     steps = [
         {
@@ -57,10 +61,15 @@ def run(asked: Options) -> int:
         for step in motion.plan.steps
     ]
     facts = {
-        "text": asked.text, "seconds": motion.plan.duration_s, "height_m": round(motion.pose.height_m, 3),
-        "subject": motion.pose.subject, "steps": steps, "clauses": [vars(clause) for clause in motion.clauses],
-        "assumptions": motion.assumptions, "files": [str(file) for file in asked.out or ()],
-    }  # fmt: skip
+        "text": asked.text,
+        "seconds": motion.plan.duration_s,
+        "height_m": round(motion.pose.height_m, 3),
+        "subject": motion.pose.subject,
+        "steps": steps,
+        "clauses": [vars(clause) for clause in motion.clauses],
+        "assumptions": motion.assumptions,
+        "files": [str(file) for file in asked.out or ()],
+    }
     lines = [f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['shown']}" for step in steps]
     return asked.report(facts, *lines, *(f"  assumed: {sentence}" for sentence in motion.assumptions))
 

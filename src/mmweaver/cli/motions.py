@@ -25,15 +25,24 @@ def run(asked: Options) -> int:
     activities = sorted(BY_KEY.values(), key=lambda one: one.hands)
     rows: list[dict[str, Any]] = [
         {
-            "activity": one.key, "name": one.name, "example": one.example, "part": "hands" if one.hands else "body",
-            "shortest_s": one.least_s, "natural_s": one.natural_s, "can_be_counted": one.counted_s is not None,
+            "activity": one.key,
+            "name": one.name,
+            "example": one.example,
+            "part": "hands" if one.hands else "body",
+            "shortest_s": one.least_s,
+            "natural_s": one.natural_s,
+            "can_be_counted": one.counted_s is not None,
         }
         for one in activities
-    ]  # fmt: skip
+    ]
     lines: dict[str, list[str]] = {"body": [], "hands": []}
     for row in rows:
         lines[row["part"]].append(f"  {row['name']:24s} {row['natural_s']:3.1f} s   {row['example']}")
     return asked.report(
-        rows, "the body:", *lines["body"], "hands and head, over any of these:", *lines["hands"],
+        rows,
+        "the body:",
+        *lines["body"],
+        "hands and head, over any of these:",
+        *lines["hands"],
         "joined by 'and', 'then', 'while', with sides, directions, speeds and counts: see docs/motion.md",
-    )  # fmt: skip
+    )

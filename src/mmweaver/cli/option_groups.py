@@ -47,9 +47,10 @@ class Ranges:
     """Which ranges are kept, or looked at."""
 
     range_m: tuple[float, float] | None = option(
-        "metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB per frame)", "NEAR,FAR",
+        "metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB per frame)",
+        "NEAR,FAR",
         name="range",
-    )  # fmt: skip
+    )
     range_bins: tuple[int, int] | None = option("the same in range bins", "FIRST,LAST", rare=True)
 
 
@@ -61,7 +62,7 @@ class RadarSettings(General):
         "what the radar's file leaves open: subframe=N of a .cfg or mmWave Studio file, antennas=NAME|JSON (isk, boost,"
         " boost1642, aop, ods, evm2944, or a JSON with tx and rx in half wavelengths), lanes=2|4 of a DCA1000's .bin",
         "KEY=VALUE",
-    )  # fmt: skip
+    )
 
     def radar_name(self, default: str | None = None) -> str | None:
         """The radar with its settings behind it, as `load_radar` reads them. Raises InputError."""
@@ -92,9 +93,7 @@ class Layout:
         "order of I and Q in the .bin: I I Q Q, Q Q I I or I Q I Q (default: as the .cfg or mmWave Studio file says,"
         " else iq)"
     )
-    tx_order: tuple[int, ...] | None = option(
-        "order in which the transmitters fire (default: the radar's)", "N,N,N"
-    )  # fmt: skip
+    tx_order: tuple[int, ...] | None = option("order in which the transmitters fire (default: the radar's)", "N,N,N")
 
 
 @options
@@ -103,16 +102,19 @@ class Samples(RadarChoice, Layout):
 
     layout: str | None = option(
         "what a .npy holds: its axes in their order, such as frame,loop,tx,rx,sample, or whose it is: hupr (a frame or"
-        " a folder of them), mmmesh, rf_genesis, cubelearn", "AXES|NAME",
-    )  # fmt: skip
+        " a folder of them), mmmesh, rf_genesis, cubelearn",
+        "AXES|NAME",
+    )
 
     def reading(self) -> dict[str, Any]:
         """The arguments of the readers of recordings that say how samples lie."""
         is_axes = self.layout is not None and "," in self.layout
         return {
-            "layout": None if is_axes else self.layout, "axes": self.layout if is_axes else None,
-            "iq_order": self.iq_order, "tx_order": self.tx_order,
-        }  # fmt: skip
+            "layout": None if is_axes else self.layout,
+            "axes": self.layout if is_axes else None,
+            "iq_order": self.iq_order,
+            "tx_order": self.tx_order,
+        }
 
 
 @options
@@ -124,7 +126,7 @@ class BoardChoice:
         " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
         " default is the recording's own",
         "typical|ideal|FILE",
-    )  # fmt: skip
+    )
 
 
 @options
@@ -134,5 +136,6 @@ class PointChoice:
     points: str = option(
         "point cloud: cfar, ours, or firmware, as TI's out-of-box demo would report it with the cfarCfg, peakGrouping,"
         " clutterRemoval and multiObjBeamForming of the radar's .cfg",
-        "cfar|firmware", default="cfar",
-    )  # fmt: skip
+        "cfar|firmware",
+        default="cfar",
+    )

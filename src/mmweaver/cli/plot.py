@@ -28,13 +28,16 @@ class Options(Samples):
     GROUPS: ClassVar[dict[str, str]] = {"radar": "raw samples, which do not bring their radar"}
 
     signal: Path = option(
-        "a folder of mmweaver generate or process, a .mmw file, a recording, or a labelled set", "SIGNAL",
-        default=MISSING, positional=True,
-    )  # fmt: skip
+        "a folder of mmweaver generate or process, a .mmw file, a recording, or a labelled set",
+        "SIGNAL",
+        default=MISSING,
+        positional=True,
+    )
     feature: tuple[str, ...] | None = option(
         "rd (range-Doppler), ra (range-azimuth), re (range-elevation), drai, micro_doppler, points (default: all that"
-        " the antennas resolve)", "NAME,...",
-    )  # fmt: skip
+        " the antennas resolve)",
+        "NAME,...",
+    )
     frames: tuple[int, ...] | None = option("at most 8 frames, from 0 on (default: four of them)", "N,N,...")
     remove_static: Literal["mean_chirp"] | None = option("rd, ra and re without each frame's mean chirp")
     sequence: int | None = option("which sequence of a labelled set (default 0)", "N")

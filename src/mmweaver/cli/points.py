@@ -39,9 +39,12 @@ def run(asked: Options) -> int:
         write_points_npz(temporary, cloud)
     frames = int(cloud.frame.max()) + 1 if len(cloud.frame) else 0
     summary = {
-        "out": str(asked.out), "kind": asked.layout or points_kind(asked.file), "points": len(cloud.frame),
-        "frames": frames, "with_points": len(np.unique(cloud.frame)),
-    }  # fmt: skip
+        "out": str(asked.out),
+        "kind": asked.layout or points_kind(asked.file),
+        "points": len(cloud.frame),
+        "frames": frames,
+        "with_points": len(np.unique(cloud.frame)),
+    }
     return asked.report(
         summary,
         f"wrote {asked.out}: {summary['points']:,} points in {frames} frames ({summary['kind']}); x {_span(cloud.x_m)},"

@@ -43,9 +43,11 @@ def run(asked: Options) -> int:
     draw_pose_strips([(title, pose.joints_m, None)], asked.out / files[1], frame_rate_hz=rate_hz)
     seen = len(set(recording.cloud.frame.tolist()))
     summary = {
-        "out": str(asked.out), "frames": recording.num_frames, "frames_with_points": seen,
+        "out": str(asked.out),
+        "frames": recording.num_frames,
+        "frames_with_points": seen,
         "seconds": recording.num_frames / rate_hz,
-    }  # fmt: skip
+    }
     guessed = recording.num_frames - seen
     note = f"; {guessed} frames have no points, their poses are guessed" if guessed else ""
     text = f"wrote {asked.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s{note}"

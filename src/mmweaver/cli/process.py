@@ -29,8 +29,9 @@ class Options(Samples, Ranges, PointChoice, Written):
         "adc_data.bin of a DCA1000, its packets as .pcap or .pcapng, raw ADC samples as .npy, radar.npz, a HuPR,"
         " mmMesh, RF-Genesis or CubeLearn array, or a capture folder of mmwave-capture-std (radar.cfg, dca.pcap), which"
         " brings its own radar",
-        "FILE|DIR", positional=True,
-    )  # fmt: skip
+        "FILE|DIR",
+        positional=True,
+    )
     out: Path = option("folder for the results", "DIR", default=MISSING, is_setting=False)
     board: Source | None = option(
         "board.json of the board that made it (mmweaver calibrate), whose errors are taken away", "FILE"
@@ -59,10 +60,17 @@ def run(asked: Options) -> int:
         from mmweaver.recordings.processing import process_recording
 
         recording = process_recording(
-            asked.file, asked.radar_name(), range_m=asked.range_m, range_bins=asked.range_bins, points=asked.points,
-            static_removal=asked.remove_static or "none", board=asked.board, analyse=not asked.no_analysis,
-            stages=Stages(bar), **asked.reading(),
-        )  # fmt: skip
+            asked.file,
+            asked.radar_name(),
+            range_m=asked.range_m,
+            range_bins=asked.range_bins,
+            points=asked.points,
+            static_removal=asked.remove_static or "none",
+            board=asked.board,
+            analyse=not asked.no_analysis,
+            stages=Stages(bar),
+            **asked.reading(),
+        )
         written = {REQUEST_FILE: request_toml(asked)}
         meta = recording.save(asked.out, overwrite=asked.overwrite, extra=written, pictures=not asked.no_pictures)
     return asked.report(machine_summary(asked.out, meta), *summary_lines(asked.out, meta, verbose=asked.verbose))

@@ -45,12 +45,16 @@ def _presets(*, as_json: bool) -> str:
     head = ("preset", "GHz", "antennas", "range bin", "to", "velocity bin", "up to")
     rows = [
         (
-            name, f"{config.centre_frequency_hz / 1e9:.1f}", f"{config.num_tx} x {config.num_rx}",
-            f"{config.range_resolution_m * 100:.1f} cm", f"{config.max_range_m:.1f} m",
-            f"{config.velocity_resolution_mps:.3f} m/s", f"{config.max_velocity_mps:.1f} m/s",
+            name,
+            f"{config.centre_frequency_hz / 1e9:.1f}",
+            f"{config.num_tx} x {config.num_rx}",
+            f"{config.range_resolution_m * 100:.1f} cm",
+            f"{config.max_range_m:.1f} m",
+            f"{config.velocity_resolution_mps:.3f} m/s",
+            f"{config.max_velocity_mps:.1f} m/s",
         )
         for name, config in PRESETS.items()
-    ]  # fmt: skip
+    ]
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in (head, *rows))
     return "\n".join(line.rstrip() for line in lines)

@@ -34,7 +34,7 @@ class Options(Printed):
     place: Path = option(
         "train: the task; else the trained folder", "TASK.toml|MODEL", default=MISSING, positional=True
     )
-    out: Any = option("train: folder of the recogniser; the same command resumes it", "DIR", kind=Path)  # fmt: skip
+    out: Any = option("train: folder of the recogniser; the same command resumes it", "DIR", kind=Path)
     sequences: int | None = option(
         "people that perform each activity (default 40, of gestures that are done once 100; 8 are a first look)", "N"
     )

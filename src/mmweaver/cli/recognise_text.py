@@ -35,8 +35,10 @@ def confused_lines(labels: Sequence[str], confusion: list[list[int]]) -> list[st
     """The labels that are mistaken most often, each with what for; those of fewer than a tenth of the windows not."""
     shares = [
         (row[other] / max(sum(row), 1), label, labels[other])
-        for label, row in zip(labels, confusion, strict=True) for other in range(len(labels)) if labels[other] != label
-    ]  # fmt: skip
+        for label, row in zip(labels, confusion, strict=True)
+        for other in range(len(labels))
+        if labels[other] != label
+    ]
     worst = [one for one in sorted(shares, reverse=True) if one[0] >= LEAST_CONFUSED][:MOST_LISTED]
     if not worst:
         return []

@@ -59,8 +59,6 @@ def _record_empty_room(folder: Path) -> None:
     from mmweaver.weaver.front_door import Weaver
 
     weaver = Weaver("physics", radar=folder / RADAR)
-    found = weaver.generate(
-        weaver.sample_room(), "nobody", seconds=RECORDED_S, seed=SEED, keep_adc=True, board=BOARD
-    )  # fmt: skip
+    found = weaver.generate(weaver.sample_room(), "nobody", seconds=RECORDED_S, seed=SEED, keep_adc=True, board=BOARD)
     assert found.adc is not None
     write_bin(folder / RECORDING, found.adc, counts_per_unit=found.adc.scale / found.adc.config.adc_count_sqrt_mw)

@@ -14,9 +14,13 @@ PART_FRAMES = 20  # what a kill may lose
 OF_SENTENCE = ("text", "refused", "plan", "clauses")
 STANDARD_INPUT = "-"
 NOT_OF_STREAMS = {
-    "motion_file": "motion", "motion_model": "motion-model", "path_m": "path", "seconds": "seconds",
-    "radar_poses": "radar-pose", "per_class": "per-class",
-}  # fmt: skip
+    "motion_file": "motion",
+    "motion_model": "motion-model",
+    "path_m": "path",
+    "seconds": "seconds",
+    "radar_poses": "radar-pose",
+    "per_class": "per-class",
+}
 
 
 def run_stream(asked: "Options", out: Path) -> int:
@@ -45,9 +49,16 @@ def run_stream(asked: "Options", out: Path) -> int:
     folder: StreamFolder | None = None
     interrupted = False
     chunks = weaver.stream(
-        room, _sentences(asked), seed=asked.seed, fps=asked.fps, keep_adc=asked.keep_adc, board=asked.board_name(),
-        chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit), heading_rad=asked.heading_rad, **person,
-    )  # fmt: skip
+        room,
+        _sentences(asked),
+        seed=asked.seed,
+        fps=asked.fps,
+        keep_adc=asked.keep_adc,
+        board=asked.board_name(),
+        chunk_frames=PART_FRAMES if limit is None else min(PART_FRAMES, limit),
+        heading_rad=asked.heading_rad,
+        **person,
+    )
     try:
         for chunk in chunks:
             if folder is None:

@@ -25,8 +25,9 @@ class Options(General):
     paths: list[Path] | None = option(
         "to watch and compare with: result folders, streams, captures, .dat, folders with a .bin and its .cfg; or a"
         " folder of mmweaver recognise train, whose labels Live shows",
-        "PATH", positional=True,
-    )  # fmt: skip
+        "PATH",
+        positional=True,
+    )
     room: list[Path] | None = option(
         "a folder with rgb.png, depth.png and camera.json; once more for each further room", "DIR"
     )
@@ -50,7 +51,13 @@ def run(asked: Options) -> int:
     recognisers = [path for path in paths if (path / TREES_FILE).is_file()]
     recordings = [path for path in paths if path not in recognisers]
     serve(
-        asked.room or [], recordings, recognisers, host=asked.host, port=asked.port,
-        workers=asked.workers, announce=partial(print, flush=True), open_browser=not asked.no_browser,
-    )  # fmt: skip
+        asked.room or [],
+        recordings,
+        recognisers,
+        host=asked.host,
+        port=asked.port,
+        workers=asked.workers,
+        announce=partial(print, flush=True),
+        open_browser=not asked.no_browser,
+    )
     return 0

@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.jsonl", "README.md", REQUEST_FILE)
 # options of some recipes; fine-tuning is recipe weaver on recordings
 USES = {
-    "weaver": "data start encoder", "activity": "data start", "pose": "task sequences",
+    "weaver": "data start encoder",
+    "activity": "data start",
+    "pose": "task sequences",
     "fine-tuning": "recordings start rgb depth camera",
-}  # fmt: skip
+}
 NEEDS = {"weaver": "data", "activity": "data", "pose": "task", "fine-tuning": "start"}
 MAX_LEARNING_RATE = 1.0  # far above what Adam learns with
 EXAMPLES = """examples:
@@ -46,8 +48,9 @@ class Options(Printed):
 
     recipe: Literal["weaver", "activity", "pose"] = option(
         "what is trained: the network; a recogniser of the activities of the data; or poses from points",
-        default=MISSING, positional=True,
-    )  # fmt: skip
+        default=MISSING,
+        positional=True,
+    )
     task: Any = option("of recipe pose: docs/pose.md", "TASK.toml", positional=True, kind=Path)
     data: Any = option(
         "a data set of mmweaver dataset; for recipe activity also a labelled set of your own room", "DIR", kind=Path
@@ -59,8 +62,12 @@ class Options(Printed):
     recordings: Any = option(
         "folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the joints"
         " are known, else only the static room is tuned; the last one is held out for validation",
-        "DIR", nargs="+", group="your own recordings instead of --data (needs --weights)", kind=Path, many=True,
-    )  # fmt: skip
+        "DIR",
+        nargs="+",
+        group="your own recordings instead of --data (needs --weights)",
+        kind=Path,
+        many=True,
+    )
     rgb: Path | None = option("photo of the room, where the folders hold none", "PNG")
     depth: Path | None = option("its depth", "FILE")
     camera: Path | None = option("its fx, fy, cx, cy", "JSON")
@@ -197,10 +204,11 @@ def _train_pose(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[
     with _listening(asked, place, training.recipe.steps, is_quiet) as how:
         files, trainers = train_pose_of_task(asked.task, asked.out, training, **how)
     return {
-        "weights": [str(file) for file in files], "steps": trainers[0].step,
+        "weights": [str(file) for file in files],
+        "steps": trainers[0].step,
         "validation_loss": sum(one.best.value for one in trainers) / len(trainers),
         "evaluated_on": "generated people held out",
-    }  # fmt: skip
+    }
 
 
 def _tune(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
@@ -217,10 +225,13 @@ def _tune(asked: Options, place: "ComputeDevice", is_quiet: bool) -> dict[str, A
     file = write_tuned(asked.out, tuned, start=start, licence_of_start=card.licence) if place.is_first else None
     held_out = tuned.held_out
     return {
-        **_summary(file, tuned.trainer), "loss_before": tuned.loss_before, "fine-tuning": len(tuned.rooms),
-        "with_joints": sum(room.has_joints for room in tuned.rooms), "gain": tuned.gain,
+        **_summary(file, tuned.trainer),
+        "loss_before": tuned.loss_before,
+        "fine-tuning": len(tuned.rooms),
+        "with_joints": sum(room.has_joints for room in tuned.rooms),
+        "gain": tuned.gain,
         "evaluated_on": "the captures themselves" if held_out is None else f"{held_out.folder.name}, held out,",
-    }  # fmt: skip
+    }
 
 
 _RECIPES = {
@@ -249,8 +260,11 @@ def _listening(asked: Options, place: "ComputeDevice", steps: int, is_quiet: boo
 
         listener: Listener = show
         yield {
-            "listener": listener, "compute": place, "tensorboard": asked.tensorboard, "save_every_s": asked.save_every,
-        }  # fmt: skip
+            "listener": listener,
+            "compute": place,
+            "tensorboard": asked.tensorboard,
+            "save_every_s": asked.save_every,
+        }
 
 
 def _start(source: str) -> "tuple[dict[str, Any], WeightsCard]":

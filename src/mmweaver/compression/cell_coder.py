@@ -23,9 +23,7 @@ Classes = np.ndarray  # (time, range, doppler) int64
 Phase = tuple[int, int, int]
 
 # parity of (time, range, doppler)
-PHASES: tuple[Phase, ...] = (
-    (0, 0, 0), (0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 0), (1, 1, 1)
-)  # fmt: skip
+PHASES: tuple[Phase, ...] = ((0, 0, 0), (0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 0), (1, 1, 1))
 WEIGHTS = {1: 4, 2: 2, 3: 1}  # of a neighbour, by the number of axes along which it differs
 
 CLOSED, COARSE, FINE = 0, 1, 2
@@ -226,11 +224,14 @@ class LevelCoder:
                 along = bool(phase[1]) and self.correlated[0] and stride == 1
                 across = bool(phase[2]) and self.correlated[1] and stride == 1
                 yield PhaseGroup(
-                    cells=cells, column=places.cell[2][cells], factor=places.factor[cells], around=around,
+                    cells=cells,
+                    column=places.cell[2][cells],
+                    factor=places.factor[cells],
+                    around=around,
                     rows=[places.of(at, (0, side, 0)) for side in (-1, 1) if along],
                     columns=[places.of(at, (0, 0, side)) for side in (-1, 1) if across],
                     corners=[places.of(at, (0, *side)) for side in CORNERS if along and across],
-                )  # fmt: skip
+                )
 
     def _known(self, group: PhaseGroup, size: Integers, before: Integers | None, wide: Integers) -> KnownSizes:
         cells, factor, beams = group.cells, group.factor, size.shape[1]

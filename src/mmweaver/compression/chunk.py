@@ -244,10 +244,17 @@ def decode_chunk(data: bytes, config: RadarConfig, *, with_residual: bool = True
     if finer > 1 and with_residual:
         parts.append(_decode_enhancement(stream, shape, beams, step / finer))
     return DecodedChunk(
-        frames=frames, layers=layers, residual=finite(functools.reduce(np.add, parts)) if parts else None, peak=peak,
-        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None, step=step,
+        frames=frames,
+        layers=layers,
+        residual=finite(functools.reduce(np.add, parts)) if parts else None,
+        peak=peak,
+        noise_power=noise_power,
+        num_residual_values=num_values,
+        rank=rank,
+        has_noise=noise is not None,
+        step=step,
         transform=None if transform is None else transform.choice,
-    )  # fmt: skip
+    )
 
 
 def point_coder_of(frames: ChunkFrames, steps: PointSteps, response: PointResponse) -> PointCoder:
@@ -296,9 +303,11 @@ def decode_layers(
         points = dequantize(coded, window.num_working_frames, steps, axes, response.num_directions)
         near = nearness(coded, near.shape)
     layers = Layers(
-        points=points, static=static_of(static, window, beams_of(config), step), noise_power=noise_power,
+        points=points,
+        static=static_of(static, window, beams_of(config), step),
+        noise_power=noise_power,
         calibration=torch.ones(config.num_antennas, dtype=torch.complex64) if gains is None else gains,
-    )  # fmt: skip
+    )
     return layers, near
 
 

@@ -190,9 +190,10 @@ class ChunkEncoder:
             return noise.estimate(step, 1)
         cells, noise = sample.estimate(step, 0), noise.estimate(step * coarser, 1)
         return Estimate(
-            num_bytes=cells.num_bytes + noise.num_bytes, active_error=cells.active_error,
+            num_bytes=cells.num_bytes + noise.num_bytes,
+            active_error=cells.active_error,
             all_error=cells.active_error + noise.all_error,
-        )  # fmt: skip
+        )
 
     def sample(self, mode: ChunkMode, step: float) -> CellSample:
         """Some coefficients of a mode; where it has scatterers, after those of a step."""
@@ -209,9 +210,12 @@ class ChunkEncoder:
         transform, coefficients = self._transformed(mode.transform, layers.target)
         front = PREFIX.size + len(layers.front) + len(transform.packed) + len(layers.stream.to_bytes())
         self._point_samples[key] = CellSample.of(
-            coefficients, transform.spread(self.is_active), front_bytes=front, front_values=layers.num_values,
+            coefficients,
+            transform.spread(self.is_active),
+            front_bytes=front,
+            front_values=layers.num_values,
             front_step=step,
-        )  # fmt: skip
+        )
         return self._point_samples[key]
 
     def _sample(self, choice: TransformChoice) -> CellSample:
@@ -275,11 +279,13 @@ class ChunkEncoder:
             point_coder_of(self.frames, steps, response).code(stream, coded)
         has_gains = bool((layers.calibration != 1).any())
         return CodedLayers(
-            target=target, near=nearness(coded, self.target.shape[:3]), stream=stream,
+            target=target,
+            near=nearness(coded, self.target.shape[:3]),
+            stream=stream,
             flags=HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains,
             front=pack_gains(layers.calibration) if has_gains else b"",
             num_values=int(np.count_nonzero(static)) + len(coded) * values_of_point(response),
-        )  # fmt: skip
+        )
 
     def _kept_points(self, layers: Layers, steps: PointSteps) -> Points:
         """The scatterers worth coding; where many are left out, the others are refined without them."""
@@ -292,9 +298,7 @@ class ChunkEncoder:
             target = torch.from_numpy(self.target) / layers.calibration
             target = target - static_cells(layers.static, window.response, window.axes)
             damping = Damping.fresh(len(target))
-            points, _ = refined(
-                kept, target, window.response, window.axes, damping, steps=REFINED_STEPS, largest=160
-            )  # fmt: skip
+            points, _ = refined(kept, target, window.response, window.axes, damping, steps=REFINED_STEPS, largest=160)
             self._kept = count, points
         return self._kept[1]
 
@@ -338,10 +342,15 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
     num_points = max(POINTS_PER_FRAME * frames, min(each * frames, most))
     stages, last_steps, growth = FIT if window.num_working_frames > FEW_FRAMES else FIT_OF_FEW_FRAMES
     recipe = FitRecipe(
-        num_points=min(num_points, int(num_bytes / BYTES_PER_POINT)), with_static=frames > 1,
-        with_calibration=True, stages=stages, last_steps=last_steps, growth=growth,
-        least_gain=POINT_GAIN, most_noise=encoder.noise_power,
-    )  # fmt: skip
+        num_points=min(num_points, int(num_bytes / BYTES_PER_POINT)),
+        with_static=frames > 1,
+        with_calibration=True,
+        stages=stages,
+        last_steps=last_steps,
+        growth=growth,
+        least_gain=POINT_GAIN,
+        most_noise=encoder.noise_power,
+    )
     response, axes = window.response, window.axes
     at_rest, moving = static_response(response, axes), encoder.target.copy()
     if recipe.with_static:

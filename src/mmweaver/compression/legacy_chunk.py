@@ -98,9 +98,13 @@ def decode_legacy_chunk(data: bytes, config: RadarConfig, *, with_residual: bool
         values = np.sign(levels) * magnitude * (step * np.where(classes == COARSE, COARSER, 1))
         residual = _transform(config).inverse(values[0] + 1j * values[1]).astype(np.complex64)
     return DecodedChunk(
-        frames=frames, layers=layers, residual=residual, peak=peak, noise_power=noise_power,
+        frames=frames,
+        layers=layers,
+        residual=residual,
+        peak=peak,
+        noise_power=noise_power,
         num_residual_values=num_values,
-    )  # fmt: skip
+    )
 
 
 def _transform(config: RadarConfig) -> ChunkTransform:
@@ -323,10 +327,14 @@ def _groups(classes: Cells, near: Cells, padded_shape: tuple[int, ...]) -> list[
         own = np.flatnonzero(key == value)
         groups.append(
             LegacyGroup(
-                at=at[own], phase=int(value % 4), factor=factor[own], by_near=by_near[own], row=r[own],
+                at=at[own],
+                phase=int(value % 4),
+                factor=factor[own],
+                by_near=by_near[own],
+                row=r[own],
                 doppler=d[own],
             )
-        )  # fmt: skip
+        )
     return groups
 
 

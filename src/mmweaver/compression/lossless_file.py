@@ -240,10 +240,17 @@ def describe_lossless(path: Path | str) -> dict[str, Any]:
     file = LosslessFile(path)
     raw = file.num_frames * file.header.frame_bytes
     return {
-        "file": str(path), "version": VERSION, "bytes": file.num_bytes, "cut_short_bytes": file.cut_short,
-        "frames": file.num_frames, "blocks": len(file.block_frames), "max_error_counts": file.header.max_error,
-        "raw_bytes": raw, "ratio": round(raw / file.num_bytes, 2), "radar": {"name": file.header.config.name},
-    }  # fmt: skip
+        "file": str(path),
+        "version": VERSION,
+        "bytes": file.num_bytes,
+        "cut_short_bytes": file.cut_short,
+        "frames": file.num_frames,
+        "blocks": len(file.block_frames),
+        "max_error_counts": file.header.max_error,
+        "raw_bytes": raw,
+        "ratio": round(raw / file.num_bytes, 2),
+        "radar": {"name": file.header.config.name},
+    }
 
 
 def _encoded(data: bytes, header: LosslessHeader, num_frames: int) -> bytes:
@@ -257,8 +264,10 @@ def _encoded(data: bytes, header: LosslessHeader, num_frames: int) -> bytes:
 
 def _packed_header(header: LosslessHeader) -> bytes:
     values = {
-        "radar": header.config.to_values(), "frames_a_block": header.frames_a_block, "max_error": header.max_error
-    }  # fmt: skip
+        "radar": header.config.to_values(),
+        "frames_a_block": header.frames_a_block,
+        "max_error": header.max_error,
+    }
     body = zlib.compress(json.dumps(values, separators=(",", ":"), allow_nan=False).encode(), 9)
     return checked(PREFIX.pack(MAGIC, VERSION, len(body)) + body)
 

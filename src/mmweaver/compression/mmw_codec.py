@@ -61,9 +61,14 @@ def compress_cube(
         return pack_mmw(header, chunks, [time_s[part.start : part.stop] for part in parts])
 
     parts, chunks = encoded(
-        cube, lambda parts: len(packed(parts, [b""] * len(parts))), num_bytes=num_bytes, quality_db=quality_db,
-        keep_noise=keep_noise, effort=effort, progress=progress,
-    )  # fmt: skip
+        cube,
+        lambda parts: len(packed(parts, [b""] * len(parts))),
+        num_bytes=num_bytes,
+        quality_db=quality_db,
+        keep_noise=keep_noise,
+        effort=effort,
+        progress=progress,
+    )
     missing = cube.values.nbytes // MAX_RATIO + 1 - sum(map(len, chunks))
     # readers distrust files that promise more; decoders ignore words of four bytes that follow
     chunks[-1] += bytes(4 * max(0, -(-missing // 4)))

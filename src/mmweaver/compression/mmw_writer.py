@@ -86,9 +86,13 @@ class MmwWriter:
             )
         time_s = cube.grid.frame_time_s
         parts, self.last_chunks = encoded(
-            cube, lambda parts: sum(len(one) for one in self._records([b""] * len(parts), parts, time_s)),
-            num_bytes=num_bytes, quality_db=quality_db, keep_noise=keep_noise, effort=effort,
-        )  # fmt: skip
+            cube,
+            lambda parts: sum(len(one) for one in self._records([b""] * len(parts), parts, time_s)),
+            num_bytes=num_bytes,
+            quality_db=quality_db,
+            keep_noise=keep_noise,
+            effort=effort,
+        )
         before = self._end
         for record in self._records(self.last_chunks, parts, time_s):
             self._write(record)

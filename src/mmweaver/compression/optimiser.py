@@ -69,9 +69,10 @@ class _Plan:
         coarser = self.coarser if coarser is None else coarser
         each = [chunk.encoder.estimate(chunk.sample, chunk.mode, step, coarser) for chunk in self.chunks]
         return Estimate(
-            num_bytes=sum(one.num_bytes for one in each), active_error=sum(one.active_error for one in each),
+            num_bytes=sum(one.num_bytes for one in each),
+            active_error=sum(one.active_error for one in each),
             all_error=sum(one.all_error for one in each),
-        )  # fmt: skip
+        )
 
     def step_where(self, excess: Excess, low: float = 0.0, high: float = math.inf) -> float:
         """The step between two at which an excess of the estimate is zero, by bisection of its logarithm."""

@@ -84,9 +84,10 @@ class CellSample:
         other_bytes, other_error = self._part(step * coarser or math.inf, is_active=False)
         front = self.front_bytes + self.front_values / 8 * math.log2(self.front_step / step)
         return Estimate(
-            num_bytes=max(front + active_bytes + other_bytes, 1.0), active_error=active_error,
+            num_bytes=max(front + active_bytes + other_bytes, 1.0),
+            active_error=active_error,
             all_error=active_error + other_error,
-        )  # fmt: skip
+        )
 
     def _part(self, step: float, *, is_active: bool) -> tuple[float, float]:
         """Bytes and error of the active cells, or of the others, interpolated between steps of a grid."""

@@ -20,9 +20,21 @@ Samples = Int[np.ndarray, "loop antenna sample part"]
 
 # inputs of the prediction: (loops before, antennas before, samples before); both parts of each
 INPUTS = (
-    (1, 0, 0), (2, 0, 0), (3, 0, 0), (4, 0, 0), (1, 0, -1), (0, 1, 0), (1, 1, 0), (2, 1, 0), (0, 0, 1), (0, 0, 2),
-    (1, 0, 1), (1, 0, 2), (0, 1, 1), (1, 1, 1),
-)  # fmt: skip
+    (1, 0, 0),
+    (2, 0, 0),
+    (3, 0, 0),
+    (4, 0, 0),
+    (1, 0, -1),
+    (0, 1, 0),
+    (1, 1, 0),
+    (2, 1, 0),
+    (0, 0, 1),
+    (0, 0, 2),
+    (1, 0, 1),
+    (1, 0, 2),
+    (0, 1, 1),
+    (1, 1, 1),
+)
 BEFORE, AFTER = 4, 1  # margins around loops and samples
 SKEW = 2  # diagonals: a loop is so many samples behind the loop before it
 FRACTION = 14  # bits of a weight after the point

@@ -101,10 +101,15 @@ def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int,
         direction[:, side] = np.clip(np.floor((cosine + 1) / 2 * parts).astype(np.int64), 0, _largest(parts))
     order = np.lexsort((cells[1][0], cells[0][0], frame))
     return CodedPoints(
-        frame=frame[order], range_cell=cells[0][0][order], doppler_cell=cells[1][0][order], size=size[order],
-        phase=phase[order], range_part=cells[0][1][order], doppler_part=cells[1][1][order],
+        frame=frame[order],
+        range_cell=cells[0][0][order],
+        doppler_cell=cells[1][0][order],
+        size=size[order],
+        phase=phase[order],
+        range_part=cells[0][1][order],
+        doppler_part=cells[1][1][order],
         direction=direction[order],
-    )  # fmt: skip
+    )
 
 
 def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:
@@ -196,8 +201,9 @@ class PointCoder:
         phase = stream.uniform(_phases(size), given["phase"])
         parts = []
         for name, sharpness in (
-            ("range_part", self.steps.range_sixteenths), ("doppler_part", self.steps.doppler_sixteenths)
-        ):  # fmt: skip
+            ("range_part", self.steps.range_sixteenths),
+            ("doppler_part", self.steps.doppler_sixteenths),
+        ):
             values = getattr(coded, name) if coded is not None else nothing
             parts.append(stream.uniform(_parts(size, sharpness), values))
         direction = np.zeros((num, 2), np.int64)
@@ -205,9 +211,15 @@ class PointCoder:
             values = coded.direction[:, side] if coded is not None else nothing
             direction[:, side] = self._direction(stream, side, size, values)
         return CodedPoints(
-            frame=cells[0], range_cell=cells[1], doppler_cell=cells[2], size=size, phase=phase,
-            range_part=parts[0], doppler_part=parts[1], direction=direction,
-        )  # fmt: skip
+            frame=cells[0],
+            range_cell=cells[1],
+            doppler_cell=cells[2],
+            size=size,
+            phase=phase,
+            range_part=parts[0],
+            doppler_part=parts[1],
+            direction=direction,
+        )
 
     def _sizes(self, stream: BitStream, cells: np.ndarray, wanted: Integers) -> Integers:
         """Codes the octave of each amplitude frame by frame, then its position within the octave."""

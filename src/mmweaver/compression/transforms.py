@@ -100,9 +100,12 @@ class ChunkTransform:
         if choice.doppler_klt:
             doppler, at = _unpack_klt(data, at, num_doppler, WORD)
         return cls(
-            choice=choice, antennas=antennas, doppler=doppler, signs=(bool(header & 16), bool(header & 32)),
+            choice=choice,
+            antennas=antennas,
+            doppler=doppler,
+            signs=(bool(header & 16), bool(header & 32)),
             words=data[HEADER.size : at],
-        )  # fmt: skip
+        )
 
     def forward(self, values: Complex[Array, "frame range doppler antenna"]) -> Complex[Array, "beam time range index"]:
         """Coefficients of values."""

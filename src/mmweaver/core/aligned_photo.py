@@ -34,9 +34,11 @@ class AlignedPhoto:
     def of(cls, scene: Scene) -> "AlignedPhoto":
         """The photo that a scene was reconstructed from."""
         return cls(
-            photo=scene.photo, radar_from_camera=scene.radar_from_camera, floor_z_m=scene.floor_z_m,
+            photo=scene.photo,
+            radar_from_camera=scene.radar_from_camera,
+            floor_z_m=scene.floor_z_m,
             camera_m=scene.radar_pose.seen(np.zeros(3)),
-        )  # fmt: skip
+        )
 
     @cached_property
     def points_m(self) -> Float[Array, "height width 3"]:

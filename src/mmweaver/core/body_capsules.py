@@ -26,9 +26,18 @@ _ARM = (0.45, 0.45, -0.77)  # the opposite, behind and above the other shoulder,
 _LUMP_LENGTH_M = 0.02  # of a capsule that ends at its own start, before it is extended
 # Typical bone lengths, by the joint at the far end.
 _BONE_LENGTH_M = {
-    "spine1": 0.12, "spine2": 0.13, "spine3": 0.06, "neck": 0.2, "head": 0.1, "knee": 0.4, "ankle": 0.4, "foot": 0.14,
-    "shoulder": 0.12, "elbow": 0.26, "wrist": 0.25,
-}  # fmt: skip
+    "spine1": 0.12,
+    "spine2": 0.13,
+    "spine3": 0.06,
+    "neck": 0.2,
+    "head": 0.1,
+    "knee": 0.4,
+    "ankle": 0.4,
+    "foot": 0.14,
+    "shoulder": 0.12,
+    "elbow": 0.26,
+    "wrist": 0.25,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,9 +168,10 @@ def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> Posed
     along = unit(bone)
     own = np.linalg.norm(end - start, axis=-1, keepdims=True)
     return PosedCapsules(
-        start_m=start, axis_m=along * (own + _EXTEND_M[:, None] * scale_of(height_m)),
+        start_m=start,
+        axis_m=along * (own + _EXTEND_M[:, None] * scale_of(height_m)),
         rotation=_shortest_rotations(trunk, along),
-    )  # fmt: skip
+    )
 
 
 def hull(
@@ -187,9 +197,7 @@ def hull(
         centre = posed.start_m + posed.axis_m * end
         rings.append(centre[:, :, None] + np.einsum("tcij,crj->tcri", posed.rotation, offset))
     reach = radii * np.array([-1.0, 1.0])
-    tips = [
-        posed.start_m + posed.axis_m * end + posed.rotation[..., 2] * reach[None, :, end, None] for end in (0, 1)
-    ]  # fmt: skip
+    tips = [posed.start_m + posed.axis_m * end + posed.rotation[..., 2] * reach[None, :, end, None] for end in (0, 1)]
     vertices = np.concatenate([*rings, tips[0][:, :, None], tips[1][:, :, None]], axis=2)
     return vertices.reshape(len(posed.start_m), -1, 3), _hull_faces(len(CAPSULES))
 

@@ -167,8 +167,9 @@ def keywords_of(asked: Any, *without: str) -> Callable[[FunctionT], FunctionT]:
         *own, _ = signature.parameters.values()
         keywords = [
             inspect.Parameter(one.name, inspect.Parameter.KEYWORD_ONLY, default=one.default, annotation=one.type)
-            for one in dataclasses.fields(asked) if one.name not in without
-        ]  # fmt: skip
+            for one in dataclasses.fields(asked)
+            if one.name not in without
+        ]
         vars(function)["__signature__"] = signature.replace(parameters=[*own, *keywords])
         return function
 

@@ -32,9 +32,14 @@ def project(
     depth = points_camera[..., 2]
     in_front = np.where(depth > 0, depth, np.nan)
     column, row = pixel_coordinates(
-        points_camera[..., 0], points_camera[..., 1], in_front,
-        intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy,
-    )  # fmt: skip
+        points_camera[..., 0],
+        points_camera[..., 1],
+        in_front,
+        intrinsics.fx,
+        intrinsics.fy,
+        intrinsics.cx,
+        intrinsics.cy,
+    )
     return np.stack([column, row], axis=-1), depth
 
 
@@ -59,9 +64,13 @@ def viewing_rays(intrinsics: CameraIntrinsics) -> Float[Array, "height width 3"]
 def subsampled(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
     """The intrinsics of the picture `[::step, ::step]`, whose pixel (0, 0) is that of the whole picture."""
     return CameraIntrinsics(
-        fx=intrinsics.fx / step, fy=intrinsics.fy / step, cx=intrinsics.cx / step, cy=intrinsics.cy / step,
-        width=-(-intrinsics.width // step), height=-(-intrinsics.height // step),
-    )  # fmt: skip
+        fx=intrinsics.fx / step,
+        fy=intrinsics.fy / step,
+        cx=intrinsics.cx / step,
+        cy=intrinsics.cy / step,
+        width=-(-intrinsics.width // step),
+        height=-(-intrinsics.height // step),
+    )
 
 
 def binned(intrinsics: CameraIntrinsics, size: int) -> CameraIntrinsics:
@@ -70,25 +79,35 @@ def binned(intrinsics: CameraIntrinsics, size: int) -> CameraIntrinsics:
     Pixel centres lie at whole numbers, so the picture's edge, at -0.5, stays in place.
     """
     return CameraIntrinsics(
-        fx=intrinsics.fx / size, fy=intrinsics.fy / size,
-        cx=(intrinsics.cx + 0.5) / size - 0.5, cy=(intrinsics.cy + 0.5) / size - 0.5,
-        width=intrinsics.width // size, height=intrinsics.height // size,
-    )  # fmt: skip
+        fx=intrinsics.fx / size,
+        fy=intrinsics.fy / size,
+        cx=(intrinsics.cx + 0.5) / size - 0.5,
+        cy=(intrinsics.cy + 0.5) / size - 0.5,
+        width=intrinsics.width // size,
+        height=intrinsics.height // size,
+    )
 
 
 def resized(intrinsics: CameraIntrinsics, width: int, height: int) -> CameraIntrinsics:
     """The intrinsics of the same view resampled to width x height pixels; the picture's edge, at -0.5, stays."""
     scale_x, scale_y = width / intrinsics.width, height / intrinsics.height
     return CameraIntrinsics(
-        fx=intrinsics.fx * scale_x, fy=intrinsics.fy * scale_y,
-        cx=(intrinsics.cx + 0.5) * scale_x - 0.5, cy=(intrinsics.cy + 0.5) * scale_y - 0.5,
-        width=width, height=height,
-    )  # fmt: skip
+        fx=intrinsics.fx * scale_x,
+        fy=intrinsics.fy * scale_y,
+        cx=(intrinsics.cx + 0.5) * scale_x - 0.5,
+        cy=(intrinsics.cy + 0.5) * scale_y - 0.5,
+        width=width,
+        height=height,
+    )
 
 
 def rotated_clockwise(intrinsics: CameraIntrinsics) -> CameraIntrinsics:
     """The intrinsics of a picture rotated by 90 degrees clockwise."""
     return CameraIntrinsics(
-        fx=intrinsics.fy, fy=intrinsics.fx, cx=intrinsics.height - 1 - intrinsics.cy, cy=intrinsics.cx,
-        width=intrinsics.height, height=intrinsics.width,
-    )  # fmt: skip
+        fx=intrinsics.fy,
+        fy=intrinsics.fx,
+        cx=intrinsics.height - 1 - intrinsics.cy,
+        cy=intrinsics.cx,
+        width=intrinsics.height,
+        height=intrinsics.width,
+    )

@@ -246,9 +246,12 @@ class Plane:
     def moved(self, points: Callable[[Vec3], Vec3], directions: Callable[[Vec3], Vec3]) -> "Plane":
         """The rectangle in another frame, by what moves its points and what turns its directions."""
         return replace(
-            self, centre_m=points(self.centre_m), normal=directions(self.normal), axis_u=directions(self.axis_u),
+            self,
+            centre_m=points(self.centre_m),
+            normal=directions(self.normal),
+            axis_u=directions(self.axis_u),
             axis_v=directions(self.axis_v),
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -46,10 +46,13 @@ class Verification:
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
-            "path": str(self.path), "kind": self.kind, "files_checked": self.checked,
+            "path": str(self.path),
+            "kind": self.kind,
+            "files_checked": self.checked,
             "damaged": [{"file": str(one.file), "what": one.what} for one in self.damaged],
-            "commands": self.commands, "unchecked": self.unchecked,
-        }  # fmt: skip
+            "commands": self.commands,
+            "unchecked": self.unchecked,
+        }
 
     def blame(self, damaged: list[Damage], command: str) -> None:
         """Adds what is damaged and the command that makes it anew."""

@@ -39,18 +39,23 @@ def to_dataset(
         "frame_time": ("frame_time", grid.frame_time_s, {"units": "s", "long_name": "start of the radar frame"}),
         "range": ("range", grid.range_m, {"units": "m"}),
         "radial_velocity": (
-            "radial_velocity", grid.radial_velocity_mps, {"units": "m/s", "long_name": "positive = moving away"}
+            "radial_velocity",
+            grid.radial_velocity_mps,
+            {"units": "m/s", "long_name": "positive = moving away"},
         ),
         "antenna": np.arange(len(grid.antenna_position_m)),
         "antenna_position": (("antenna", "axis"), grid.antenna_position_m, {"units": "m"}),
         "axis": ["x", "y", "z"],
         "joint": list(JOINT_NAMES),
-    }  # fmt: skip
+    }
     attributes = {
-        "text": json.dumps(meta.get("text"), ensure_ascii=False), "seed": meta.get("seed"),
-        "method": meta.get("method"), "wavelength_m": grid.wavelength_m, "mmweaver_version": meta.get("version"),
+        "text": json.dumps(meta.get("text"), ensure_ascii=False),
+        "seed": meta.get("seed"),
+        "method": meta.get("method"),
+        "wavelength_m": grid.wavelength_m,
+        "mmweaver_version": meta.get("version"),
         "radar": json.dumps(plain(meta.get("radar"))),
-    }  # fmt: skip
+    }
     return xarray.Dataset(
         variables, coordinates, {key: value for key, value in attributes.items() if value is not None}
     )
@@ -64,10 +69,13 @@ def to_tensors(
 
     columns = np.stack([np.asarray(getattr(points, name), np.float32) for name in POINT_COLUMNS], axis=1)
     arrays = {
-        "cube": cube.values, "frame_time_s": cube.grid.frame_time_s, "range_m": cube.grid.range_m,
-        "radial_velocity_mps": cube.grid.radial_velocity_mps, "antenna_position_m": cube.grid.antenna_position_m,
+        "cube": cube.values,
+        "frame_time_s": cube.grid.frame_time_s,
+        "range_m": cube.grid.range_m,
+        "radial_velocity_mps": cube.grid.radial_velocity_mps,
+        "antenna_position_m": cube.grid.antenna_position_m,
         "points": columns,
-    }  # fmt: skip
+    }
     if poses:
         arrays["joints_m"] = _joints_m(poses)
     if adc is not None:

@@ -66,8 +66,11 @@ def read_stream_cube(folder: Path, frames: slice = slice(None)) -> RadarCube:
     first, last = frames.start or 0, math.inf if frames.stop is None else frames.stop
     parts = parts_of(folder)
     starts = [int(part.name) for part in parts]
-    parts = [part for part, start, end in zip(parts, starts, [*starts[1:], math.inf], strict=True)
-             if start < last and end > first]  # fmt: skip
+    parts = [
+        part
+        for part, start, end in zip(parts, starts, [*starts[1:], math.inf], strict=True)
+        if start < last and end > first
+    ]
     size = sum((part / "radar.npz").stat().st_size for part in parts)
     if size > LARGEST_BYTES:
         raise InputError(f"{folder} holds {size / 1e9:.0f} GB; read its parts one by one, such as {parts[0]}")
@@ -101,9 +104,13 @@ class StreamFolder:
         self._counts: float | None = None
 
     def add(
-        self, cube: RadarCube, points: PointCloud, poses: tuple[PoseSequence, ...], adc: AdcCube | None,
+        self,
+        cube: RadarCube,
+        points: PointCloud,
+        poses: tuple[PoseSequence, ...],
+        adc: AdcCube | None,
         said: dict[str, Any],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Writes one more part. Raises InputError where it cannot be written."""
         if not self.parts:
             self._write_text("radar.json", cube.config.to_json())

@@ -131,9 +131,14 @@ class Physics:
     ) -> Simulator:
         room = self._traced.get(scene, _with_antennas_of(board, config), None, None)
         return Simulator(
-            scene, config, micro_seed=seed_of_room(scene), background=background, board=board,
-            propagation=self.propagation, room=room,
-        )  # fmt: skip
+            scene,
+            config,
+            micro_seed=seed_of_room(scene),
+            background=background,
+            board=board,
+            propagation=self.propagation,
+            room=room,
+        )
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
@@ -174,9 +179,12 @@ class Learned:
         with stages("weave the signal"):
             motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
             cube, adc = room.signal(
-                motions, seed=scene.radar_pose.noise_seed(seed), keep_adc=keep_adc, first_frame=first_frame,
+                motions,
+                seed=scene.radar_pose.noise_seed(seed),
+                keep_adc=keep_adc,
+                first_frame=first_frame,
                 num_frames=num_frames,
-            )  # fmt: skip
+            )
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
         order = _of_order(self.propagation)

@@ -116,10 +116,14 @@ def compose(
 
         def animate(placement: Placement) -> PoseSequence:
             made = assembled_controls(
-                placement.steps, placement.path, body, seed=seed, duration_s=plan.duration_s,
+                placement.steps,
+                placement.path,
+                body,
+                seed=seed,
+                duration_s=plan.duration_s,
                 habits=habits_of(person.subject) if is_varied else NO_HABITS,
                 entry=None if after is None else after.controls,
-            )  # fmt: skip
+            )
             controls[id(placement)] = made
             pose = solved(made, body, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m)
             return replace(pose, subject=person.subject, girth=person.girth)
@@ -132,9 +136,14 @@ def compose(
     placed, described = best.placement, (person.note,) if person.described else ()
     notes = plan.notes + described + running_notes + room_notes + placed.assumptions + best.notes
     return Motion(
-        pose=best.pose, plan=plan, assumptions=notes, person=person, end=placed.end_state(plan, body),
-        controls=controls[id(placed)], chair=placed.chair,
-    )  # fmt: skip
+        pose=best.pose,
+        plan=plan,
+        assumptions=notes,
+        person=person,
+        end=placed.end_state(plan, body),
+        controls=controls[id(placed)],
+        chair=placed.chair,
+    )
 
 
 def _depth_m(result: RankedPlacement) -> float:

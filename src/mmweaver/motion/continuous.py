@@ -128,10 +128,17 @@ class ContinuousMotion:
         seed = self.seed if number == 0 else int(stream(self.seed, "stream", number).integers(2**31))
         is_first = self._end is None
         motion = compose(
-            scheduled, self.scene, seed=seed, range_window_m=self.range_window_m, person=person, after=self._state(),
-            start_m=self._start_m if is_first else None, heading_rad=self._heading_rad if is_first else None,
-            may_touch=may_touch, farthest_m=self._farthest_m,
-        )  # fmt: skip
+            scheduled,
+            self.scene,
+            seed=seed,
+            range_window_m=self.range_window_m,
+            person=person,
+            after=self._state(),
+            start_m=self._start_m if is_first else None,
+            heading_rad=self._heading_rad if is_first else None,
+            may_touch=may_touch,
+            farthest_m=self._farthest_m,
+        )
         begins = 0 if self._last is None else self._last.end_frame
         begin_s = begins * self.frame_period_s
         before = None if self._last is None else self._last.pose

@@ -21,22 +21,38 @@ def empty_floor() -> Scene:
     lens = CameraIntrinsics(fx=16.0, fy=16.0, cx=31.5, cy=23.5, width=64, height=48)
     photo = RgbdPhoto(rgb=np.full((48, 64, 3), 128, np.uint8), depth_m=np.full((48, 64), np.nan), intrinsics=lens)
     floor = Plane(
-        kind="floor", centre_m=np.array([0.0, half, -RADAR_HEIGHT_M]), normal=np.array([0.0, 0.0, 1.0]),
-        axis_u=np.array([1.0, 0.0, 0.0]), axis_v=np.array([0.0, 1.0, 0.0]), half_size_m=(half, half),
+        kind="floor",
+        centre_m=np.array([0.0, half, -RADAR_HEIGHT_M]),
+        normal=np.array([0.0, 0.0, 1.0]),
+        axis_u=np.array([1.0, 0.0, 0.0]),
+        axis_v=np.array([0.0, 1.0, 0.0]),
+        half_size_m=(half, half),
         material="concrete",
-    )  # fmt: skip
+    )
     corners = np.array([[-half, 0, 0], [half, 0, 0], [half, FLOOR_M, 0], [-half, FLOOR_M, 0]]) - [0, 0, RADAR_HEIGHT_M]
     return Scene(
-        photo=photo, radar_from_camera=_LEVEL, vertices_m=corners, faces=np.array([[0, 1, 2], [0, 2, 3]]),
-        face_material=np.array([0, 0]), material_names=("concrete",), planes=(floor,), floor_z_m=-RADAR_HEIGHT_M,
-        free_space=FreeSpace(x_m=x, y_m=y, is_free=free, is_seen=np.ones_like(free)), seats=(), assumptions=(),
-    )  # fmt: skip
+        photo=photo,
+        radar_from_camera=_LEVEL,
+        vertices_m=corners,
+        faces=np.array([[0, 1, 2], [0, 2, 3]]),
+        face_material=np.array([0, 0]),
+        material_names=("concrete",),
+        planes=(floor,),
+        floor_z_m=-RADAR_HEIGHT_M,
+        free_space=FreeSpace(x_m=x, y_m=y, is_free=free, is_seen=np.ones_like(free)),
+        seats=(),
+        assumptions=(),
+    )
 
 
 def act_out(
-    text: str, *, duration_s: float | None = None, seed: int = 0, height_m: float | None = None,
+    text: str,
+    *,
+    duration_s: float | None = None,
+    seed: int = 0,
+    height_m: float | None = None,
     subject: int | None = None,
-) -> Motion:  # fmt: skip
+) -> Motion:
     """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
 
     Seats are stools, as nothing else stands there, and a walk to a door leads where there is room. Without
@@ -48,6 +64,11 @@ def act_out(
     ('bow', (245, 22, 3))
     """
     return compose(
-        plan_motion(text, duration_s), empty_floor(), seed=seed, range_window_m=WINDOW_M, height_m=height_m,
-        subject=subject, has_photo=False,
-    )  # fmt: skip
+        plan_motion(text, duration_s),
+        empty_floor(),
+        seed=seed,
+        range_window_m=WINDOW_M,
+        height_m=height_m,
+        subject=subject,
+        has_photo=False,
+    )

@@ -54,10 +54,18 @@ def compose_people(
         plan = plans[index]
         assert plan is not None
         return compose(
-            plan, scene, seed=own_seed, range_window_m=range_window_m, start_m=starts[index],
-            height_m=heights[index], subject=numbers[index], others=others,
-            heading_rad=None if index or first is not None else heading_rad, may_touch=may_touch, farthest_m=farthest_m,
-        )  # fmt: skip
+            plan,
+            scene,
+            seed=own_seed,
+            range_window_m=range_window_m,
+            start_m=starts[index],
+            height_m=heights[index],
+            subject=numbers[index],
+            others=others,
+            heading_rad=None if index or first is not None else heading_rad,
+            may_touch=may_touch,
+            farthest_m=farthest_m,
+        )
 
     if len(plans) == 1:
         return (alone(0, seed, ()) if first is None else first,)

@@ -99,10 +99,16 @@ def person_of(subject: int, described: DescribedPerson | None = None, height_m: 
         girth = float(np.interp(draws[2], (0, 1), HEAVY if traits.build > 0 else SLIM))
     own_pace, usual_pace = float(np.exp(PACE_SPREAD * pace_sds)), (traits.pace(moves=True), traits.pace(moves=False))
     return Person(
-        height_m=height_m, subject=subject, sex=sex, age=traits.age or "adult", girth=round(girth, 4),
-        pace=own_pace * usual_pace[0], pace_on_the_spot=own_pace * usual_pace[1],
-        hand="left" if draws[1] < LEFT_HANDED else "right", described=traits.words if traits.is_described else "",
-    )  # fmt: skip
+        height_m=height_m,
+        subject=subject,
+        sex=sex,
+        age=traits.age or "adult",
+        girth=round(girth, 4),
+        pace=own_pace * usual_pace[0],
+        pace_on_the_spot=own_pace * usual_pace[1],
+        hand="left" if draws[1] < LEFT_HANDED else "right",
+        described=traits.words if traits.is_described else "",
+    )
 
 
 def apply_habits(plan: MotionPlan, person: Person) -> MotionPlan:

@@ -36,9 +36,13 @@ class AdcSynthesis:
     """
 
     def __init__(
-        self, config: RadarConfig, device: str | torch.device = "cpu", board: "BoardEffects | None" = None, *,
+        self,
+        config: RadarConfig,
+        device: str | torch.device = "cpu",
+        board: "BoardEffects | None" = None,
+        *,
         is_faded: bool = False,
-    ):  # fmt: skip
+    ):
         self._elements = TransmitElements(config)
         self.config, self.device = self._elements.config, torch.device(device)
         self.clock = FrameClock(self.config)
@@ -71,9 +75,14 @@ class AdcSynthesis:
         config, count = self.config, len(self._segments)
         frames = len(paths) // count
         adc = torch.empty(
-            frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples,
-            dtype=torch.complex64, device=self.device,
-        )  # fmt: skip
+            frames,
+            config.num_loops,
+            config.num_tx,
+            config.num_rx,
+            config.num_samples,
+            dtype=torch.complex64,
+            device=self.device,
+        )
         # On the CPU frame by frame: nothing is padded, and the caches hold it.
         batches = [slice(0, frames)] if self.device.type != "cpu" else [slice(at, at + 1) for at in range(frames)]
         if any(share is not None for _, share in self._segments):

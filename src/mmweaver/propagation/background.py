@@ -66,10 +66,13 @@ class BackgroundRecording:
         config, power = radar.config, radar.noise if noise is None else noise * unit**2
         is_calibrated = np.isfinite(recording.scale)  # else 1.0 is a count of the converter
         return cls(
-            static=torch.from_numpy((mean * unit).astype(np.complex64)), unit=float(unit),
-            noise_power=float(power), sample_noise_mw=float(power * config.noise_power_mw / radar.noise),
-            count_sqrt_mw=config.adc_count_sqrt_mw if is_calibrated else float(unit), assumptions=tuple(notes),
-        )  # fmt: skip
+            static=torch.from_numpy((mean * unit).astype(np.complex64)),
+            unit=float(unit),
+            noise_power=float(power),
+            sample_noise_mw=float(power * config.noise_power_mw / radar.noise),
+            count_sqrt_mw=config.adc_count_sqrt_mw if is_calibrated else float(unit),
+            assumptions=tuple(notes),
+        )
 
     def conditioned(self, paths: StaticPaths, renderer: CubeRenderer) -> StaticPaths:
         """Static paths (path,) with the amplitudes that the recording makes most likely.

@@ -45,9 +45,13 @@ class ScatteringBody:
     """One subject's skin points on its capsules; `skin` and `hull` pose them."""
 
     def __init__(
-        self, subject: int, height_m: float, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None,
+        self,
+        subject: int,
+        height_m: float,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
         girth: float = 1.0,
-    ):  # fmt: skip
+    ):
         self.echo = echo or SkinEcho()
         self.height_m, self.girth = height_m, girth
         self.radii_m = radii_m(height_m, girth)  # (capsule, 2)

@@ -34,9 +34,15 @@ class BodyPaths(VisibleBody):
     """
 
     def __init__(
-        self, room: PreparedRoom, body: ScatteringBody, clock: FrameClock, joints_m: np.ndarray,
-        chest_m: np.ndarray | None = None, hulls: list[RayCaster] | None = None, known: Visibility | None = None,
-    ):  # fmt: skip
+        self,
+        room: PreparedRoom,
+        body: ScatteringBody,
+        clock: FrameClock,
+        joints_m: np.ndarray,
+        chest_m: np.ndarray | None = None,
+        hulls: list[RayCaster] | None = None,
+        known: Visibility | None = None,
+    ):
         """`joints_m` (frame, node, 22, 3) and `chest_m` (frame, node) are given at the clock's nodes."""
         super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else []))
         self.known = known
@@ -79,9 +85,10 @@ class BodyPaths(VisibleBody):
         nothing = np.zeros((self.num_frames, len(ghost_points(self.body))), bool)
         over_faces = [nothing if clear is None else clear for clear in self.over_faces]
         return Visibility(
-            skin=self.visible, over_faces=np.stack(over_faces, 1) if over_faces else nothing[:, None][:, :0],
+            skin=self.visible,
+            over_faces=np.stack(over_faces, 1) if over_faces else nothing[:, None][:, :0],
             occluded=occluded,
-        )  # fmt: skip
+        )
 
     def occludable(self, frame: int) -> np.ndarray:
         """Indices of the static paths that the body may occlude: a cone around it, between its right and its left."""

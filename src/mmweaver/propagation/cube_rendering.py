@@ -64,9 +64,11 @@ class StaticResponse(TensorRecord):
     def scaled(self, factor: Tensor) -> "StaticResponse":
         """Of paths whose amplitudes are multiplied by factors (path,)."""
         return StaticResponse(
-            at_range=self.at_range, range_slope=self.range_slope,
-            echo=self.echo * factor[:, None], tilted=self.tilted * factor[:, None],
-        )  # fmt: skip
+            at_range=self.at_range,
+            range_slope=self.range_slope,
+            echo=self.echo * factor[:, None],
+            tilted=self.tilted * factor[:, None],
+        )
 
 
 class CubeRenderer:

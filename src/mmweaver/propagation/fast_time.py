@@ -54,9 +54,7 @@ class FastTime:
             at = int(end[first])
         return found
 
-    def summed(
-        self, weights: Tensor, delay_s: Tensor, shift_hz: Tensor, bands: list[slice] | None = None
-    ) -> Tensor:  # fmt: skip
+    def summed(self, weights: Tensor, delay_s: Tensor, shift_hz: Tensor, bands: list[slice] | None = None) -> Tensor:
         """Sums (frame, row, sample) of the factors of beats (frame, path) with weights (frame, row, path).
 
         `bands`: runs of paths of the only frame that lie within a band, or about so.

@@ -100,9 +100,12 @@ class FrameClock:
         num_blocks = int(np.clip(np.ceil(len(loops) * self.config.loop_period_s / BLOCK_S), 1, len(loops)))
         cuts = np.array_split(np.arange(len(loops)), num_blocks)
         return Segment(
-            first_loop=int(loops[0]), middle_s=middle_s, chirp_s=chirp_s - middle_s, node_s=reach_s * unit,
+            first_loop=int(loops[0]),
+            middle_s=middle_s,
+            chirp_s=chirp_s - middle_s,
+            node_s=reach_s * unit,
             blocks=tuple(slice(int(cut[0]), int(cut[-1]) + 1) for cut in cuts),
-        )  # fmt: skip
+        )
 
     @property
     def middle_s(self) -> np.ndarray:

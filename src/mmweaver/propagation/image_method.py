@@ -185,9 +185,11 @@ def specular_paths(
     chains: list[tuple[list[SpecularReflector], list[np.ndarray]]] = [([], [np.zeros(3)])]  # faces, and images in them
     for _ in range(3):
         chains = [
-            ([*faces, face], [*images, face.image(images[-1])]) for faces, images in chains for face in reflectors
+            ([*faces, face], [*images, face.image(images[-1])])
+            for faces, images in chains
+            for face in reflectors
             if not (faces and face is faces[-1]) and face.side(images[-1]) > 0
-        ]  # fmt: skip
+        ]
         for faces, images in chains:
             path = _path(faces, images, wavelength_m, frequency_hz, most_echoes)
             if path and not any(np.linalg.norm(path.shift_m - other) < 1e-3 for other in seen):

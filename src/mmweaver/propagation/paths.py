@@ -122,10 +122,12 @@ class Paths(TensorRecord):
     def direct(cls, amplitude: Tensor, scatterer: ApparentPoint) -> "Paths":
         """Paths to moving scatterers and straight back."""
         return cls(
-            amplitude=amplitude.to(torch.complex64), departure=scatterer, arrival=scatterer,
+            amplitude=amplitude.to(torch.complex64),
+            departure=scatterer,
+            arrival=scatterer,
             is_reciprocal=torch.zeros(amplitude.shape, dtype=torch.bool),
             interaction=torch.full(amplitude.shape, int(Interaction.BODY), dtype=torch.uint8),
-        )  # fmt: skip
+        )
 
     @staticmethod
     def padded(parts: list["Paths"]) -> "Paths":
@@ -185,9 +187,13 @@ class StaticPaths(TensorRecord):
 
     @classmethod
     def of(
-        cls, amplitude: np.ndarray, length_m: np.ndarray, departure_m: np.ndarray, arrival_m: np.ndarray,
+        cls,
+        amplitude: np.ndarray,
+        length_m: np.ndarray,
+        departure_m: np.ndarray,
+        arrival_m: np.ndarray,
         interaction: Interaction,
-    ) -> "StaticPaths":  # fmt: skip
+    ) -> "StaticPaths":
         """Paths of one kind from arrays: amplitude (path,), length (path, tx, rx), vertices (path, 3)."""
         return cls(
             amplitude=torch.from_numpy(np.asarray(amplitude, np.complex128)),

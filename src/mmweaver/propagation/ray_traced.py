@@ -64,10 +64,17 @@ class Simulator:
     """
 
     def __init__(
-        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
-        background: RadarCube | None = None, board: Board | None = None, propagation: Propagation | None = None,
+        self,
+        scene: Scene,
+        config: RadarConfig,
+        impairments: Impairments | None = None,
+        *,
+        micro_seed: int = 0,
+        background: RadarCube | None = None,
+        board: Board | None = None,
+        propagation: Propagation | None = None,
         room: RayTracedRoom | None = None,
-    ):  # fmt: skip
+    ):
         """Traces the room.
 
         Args:

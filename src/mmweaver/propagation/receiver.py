@@ -44,9 +44,7 @@ LEAKAGE_PATH_LENGTH_M = 0.05
 class Receiver:
     """One receiver's noise and errors. Each frame has a random stream of its own, so frames may come in any order."""
 
-    def __init__(
-        self, config: RadarConfig, impairments: Impairments, seed: int, board: "BoardEffects | None" = None
-    ):  # fmt: skip
+    def __init__(self, config: RadarConfig, impairments: Impairments, seed: int, board: "BoardEffects | None" = None):
         self.config, self.impairments, self.seed, self.board = config, impairments, seed, board
         self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise

@@ -72,9 +72,12 @@ class Resynthesis:
         on_device = bool(realization) and self.synthesis.device.type != "cpu"
         receiver = Receiver(self.config, self.impairments, seed)
         return receiver.receive(
-            self.synthesis.moving(paths.moving), static - self.synthesis.occluded(paths), rate, frames.tolist(),
+            self.synthesis.moving(paths.moving),
+            static - self.synthesis.occluded(paths),
+            rate,
+            frames.tolist(),
             on_device=on_device,
-        )  # fmt: skip
+        )
 
     def person(self, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
         """The person's paths, and which static ones the person occludes, in frames of these numbers."""

@@ -37,9 +37,12 @@ class RoomPatches:
         cos = -(normal * unit(place_m)).sum(axis=1)
         upright = normal * np.where(cos < 0, -1.0, 1.0)[:, None]
         return cls(
-            place_m=place_m, normal=upright, cross_section_m2=monostatic_m2 / np.maximum(np.abs(cos), GRAZING_COS),
-            phase=phase, material=material,
-        )  # fmt: skip
+            place_m=place_m,
+            normal=upright,
+            cross_section_m2=monostatic_m2 / np.maximum(np.abs(cos), GRAZING_COS),
+            phase=phase,
+            material=material,
+        )
 
     @classmethod
     def edges(

@@ -90,9 +90,13 @@ def _patch_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Ge
 
 
 def _paths(
-    room: "RayTracedRoom", departure_m: np.ndarray, arrival_m: np.ndarray, vertex_m: np.ndarray, amplitude: np.ndarray,
+    room: "RayTracedRoom",
+    departure_m: np.ndarray,
+    arrival_m: np.ndarray,
+    vertex_m: np.ndarray,
+    amplitude: np.ndarray,
     between_m: np.ndarray,
-) -> StaticPaths:  # fmt: skip
+) -> StaticPaths:
     """Paths in both orders between apparent ends (path, 3), the second one seen at a vertex, so far between them."""
     tx, rx = (np.asarray(place)[:, None] for place in (room.config.tx_position_m, room.config.rx_position_m))
     orders = []

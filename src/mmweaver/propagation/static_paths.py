@@ -110,7 +110,7 @@ class PreparedRoom:
 
     def __init__(
         self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths, propagation: Propagation
-    ):  # fmt: skip
+    ):
         self.config, self.reflectors, self.paths, self.propagation = config, reflectors, paths, propagation
 
     @cached_property
@@ -143,9 +143,7 @@ class RayTracedRoom(PreparedRoom):
     `micro_seed` samples the phases of its surfaces: another seed is another realization of the same room.
     """
 
-    def __init__(
-        self, scene: Scene, config: RadarConfig, micro_seed: int = 0, propagation: Propagation | None = None
-    ):  # fmt: skip
+    def __init__(self, scene: Scene, config: RadarConfig, micro_seed: int = 0, propagation: Propagation | None = None):
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.config, self._scene = config, scene

@@ -63,9 +63,11 @@ def room_of(
     reflectors = []
     for vectors, half, (kind, material) in zip(arrays["face"], arrays["face_half_m"], words, strict=True):
         plane = Plane(
-            kind=kind, material=material, half_size_m=(float(half[0]), float(half[1])),
+            kind=kind,
+            material=material,
+            half_size_m=(float(half[0]), float(half[1])),
             **dict(zip(VECTORS, vectors, strict=True)),
-        )  # fmt: skip
+        )
         offset_m = float(plane.normal @ plane.centre_m)
         reflectors.append(SpecularReflector(plane=plane, offset_m=offset_m, is_rough=propagation.fine_roughness))
     if propagation.hidden_faces:

@@ -44,9 +44,10 @@ class TransmitElements:
         slot, tx = np.nonzero(weights)
         values = {name: getattr(config, name) for name in RadarConfig.__dataclass_fields__}
         values |= {
-            "tx_code": (), "tx_order": tuple(range(len(tx))),
+            "tx_code": (),
+            "tx_order": tuple(range(len(tx))),
             "tx_position_m": tuple(config.tx_position_m[index] for index in tx),
-        }  # fmt: skip
+        }
         self.config = ElementRadar(**values, slot=tuple(slot.tolist()), slots=config.num_slots)
         self._tx = torch.from_numpy(tx)
         into = np.zeros((config.num_slots, len(tx)), complex)

@@ -57,6 +57,8 @@ def unseen_notes(people: tuple[PoseSequence, ...], range_window_m: tuple[float, 
         seen &= np.abs(np.arctan2(pelvis_m[:, 0], pelvis_m[:, 1])) < WIDEST_RAD
         if not seen.all():
             who = "the person" if len(people) == 1 else f"person {number}"
-            notes.append(f"{who} is within the radar's range and 60 degrees of its boresight in {seen.sum()} of"
-                         f" {len(seen)} frames")  # fmt: skip
+            notes.append(
+                f"{who} is within the radar's range and 60 degrees of its boresight in {seen.sum()} of"
+                f" {len(seen)} frames"
+            )
     return tuple(notes)

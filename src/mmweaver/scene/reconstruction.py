@@ -74,15 +74,25 @@ def reconstruct(photo: RgbdPhoto, others: Sequence[PosedPhoto] = (), *, assumpti
     vertices_m, faces, face_material = joined_meshes([*meshes, rectangle_faces([floor, *layout.extended])])
     own_notes = dict.fromkeys(note for one in seen for note in one.assumptions)
     return Scene(
-        photo=first.view.photo, radar_from_camera=first.room.radar_from_camera, vertices_m=vertices_m, faces=faces,
-        face_material=face_material, material_names=MATERIAL_NAMES,
-        planes=(floor, *add_wall_panels(layout.planes, panels, layout.extended)), floor_z_m=first.view.floor_z_m,
-        free_space=replace(free, is_assumed=assumed), seats=tuple(seats), landmarks=tuple(landmarks),
+        photo=first.view.photo,
+        radar_from_camera=first.room.radar_from_camera,
+        vertices_m=vertices_m,
+        faces=faces,
+        face_material=face_material,
+        material_names=MATERIAL_NAMES,
+        planes=(floor, *add_wall_panels(layout.planes, panels, layout.extended)),
+        floor_z_m=first.view.floor_z_m,
+        free_space=replace(free, is_assumed=assumed),
+        seats=tuple(seats),
+        landmarks=tuple(landmarks),
         assumptions=(
-            *assumptions, *notes, *own_notes, *layout.assumptions,
+            *assumptions,
+            *notes,
+            *own_notes,
+            *layout.assumptions,
             *_general_assumptions(floor, has_classes=any(one.classes is not None for one in photos)),
         ),
-    )  # fmt: skip
+    )
 
 
 def _joined(masks: Sequence[GridBool | None], is_whole: bool) -> np.ndarray:
@@ -115,9 +125,14 @@ def floor_plane(grid: AlignedGrid, is_floor: GridBool, material: str, *, is_whol
     left, right, far = left - _FLOOR_MARGIN_M, right + _FLOOR_MARGIN_M, far + _FLOOR_MARGIN_M
     x, y, z = np.eye(3)
     plane = Plane(
-        kind="floor", centre_m=grid.floor_z_m * z, normal=z, axis_u=x, axis_v=y, half_size_m=(0.0, 0.0),
+        kind="floor",
+        centre_m=grid.floor_z_m * z,
+        normal=z,
+        axis_u=x,
+        axis_v=y,
+        half_size_m=(0.0, 0.0),
         material=material,
-    )  # fmt: skip
+    )
     return plane.spanned((left, near), (right, far))
 
 

@@ -31,9 +31,11 @@ MAX_DOUBTFUL = 0.7  # share of the depth: where more is of the lowest confidence
 TUM_APART_S, TUM_POSE_APART_S = 0.03, 0.05  # colour and depth, or pose, farther apart are of other moments
 # fx, fy, cx, cy of 640 x 480 (Sturm et al., IROS 2012, and the data set's page); by default those of ROS
 TUM_CAMERAS = {
-    "freiburg1": (517.3, 516.5, 318.6, 255.3), "freiburg2": (520.9, 521.0, 325.1, 249.7),
-    "freiburg3": (535.4, 539.2, 320.1, 247.6), "": (525.0, 525.0, 319.5, 239.5),
-}  # fmt: skip
+    "freiburg1": (517.3, 516.5, 318.6, 255.3),
+    "freiburg2": (520.9, 521.0, 325.1, 249.7),
+    "freiburg3": (535.4, 539.2, 320.1, 247.6),
+    "": (525.0, 525.0, 319.5, 239.5),
+}
 Y_UP_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])  # from x right, y down, z forward to ARKit's x right, y up, z backward
 DEGREES_A_METRE = 30.0  # how far a camera turns to show as much that is new as a metre further on
 ENOUGH = 1.0  # metres, or so turned: nearer frames show little that is new
@@ -190,8 +192,9 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
     """The frames whose cameras stand and look most differently from the first and each other."""
     places = {
         index: np.concatenate([pose[:3, 3], pose[:3, 2] * 57.3 / DEGREES_A_METRE])  # metres, and direction as metres
-        for index, pose in enumerate(poses) if pose is not None
-    }  # fmt: skip
+        for index, pose in enumerate(poses)
+        if pose is not None
+    }
     if first not in places:
         raise InputError(f"photo {first} of the scan has no pose; choose another with --photo")
     chosen = [first]
@@ -267,10 +270,12 @@ def _stray(folder: Path, depth: Path) -> _Frame:
     said = _table(folder / "odometry.csv") if (folder / "odometry.csv").is_file() else np.zeros((0, 0))
     own = said[said[:, 1] == number] if said.shape[1] >= 13 else said[:0]
     return _Frame(
-        rgb=read_video_frame(video, number, "phone"), depth_m=read_depth(depth, MILLIMETRE)[0],
-        lens=own[0, 9:13] if len(own) else matrix[[0, 1, 0, 1], [0, 1, 2, 2]], files={"rgb": video, "depth": depth},
+        rgb=read_video_frame(video, number, "phone"),
+        depth_m=read_depth(depth, MILLIMETRE)[0],
+        lens=own[0, 9:13] if len(own) else matrix[[0, 1, 0, 1], [0, 1, 2, 2]],
+        files={"rgb": video, "depth": depth},
         confidence=_confidence(folder / "confidence" / depth.name),
-    )  # fmt: skip
+    )
 
 
 def _stray_pose(folder: Path, depth: Path) -> Pose | None:
@@ -298,10 +303,12 @@ def _record3d(folder: Path, colour: Path) -> _Frame:
     depth_m = np.frombuffer(read_lzfse(depth, 4 * rows * columns), "<f4").reshape(rows, columns).astype(np.float64)
     confidence = np.frombuffer(read_lzfse(doubt, rows * columns), np.uint8) if doubt.is_file() else None
     return _Frame(
-        rgb=rgb, depth_m=np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, np.nan), lens=lens,
+        rgb=rgb,
+        depth_m=np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, np.nan),
+        lens=lens,
         files={"rgb": colour, "depth": depth, "camera": folder / "metadata"},
         confidence=None if confidence is None else confidence.reshape(rows, columns),
-    )  # fmt: skip
+    )
 
 
 def _record3d_pose(folder: Path, colour: Path) -> Pose | None:
@@ -323,10 +330,12 @@ def _polycam(folder: Path, colour: Path) -> _Frame:
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{place} lacks fx, fy, cx, cy") from None
     return _Frame(
-        rgb=read_rgb(colour)[0], depth_m=read_depth(depth, MILLIMETRE)[0], lens=lens,
+        rgb=read_rgb(colour)[0],
+        depth_m=read_depth(depth, MILLIMETRE)[0],
+        lens=lens,
         files={"rgb": colour, "depth": depth, "camera": place},
         confidence=_confidence(folder / "keyframes" / "confidence" / depth.name),
-    )  # fmt: skip
+    )
 
 
 def _polycam_camera(colour: Path) -> Path:
@@ -349,9 +358,11 @@ def _scannet(folder: Path, colour: Path) -> _Frame:
     if matrix.shape[0] < 3 or matrix.shape[1] < 3:
         raise InputError(f"{intrinsic} holds no 4 x 4 matrix")
     return _Frame(
-        rgb=read_rgb(colour)[0], depth_m=read_depth(depth, MILLIMETRE)[0], lens=matrix[[0, 1, 0, 1], [0, 1, 2, 2]],
+        rgb=read_rgb(colour)[0],
+        depth_m=read_depth(depth, MILLIMETRE)[0],
+        lens=matrix[[0, 1, 0, 1], [0, 1, 2, 2]],
         files={"rgb": colour, "depth": depth},
-    )  # fmt: skip
+    )
 
 
 def _scannet_pose(folder: Path, colour: Path) -> Pose | None:
@@ -370,9 +381,12 @@ def _tum(folder: Path, colour: Path) -> _Frame:
     rgb = read_rgb(colour)[0]
     note = f"The camera is that of {which}." if which else "No freiburg1, 2 or 3 in the folder's name: ROS's camera."
     return _Frame(
-        rgb=rgb, depth_m=read_depth(depth, TUM_UNIT_M)[0], lens=np.array(TUM_CAMERAS[which]) * rgb.shape[1] / 640,
-        files={"rgb": colour, "depth": depth}, notes=(note,),
-    )  # fmt: skip
+        rgb=rgb,
+        depth_m=read_depth(depth, TUM_UNIT_M)[0],
+        lens=np.array(TUM_CAMERAS[which]) * rgb.shape[1] / 640,
+        files={"rgb": colour, "depth": depth},
+        notes=(note,),
+    )
 
 
 def _tum_pose(folder: Path, colour: Path) -> Pose | None:
@@ -387,14 +401,20 @@ FORMATS = {
         markers=("metadata", "rgbd"), pictures=("rgbd/*.jpg",), read=_record3d, pose=_record3d_pose, up=1
     ),
     "Polycam": _Format(
-        markers=("keyframes/depth",), pictures=("keyframes/corrected_images/*.jpg", "keyframes/images/*.jpg"),
-        read=_polycam, pose=_polycam_pose, up=1,
+        markers=("keyframes/depth",),
+        pictures=("keyframes/corrected_images/*.jpg", "keyframes/images/*.jpg"),
+        read=_polycam,
+        pose=_polycam_pose,
+        up=1,
     ),
     "ScanNet": _Format(
-        markers=("intrinsic", "color", "depth"), pictures=("color/*.jpg", "color/*.png"), read=_scannet,
-        pose=_scannet_pose, up=2,
+        markers=("intrinsic", "color", "depth"),
+        pictures=("color/*.jpg", "color/*.png"),
+        read=_scannet,
+        pose=_scannet_pose,
+        up=2,
     ),
     "TUM RGB-D": _Format(
         markers=("rgb", "depth"), pictures=("rgb/*.png", "rgb/*.jpg"), read=_tum, pose=_tum_pose, up=None
     ),
-}  # fmt: skip
+}

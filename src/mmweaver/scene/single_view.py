@@ -87,9 +87,17 @@ def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SingleView:
         )
     planes = tuple(replace(surface.plane, material=name) for surface, name in zip(surfaces, surface_names, strict=True))
     return SingleView(
-        view=view, grid=grid, room=room, is_floor=is_floor, height_map=height_map, free_space=free_space, seats=seats,
-        material=material, planes=planes, assumptions=(*pane_assumptions, *gravity.assumptions),
-    )  # fmt: skip
+        view=view,
+        grid=grid,
+        room=room,
+        is_floor=is_floor,
+        height_map=height_map,
+        free_space=free_space,
+        seats=seats,
+        material=material,
+        planes=planes,
+        assumptions=(*pane_assumptions, *gravity.assumptions),
+    )
 
 
 def _is_mostly(surface: Surface, cells: GridBool | None) -> bool:

@@ -58,9 +58,11 @@ def point_cloud(
     power = range_doppler_power(cube)
     used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
     found = ca_cfar(
-        power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1],
+        power[:, :, used_bins],
+        false_alarm_rate=false_alarm_rate,
+        num_looks=cube.values.shape[-1],
         cells=CfarCells().within(power.shape[2]),
-    )  # fmt: skip
+    )
     detections = _detected_cells(cube, power, found, used_bins)
     which, direction, gain_db = _azimuth_peaks(cube, detections.signal)
     up = _elevation(cube, detections.signal[which], direction)

@@ -88,9 +88,13 @@ def _cell(cube: RadarCube, values: np.ndarray, index: int, power: float) -> Slow
     phase = np.unwrap(np.angle(signal - around))
     displacement = phase * cube.grid.wavelength_m / (4 * np.pi)
     return SlowTimeCell(
-        range_m=float(cube.grid.range_m[index]), moving_power=power, signal=signal, phase_rad=phase,
-        displacement_m=displacement - displacement.mean(), has_centre=centre is not None,
-    )  # fmt: skip
+        range_m=float(cube.grid.range_m[index]),
+        moving_power=power,
+        signal=signal,
+        phase_rad=phase,
+        displacement_m=displacement - displacement.mean(),
+        has_centre=centre is not None,
+    )
 
 
 def _steadier(signal: np.ndarray) -> complex:

@@ -11,9 +11,15 @@ from mmweaver.core.shapes import PerAngle, PerIndex, RangeAngleMap, RangeDoppler
 from mmweaver.core.virtual_array import azimuth_row, elevation_columns, has_elevation
 
 __all__ = [
-    "azimuth_axis_rad", "elevation_axis_rad", "has_elevation", "moving_doppler", "noise_power", "range_azimuth_power",
-    "range_doppler_power", "range_elevation_power",
-]  # fmt: skip
+    "azimuth_axis_rad",
+    "elevation_axis_rad",
+    "has_elevation",
+    "moving_doppler",
+    "noise_power",
+    "range_azimuth_power",
+    "range_doppler_power",
+    "range_elevation_power",
+]
 
 
 def range_doppler_power(cube: RadarCube) -> RangeDopplerMap:

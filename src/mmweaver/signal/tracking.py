@@ -137,6 +137,10 @@ def _finished(track: _Track, frame_time_s: np.ndarray) -> PersonTrack:
     steps = [(frame, state) for frame, state in track.steps if frame <= track.seen[-1]]
     frame, state = np.array([step[0] for step in steps]), np.array([step[1] for step in steps])
     return PersonTrack(
-        frame=frame, time_s=np.asarray(frame_time_s)[frame], place_m=state[:, :2], velocity_mps=state[:, 2:],
-        height_m=float(np.median(track.heights)), num_points=track.num_points,
-    )  # fmt: skip
+        frame=frame,
+        time_s=np.asarray(frame_time_s)[frame],
+        place_m=state[:, :2],
+        velocity_mps=state[:, 2:],
+        height_m=float(np.median(track.heights)),
+        num_points=track.num_points,
+    )

@@ -92,9 +92,11 @@ def _rate(
     peak_db = 10 * np.log10(power[at] / max(float(np.median(power[inside])), 1e-300))
     is_inner = at > 0 and at + 1 < len(power) and power[at] >= power[at - 1] and power[at] >= power[at + 1]
     return Rate(
-        frequency_hz=float(frequency_hz[at]), per_minute=float(60 * frequency_hz[at]),
-        peak_over_median_db=float(peak_db), is_clear=bool(is_inner and peak_db >= clear_db),
-    )  # fmt: skip
+        frequency_hz=float(frequency_hz[at]),
+        per_minute=float(60 * frequency_hz[at]),
+        peak_over_median_db=float(peak_db),
+        is_clear=bool(is_inner and peak_db >= clear_db),
+    )
 
 
 def _band(values: np.ndarray, period_s: float, band_hz: tuple[float, float]) -> np.ndarray:

@@ -72,10 +72,13 @@ class Live:
             self._scale_db = (shown.header["db"]["low"], shown.header["db"]["high"])
         period_s = chunk.cube.config.frame_period_s
         live = {
-            "frames": self._frames, "first_frame": chunk.first_frame, "refused": chunk.refused, "text": chunk.text,
+            "frames": self._frames,
+            "first_frame": chunk.first_frame,
+            "refused": chunk.refused,
+            "text": chunk.text,
             "label": None if self._labels is None else self._labels.push(chunk),
             "times_real_time": self._frames * period_s / max(self._seconds, 1e-6),
-        }  # fmt: skip
+        }
         return pack({**shown.header, "live": live}, shown.arrays)
 
     def _meta(self, chunk: StreamChunk) -> dict[str, Any]:

@@ -68,9 +68,10 @@ class Form(Request):
         request = replace(self.request, board=board or self.board_name)
         given = {one.name: getattr(request, one.name) for one in fields(Request)}
         arguments = "".join(
-            f", {one.name}={given[one.name]!r}" for one in fields(Request)
+            f", {one.name}={given[one.name]!r}"
+            for one in fields(Request)
             if one.name != "text" and given[one.name] != one.default
-        )  # fmt: skip
+        )
         if motion is not None:
             arguments += f", motion=weaver.read_motion({motion!r})"
         return (

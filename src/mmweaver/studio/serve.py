@@ -52,9 +52,12 @@ def serve(
     try:
         studio = StudioServer(Service(rooms, recordings, recognisers), workers=workers)
         config = uvicorn.Config(
-            studio.app(hosts=set(names), token=token), log_level="warning", ws_max_size=1 << 20,
-            timeout_graceful_shutdown=2, limit_concurrency=400,
-        )  # fmt: skip
+            studio.app(hosts=set(names), token=token),
+            log_level="warning",
+            ws_max_size=1 << 20,
+            timeout_graceful_shutdown=2,
+            limit_concurrency=400,
+        )
         announce("mmweaver studio is warming up ...")
         _Announcing(config, address, announce, open_browser).run(sockets=[bound])
     finally:

@@ -109,9 +109,11 @@ class StudioServer:
             self.service.sessions.end_all()
 
         return Starlette(
-            routes=routes, lifespan=lifespan, exception_handlers={InputError: _refused, BusyError: _busy},
+            routes=routes,
+            lifespan=lifespan,
+            exception_handlers={InputError: _refused, BusyError: _busy},
             middleware=[Middleware(Door, hosts=hosts or LOOPBACK, token=token)],
-        )  # fmt: skip
+        )
 
     # the page --------------------------------------------------------------------------------------------------------
     async def _index(self, _: Request) -> Response:

@@ -188,9 +188,13 @@ class Service:
         }
         repeated = {"command": asked.command([*room.options], **names), "python": asked.python(room.call, **names)}
         result = Result(
-            cube=generation.cube, points=generation.points, poses=generation.poses, meta=generation.meta,
-            generation=generation, with_samples=lambda: made(keep_adc=True),
-        )  # fmt: skip
+            cube=generation.cube,
+            points=generation.points,
+            poses=generation.poses,
+            meta=generation.meta,
+            generation=generation,
+            with_samples=lambda: made(keep_adc=True),
+        )
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
     def recording(self, session: Session, name: str) -> bytes:
@@ -280,6 +284,9 @@ def _row(one: FeatureComparison) -> dict[str, Any]:
     assert one.difference is not None
     unit = one.feature.unit
     return {
-        "title": one.feature.title, "effect": one.difference.effect_size, "a": one.a.text(unit), "b": one.b.text(unit),
+        "title": one.feature.title,
+        "effect": one.difference.effect_size,
+        "a": one.a.text(unit),
+        "b": one.b.text(unit),
         "gives_away": one.gives_away,
-    }  # fmt: skip
+    }

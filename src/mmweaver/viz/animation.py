@@ -102,8 +102,13 @@ def _people(axes: "Axes", view: FigureData) -> Update:
 
 
 def _range_doppler(axes: "Axes", view: FigureData) -> Update:
-    return _map(axes, view, view.scale.decibels(view.range_doppler), (*view.velocity_edges_mps, *view.range_edges_m),
-                ("Range-Doppler", "radial velocity (m/s)", "range (m)"))  # fmt: skip
+    return _map(
+        axes,
+        view,
+        view.scale.decibels(view.range_doppler),
+        (*view.velocity_edges_mps, *view.range_edges_m),
+        ("Range-Doppler", "radial velocity (m/s)", "range (m)"),
+    )
 
 
 def _range_azimuth(axes: "Axes", view: FigureData) -> Update:

@@ -232,9 +232,11 @@ class Fan:
         closer_below = angle - angle_rad[nearest - 1] < angle_rad[nearest] - angle
         half_rad = (angle_rad[1] - angle_rad[0]) / 2
         inside = (
-            (range_index >= 0) & (range_index < len(range_m))
-            & (angle >= angle_rad[0] - half_rad) & (angle <= angle_rad[-1] + half_rad)
-        )  # fmt: skip
+            (range_index >= 0)
+            & (range_index < len(range_m))
+            & (angle >= angle_rad[0] - half_rad)
+            & (angle <= angle_rad[-1] + half_rad)
+        )
         return cls(
             range_index=np.clip(range_index, 0, len(range_m) - 1),
             angle_index=nearest - closer_below,

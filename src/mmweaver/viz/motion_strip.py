@@ -111,19 +111,23 @@ def _paint(picture: np.ndarray, body: Body, origin_m: Float[np.ndarray, "3"], or
     wider = seen_width(ends_px[:, 1] - ends_px[:, 0], wide_px, body.width_per_depth)
     seen = rasterise(
         CapsulesInPicture(
-            ends_px=ends_px, depth_m=_away_m(ends_m), radius_px=body.radius_m * wider[:, None] * PX_PER_M,
+            ends_px=ends_px,
+            depth_m=_away_m(ends_m),
+            radius_px=body.radius_m * wider[:, None] * PX_PER_M,
             radius_m=body.radius_m,
         ),
         (picture.shape[0], picture.shape[1]),
-    )  # fmt: skip
+    )
     if seen is not None:
         blend(picture, seen, COLOURS[seen.capsule])
 
 
 def _darken(
-    picture: np.ndarray, ends_m: Float[np.ndarray, "capsule 2 3"], radius_m: Float[np.ndarray, "capsule 2"],
+    picture: np.ndarray,
+    ends_m: Float[np.ndarray, "capsule 2 3"],
+    radius_m: Float[np.ndarray, "capsule 2"],
     origin_px: Float[np.ndarray, "2"],
-) -> None:  # fmt: skip
+) -> None:
     """A soft shadow on the floor below what is near it."""
     row = np.arange(picture.shape[0])
     band = np.flatnonzero(np.abs(row - origin_px[1]) < 1.2 * TILT * PX_PER_M + 6)
@@ -195,6 +199,8 @@ def _draw_skeleton(axes: "Axes", joints_m: Float[np.ndarray, "22 3"], place_m: f
         name = JOINT_NAMES[end]
         colour = LEFT if name.startswith("left") else RIGHT if name.startswith("right") else TRUNK
         axes.plot(
-            *flat[[start, end]].T, color=BEHIND if is_behind else colour, linewidth=4.0 if is_behind else 1.4,
+            *flat[[start, end]].T,
+            color=BEHIND if is_behind else colour,
+            linewidth=4.0 if is_behind else 1.4,
             solid_capstyle="round",
-        )  # fmt: skip
+        )

@@ -54,18 +54,28 @@ def moving_words(view: FigureData) -> str:
 
 
 def _truth(
-    axes: "Axes", people: Sequence[PoseSequence], curves: Callable[[PoseSequence], Curves], text: str,
-    corner: str = "lower right", style: str = "-", on_white: bool = False,
-) -> None:  # fmt: skip
+    axes: "Axes",
+    people: Sequence[PoseSequence],
+    curves: Callable[[PoseSequence], Curves],
+    text: str,
+    corner: str = "lower right",
+    style: str = "-",
+    on_white: bool = False,
+) -> None:
     """Draws what is known of each person in their colour, and says what it is."""
     for index, person in enumerate(people):
         colour = person_colour(index, len(people), on_white=on_white)
         for x, y in curves(person):
             is_path = style == "->"  # with a mark at its end
             axes.plot(
-                x, y, style, color=colour, linewidth=0.9, markersize=4 if is_path else 2.5,
+                x,
+                y,
+                style,
+                color=colour,
+                linewidth=0.9,
+                markersize=4 if is_path else 2.5,
                 markevery=[-1] if is_path else None,
-            )  # fmt: skip
+            )
     if people:
         note(axes, text, corner)
 
@@ -340,8 +350,11 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     axes.set(xticks=[], yticks=[])
     axes.set_anchor("NW")
     who = ("with nobody in it", "and the person at several times")
-    axes.set_title(f"The room, {who[len(people)]}" if len(people) < 2 else
-                   "The room, and the people at several times, the last the brightest")  # fmt: skip
+    axes.set_title(
+        f"The room, {who[len(people)]}"
+        if len(people) < 2
+        else "The room, and the people at several times, the last the brightest"
+    )
     if len(people) == 1 and len(people[0].time_s) > 1:
         from_s, to_s = float(people[0].time_s[0]), float(people[0].time_s[-1])
         bar = axes.inset_axes((0.02, 0.035, 0.2, 0.02))

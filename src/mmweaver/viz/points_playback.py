@@ -28,13 +28,15 @@ def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, me
     far_m = _end(np.percentile(range_m, 99) if len(range_m) else 0.0, _MIN_FAR_M)
     fast_mps = _end(np.abs(velocity).max(initial=0.0), _MIN_FAST_MPS)
     edges = {
-        "range": (0.0, far_m, _RANGES), "doppler": (-fast_mps, fast_mps, _VELOCITIES),
+        "range": (0.0, far_m, _RANGES),
+        "doppler": (-fast_mps, fast_mps, _VELOCITIES),
         "azimuth": (-np.pi / 2, np.pi / 2, _AZIMUTHS),
-    }  # fmt: skip
+    }
     cell = {
-        "range": _cell(range_m, *edges["range"]), "doppler": _cell(velocity, *edges["doppler"]),
+        "range": _cell(range_m, *edges["range"]),
+        "doppler": _cell(velocity, *edges["doppler"]),
         "azimuth": _cell(azimuth_rad, *edges["azimuth"]),
-    }  # fmt: skip
+    }
     high_db = max(float(level_db.max(initial=0.0)), 1.0)
 
     def strongest(*axes: str, moving: bool = False) -> np.ndarray:
@@ -55,12 +57,21 @@ def point_log_playback(points: PointCloud, frame_period_s: float, radar: str, me
         "point_frame": frame.astype(np.int32),
     }
     header = {
-        "kind": "sequence", "frames": len(shown), "frames_in_all": count,
-        "time_s": shown * frame_period_s, "frame_period_s": frame_period_s,
-        "range_m": edges["range"][:2], "velocity_mps": edges["doppler"][:2], "azimuth_rad": edges["azimuth"][:2],
+        "kind": "sequence",
+        "frames": len(shown),
+        "frames_in_all": count,
+        "time_s": shown * frame_period_s,
+        "frame_period_s": frame_period_s,
+        "range_m": edges["range"][:2],
+        "velocity_mps": edges["doppler"][:2],
+        "azimuth_rad": edges["azimuth"][:2],
         "db": {"low": 0.0, "high": high_db, "noise": 0.0, "unit": "dB SNR of points"},
-        "people": 0, "bones": [], "pelvis": 0, "radar": radar, "meta": meta,
-    }  # fmt: skip
+        "people": 0,
+        "bones": [],
+        "pelvis": 0,
+        "radar": radar,
+        "meta": meta,
+    }
     return Playback(header=header, arrays=arrays)
 
 

@@ -62,9 +62,15 @@ class PowerScale:
     def draw(self, axes: "Axes", power_db: Float[Array, "y x"], extent: Extent) -> "AxesImage":
         """Draws decibels (y, x), the first row at the bottom, each cell in one colour; the limits stay from then on."""
         image = axes.imshow(
-            power_db, origin="lower", aspect="auto", extent=extent, cmap=POWER_MAP, vmin=self.low_db, vmax=self.high_db,
+            power_db,
+            origin="lower",
+            aspect="auto",
+            extent=extent,
+            cmap=POWER_MAP,
+            vmin=self.low_db,
+            vmax=self.high_db,
             interpolation="nearest",
-        )  # fmt: skip
+        )
         axes.autoscale(False)
         return image
 

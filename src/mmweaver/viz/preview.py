@@ -35,9 +35,16 @@ def draw_preview(view: FigureData, path: Path | None) -> "Figure":
     with page(path, view.heading, 16.0, 9.0 if photo else 7.0) as figure:
         rows = [*_power_rows(view), _LAST_ROW]
         places = figure.add_gridspec(
-            len(rows), 4, left=0.04, right=0.935, bottom=0.075, top=0.895 if photo else 0.87, wspace=0.27, hspace=0.4,
+            len(rows),
+            4,
+            left=0.04,
+            right=0.935,
+            bottom=0.075,
+            top=0.895 if photo else 0.87,
+            wspace=0.27,
+            hspace=0.4,
             height_ratios=(*([1.0] * (len(rows) - 1)), 0.85),
-        )  # fmt: skip
+        )
         if photo:
             panels.draw_photo(figure.add_subplot(places[0:2, 0:2]), view)
         for row, drawers in enumerate(rows):
@@ -49,8 +56,11 @@ def draw_preview(view: FigureData, path: Path | None) -> "Figure":
 
 
 _LAST_ROW: "list[Panel]" = [
-    panels.draw_azimuth_with_clutter, panels.draw_azimuth_moving, panels.draw_points_top, panels.draw_points_side,
-]  # fmt: skip
+    panels.draw_azimuth_with_clutter,
+    panels.draw_azimuth_moving,
+    panels.draw_points_top,
+    panels.draw_points_side,
+]
 
 
 def _power_rows(view: FigureData) -> "list[list[Panel]]":

@@ -25,9 +25,13 @@ HEIGHT_INCH = 4.6
 
 
 def draw_slow_time(
-    path: Path, title: str, cube: RadarCube, slow_doppler: tuple[np.ndarray, np.ndarray],
-    cells: Sequence[SlowTimeCell], rates: dict[str, Rate | None],
-) -> None:  # fmt: skip
+    path: Path,
+    title: str,
+    cube: RadarCube,
+    slow_doppler: tuple[np.ndarray, np.ndarray],
+    cells: Sequence[SlowTimeCell],
+    rates: dict[str, Rate | None],
+) -> None:
     """Range over slow-time velocity, displacement of the cells that move most over time, and its spectrum.
 
     Args:

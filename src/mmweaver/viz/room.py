@@ -34,13 +34,15 @@ def room_playback(
     walkable = FloorMap(scene, range_window_m, REFERENCE_HEIGHT_M).walkable
     cell_m = float(free.x_m[1] - free.x_m[0]) if len(free.x_m) > 1 else 0.05
     header: dict[str, Any] = {
-        "kind": "room", "name": name,
-        "floor_z_m": scene.floor_z_m, "cell_m": cell_m,
+        "kind": "room",
+        "name": name,
+        "floor_z_m": scene.floor_z_m,
+        "cell_m": cell_m,
         "planes": [_plane(plane) for plane in scene.planes],
         "seats": [seat.position_m for seat in scene.seats],
         "landmarks": [{"kind": mark.kind, "place_m": mark.position_m} for mark in scene.landmarks],
         "assumed": list(scene.assumptions),
-    }  # fmt: skip
+    }
     arrays = {
         "room_points": (points_m[chosen] * 1000).round().clip(-32768, 32767).astype(np.int16),
         "room_colours": scene.photo.rgb[chosen].astype(np.uint8),
@@ -53,6 +55,8 @@ def room_playback(
 def _plane(plane: Plane) -> dict[str, Any]:
     """Corners in order around the rectangle, and what it is made of."""
     return {
-        "kind": plane.kind, "material": plane.material, "corners_m": np.round(plane.corners_m, 3),
+        "kind": plane.kind,
+        "material": plane.material,
+        "corners_m": np.round(plane.corners_m, 3),
         "reflects": any(word in plane.material for word in _REFLECTORS),
-    }  # fmt: skip
+    }

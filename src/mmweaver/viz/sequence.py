@@ -62,18 +62,25 @@ def make_playback(
     config = cube.config
     header = {
         "kind": "sequence",
-        "frames": len(shown), "frames_in_all": count,
-        "time_s": time_s, "frame_period_s": config.frame_period_s,
+        "frames": len(shown),
+        "frames_in_all": count,
+        "time_s": time_s,
+        "frame_period_s": config.frame_period_s,
         "range_m": _edges(cube.grid.range_m, config.range_resolution_m),
         "velocity_mps": _edges(cube.grid.radial_velocity_mps, config.velocity_resolution_mps),
         "azimuth_rad": _edges(azimuth_rad, float(azimuth_rad[1] - azimuth_rad[0])),
         "db": {
-            "low": low_db, "high": high_db, "noise": noise_db,
+            "low": low_db,
+            "high": high_db,
+            "noise": noise_db,
             "unit": "dBm" if np.isfinite(cube.scale) else "dB, uncalibrated",
         },
-        "people": len(poses), "bones": BONES, "pelvis": joint("pelvis"),
-        "radar": config.name, "meta": meta or {},
-    }  # fmt: skip
+        "people": len(poses),
+        "bones": BONES,
+        "pelvis": joint("pelvis"),
+        "radar": config.name,
+        "meta": meta or {},
+    }
     return Playback(header=header, arrays=arrays)
 
 

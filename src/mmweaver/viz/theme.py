@@ -24,16 +24,40 @@ _BEYOND_FONT = 0x2E80
 _CORNERS = {"lower right": (0.98, 0.02), "upper right": (0.98, 0.97), "upper left": (0.02, 0.97)}
 
 STYLE: Any = {
-    "font.family": "DejaVu Sans", "font.size": 9.0, "figure.facecolor": PAPER, "figure.dpi": 100,
-    "axes.titlesize": 10.0, "axes.titlelocation": "left", "axes.titlepad": 6.0, "axes.titley": 1.0,
-    "axes.labelsize": 9.0, "axes.labelpad": 2.0, "axes.edgecolor": INK, "axes.linewidth": 0.7, "axes.labelcolor": INK,
-    "axes.axisbelow": True, "axes.formatter.useoffset": False,
-    "xtick.labelsize": 8.0, "ytick.labelsize": 8.0, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
-    "xtick.color": INK, "ytick.color": INK, "grid.color": "#d8dce0", "grid.linewidth": 0.5,
-    "legend.fontsize": 8.0, "legend.frameon": False, "legend.loc": "upper right", "legend.labelcolor": "linecolor",
-    "legend.handlelength": 0.0, "legend.handletextpad": 0.2, "legend.borderaxespad": 0.2, "legend.labelspacing": 0.2,
-    "text.color": INK, "text.parse_math": False,  # a name from a file may hold a $
-}  # fmt: skip
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "figure.facecolor": PAPER,
+    "figure.dpi": 100,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 6.0,
+    "axes.titley": 1.0,
+    "axes.labelsize": 9.0,
+    "axes.labelpad": 2.0,
+    "axes.edgecolor": INK,
+    "axes.linewidth": 0.7,
+    "axes.labelcolor": INK,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "grid.color": "#d8dce0",
+    "grid.linewidth": 0.5,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "legend.loc": "upper right",
+    "legend.labelcolor": "linecolor",
+    "legend.handlelength": 0.0,
+    "legend.handletextpad": 0.2,
+    "legend.borderaxespad": 0.2,
+    "legend.labelspacing": 0.2,
+    "text.color": INK,
+    "text.parse_math": False,  # a name from a file may hold a $
+}
 
 
 def label_axes(axes: "Axes", title: str, x_label: str, y_label: str, *, grid: bool = False) -> None:
@@ -78,9 +102,15 @@ def note(axes: "Axes", text: str, corner: str = "lower right") -> None:
     place, (vertical, horizontal) = _CORNERS[corner], corner.split()
     colour, ground = (GROUND_TRUTH, "black") if vertical == "lower" else (INK, PAPER)
     axes.text(
-        *place, text, transform=axes.transAxes, ha=horizontal, va="bottom" if vertical == "lower" else "top",
-        fontsize=7.5, color=colour, bbox={"facecolor": ground, "edgecolor": "none", "alpha": 0.6, "pad": 1.0},
-    )  # fmt: skip
+        *place,
+        text,
+        transform=axes.transAxes,
+        ha=horizontal,
+        va="bottom" if vertical == "lower" else "top",
+        fontsize=7.5,
+        color=colour,
+        bbox={"facecolor": ground, "edgecolor": "none", "alpha": 0.6, "pad": 1.0},
+    )
 
 
 def person_colour(index: int, count: int, *, on_white: bool = False) -> str:

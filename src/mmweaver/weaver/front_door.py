@@ -106,9 +106,13 @@ class Weaver(RoomReader):
 
     @classmethod
     def from_pretrained(
-        cls, source: str | Path, radar: str | Path | RadarConfig | None = None, *, revision: str | None = None,
+        cls,
+        source: str | Path,
+        radar: str | Path | RadarConfig | None = None,
+        *,
+        revision: str | None = None,
         **options: Any,
-    ) -> "Weaver":  # fmt: skip
+    ) -> "Weaver":
         """A weaver that uses a trained network.
 
         `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub, at a `revision`.
@@ -212,10 +216,16 @@ class Weaver(RoomReader):
         request = self.request("a person stands", frames=1, **asked)
         (person,) = request.people
         motion = ContinuousMotion(
-            room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m,
-            seed=request.seed, farthest_m=request.config.farthest_bin_m, start_m=person.start_m,
-            heading_rad=request.heading_rad, height_m=person.height_m, subject=person.subject,
-        )  # fmt: skip
+            room.scene,
+            frame_period_s=request.config.frame_period_s,
+            range_window_m=request.range_window_m,
+            seed=request.seed,
+            farthest_m=request.config.farthest_bin_m,
+            start_m=person.start_m,
+            heading_rad=request.heading_rad,
+            height_m=person.height_m,
+            subject=person.subject,
+        )
         return Streamer(self, room, request, motion, chunk_frames).chunks(sentences)
 
     @single_precision()
@@ -241,10 +251,16 @@ class Weaver(RoomReader):
         motions = people_seen_from(tuple(person.pose for person in people), pose)
         board, given = self.board_of(replace(request, seed=pose.noise_seed(request.seed)), room)
         signal = self.method(
-            room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
-            keep_adc=request.keep_adc or needs_adc(self.points), stages=stages, background=room.background,
+            room.scene,
+            motions,
+            request.config,
+            num_frames=request.frames,
+            seed=request.seed,
+            keep_adc=request.keep_adc or needs_adc(self.points),
+            stages=stages,
+            background=room.background,
             **given,
-        )  # fmt: skip
+        )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware_of(board))
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
@@ -257,9 +273,16 @@ class Weaver(RoomReader):
         if request.radar_poses:
             meta["radar_pose"] = pose
         return Generation(
-            cube=signal.cube, points=points, adc=adc, poses=poses,
-            motions=motions, scene=room.scene, meta=meta, stages=stages, board=board,
-        )  # fmt: skip
+            cube=signal.cube,
+            points=points,
+            adc=adc,
+            poses=poses,
+            motions=motions,
+            scene=room.scene,
+            meta=meta,
+            stages=stages,
+            board=board,
+        )
 
     def board_of(self, request: ParsedRequest, room: Room) -> tuple[Board, dict[str, Any]]:
         """The board of a signal, and the method's argument for it: none for an ideal one.
@@ -288,9 +311,14 @@ class Weaver(RoomReader):
         return None if self.firmware is None else self.firmware.with_threshold(board.cfar_threshold)
 
     def _meta(
-        self, request: ParsedRequest, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
-        signal: Signal, board: Board,
-    ) -> dict[str, Any]:  # fmt: skip
+        self,
+        request: ParsedRequest,
+        room: Room,
+        people: tuple[Motion, ...],
+        poses: tuple[PoseSequence, ...],
+        signal: Signal,
+        board: Board,
+    ) -> dict[str, Any]:
         """What meta.json says of a sequence: all that is needed to make it again."""
         return {
             "schema_version": META_VERSION,
@@ -307,7 +335,7 @@ class Weaver(RoomReader):
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),
-        }  # fmt: skip
+        }
 
 
 def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
@@ -322,18 +350,29 @@ def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
     if request.motion is not None:
         clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
         recorded = place_clip(
-            clip, scene, duration_s=request.duration_s, seed=request.seed, range_window_m=request.range_window_m,
-            start_m=first.start_m, heading_rad=request.heading_rad, as_recorded=request.as_recorded,
-        )  # fmt: skip
+            clip,
+            scene,
+            duration_s=request.duration_s,
+            seed=request.seed,
+            range_window_m=request.range_window_m,
+            start_m=first.start_m,
+            heading_rad=request.heading_rad,
+            as_recorded=request.as_recorded,
+        )
         who = subject_of(request.seed) if first.subject is None else first.subject
         recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
     return compose_people(
-        [person.plan for person in request.people], scene, seed=request.seed, range_window_m=request.range_window_m,
+        [person.plan for person in request.people],
+        scene,
+        seed=request.seed,
+        range_window_m=request.range_window_m,
         starts_m=[person.start_m for person in request.people],
         heights_m=[person.height_m for person in request.people],
-        subjects=[person.subject for person in request.people], first=recorded,
-        heading_rad=request.heading_rad, farthest_m=request.config.farthest_bin_m,
-    )  # fmt: skip
+        subjects=[person.subject for person in request.people],
+        first=recorded,
+        heading_rad=request.heading_rad,
+        farthest_m=request.config.farthest_bin_m,
+    )
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
@@ -345,8 +384,9 @@ def _found(weights: str | Path, revision: str | None = None) -> Path:
 def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:
     of_motion = (
         sentence if len(people) == 1 else f"person {number}: {sentence}"
-        for number, person in enumerate(people, 1) for sentence in person.assumptions
-    )  # fmt: skip
+        for number, person in enumerate(people, 1)
+        for sentence in person.assumptions
+    )
     return list(dict.fromkeys((*scene.assumptions, *of_motion, *of_method)))
 
 

@@ -199,14 +199,23 @@ class Generation(ShownByFacts):
         elsewhere = "" if pose.is_at_camera else f" at {pose.words}"
         return FigureData(
             title=f"{title}   ({self.cube.config.name}{elsewhere}, seed {self.meta['seed']})",
-            cube=self.cube, points=self.points, aligned=AlignedPhoto.of(self.scene),
-            poses=self.poses, motions=self.motions,
-        )  # fmt: skip
+            cube=self.cube,
+            points=self.points,
+            aligned=AlignedPhoto.of(self.scene),
+            poses=self.poses,
+            motions=self.motions,
+        )
 
     def save(
-        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str | None = None,
-        pictures: bool = True, extra: dict[str, str] | None = None,
-    ) -> dict[str, Any]:  # fmt: skip
+        self,
+        out: str | Path,
+        *,
+        overwrite: bool = False,
+        adc_data_bin: bool = False,
+        iq_order: str | None = None,
+        pictures: bool = True,
+        extra: dict[str, str] | None = None,
+    ) -> dict[str, Any]:
         """Writes all files and pictures into a folder, or none of them; returns the content of meta.json.
 
         Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does
@@ -217,9 +226,13 @@ class Generation(ShownByFacts):
         """
         if self.further:
             return self._save_each(
-                Path(out), overwrite=overwrite, adc_data_bin=adc_data_bin, iq_order=iq_order, pictures=pictures,
+                Path(out),
+                overwrite=overwrite,
+                adc_data_bin=adc_data_bin,
+                iq_order=iq_order,
+                pictures=pictures,
                 extra=extra,
-            )  # fmt: skip
+            )
         if adc_data_bin and self.adc is None:
             raise InputError(
                 "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
@@ -227,13 +240,18 @@ class Generation(ShownByFacts):
         if not self.board.is_ideal:
             extra = {BOARD_FILE: self.board.to_json(), **(extra or {})}
         return save_results(
-            out, self.figure_data, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order,
-            overwrite=overwrite, stages=self.stages, pictures=PREVIEWS if pictures else None, extra=extra,
-        )  # fmt: skip
+            out,
+            self.figure_data,
+            self.meta,
+            adc=self.adc if adc_data_bin else None,
+            iq_order=iq_order,
+            overwrite=overwrite,
+            stages=self.stages,
+            pictures=PREVIEWS if pictures else None,
+            extra=extra,
+        )
 
-    def _save_each(
-        self, out: Path, *, overwrite: bool, extra: dict[str, str] | None, **options: Any
-    ) -> dict[str, Any]:  # fmt: skip
+    def _save_each(self, out: Path, *, overwrite: bool, extra: dict[str, str] | None, **options: Any) -> dict[str, Any]:
         """Writes the folder of each radar, or none; returns the first one's meta.json with all files."""
         with staged_folder(out, overwrite=overwrite) as stage:
             for name, text in (extra or {}).items():
@@ -241,8 +259,9 @@ class Generation(ShownByFacts):
             metas = [one.save(stage / radar_folder(number), **options) for number, one in enumerate(self.radars, 1)]
         files = {
             f"{radar_folder(number)}/{name}": text
-            for number, meta in enumerate(metas, 1) for name, text in meta["files"].items()
-        }  # fmt: skip
+            for number, meta in enumerate(metas, 1)
+            for name, text in meta["files"].items()
+        }
         return {**metas[0], "files": files}
 
 

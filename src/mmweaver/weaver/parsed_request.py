@@ -74,9 +74,13 @@ class ParsedRequest:
         """What meta.json holds of the request."""
         placed = {name: getattr(self, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
         return {
-            "seed": self.seed, "frames": self.frames, "fps": 1 / self.config.frame_period_s, "at": self.at,
-            "placed": placed, **radar_meta(self.config),
-        }  # fmt: skip
+            "seed": self.seed,
+            "frames": self.frames,
+            "fps": 1 / self.config.frame_period_s,
+            "at": self.at,
+            "placed": placed,
+            **radar_meta(self.config),
+        }
 
     @property
     def board_without_background(self) -> Board:
@@ -145,17 +149,26 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
     subjects = _one_each(asked.subject, len(texts), "subject")
     people = tuple(
         PersonRequest(
-            text=text, plan=_scheduled(plan, duration_s), start_m=start,
-            height_m=None if height is None else float(height), subject=None if who is None else check_subject(who),
+            text=text,
+            plan=_scheduled(plan, duration_s),
+            start_m=start,
+            height_m=None if height is None else float(height),
+            subject=None if who is None else check_subject(who),
         )
         for text, plan, start, height, who in zip(texts, plans, starts, heights, subjects, strict=True)
-    )  # fmt: skip
+    )
     return ParsedRequest(
-        people=() if is_empty else people, config=config, frames=count, seed=asked.seed, motion=motion,
-        heading_rad=asked.heading_rad, as_recorded=asked.as_recorded, keep_adc=asked.keep_adc,
+        people=() if is_empty else people,
+        config=config,
+        frames=count,
+        seed=asked.seed,
+        motion=motion,
+        heading_rad=asked.heading_rad,
+        as_recorded=asked.as_recorded,
+        keep_adc=asked.keep_adc,
         board=None if asked.board is None else find_board(asked.board, config, asked.seed),
         radar_poses=tuple(asked.radar_poses),
-    )  # fmt: skip
+    )
 
 
 def _asks_for_nobody(asked: Request) -> bool:
@@ -226,17 +239,21 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
     steps = list(plan.steps)
     walk = steps[walks[0]]
     steps[walks[0]] = replace(
-        walk, route_m=points, distance_m=round(length_m, 2), direction=None, target="", place=None, arc_deg=0.0,
+        walk,
+        route_m=points,
+        distance_m=round(length_m, 2),
+        direction=None,
+        target="",
+        place=None,
+        arc_deg=0.0,
         count=0,
-    )  # fmt: skip
+    )
     notes, clauses = [f"the path given is {length_m:.2f} m long"], list(plan.clauses)
     if walk.direction or walk.target or walk.place or walk.arc_deg or walk.count:
         notes.append(f"{walk.clause!r} is shown along the path given, whatever way it names")
         for number in walk.clauses:
             clauses[number] = clauses[number].lowered_to(APPROXIMATED, notes[-1])
-    return replace(
-        plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=add_shown_text(clauses, steps)
-    )  # fmt: skip
+    return replace(plan, steps=tuple(steps), notes=(*plan.notes, *notes), clauses=add_shown_text(clauses, steps))
 
 
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:

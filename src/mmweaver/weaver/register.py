@@ -54,8 +54,18 @@ def encoder(name: str, make: "Callable[[], nn.Module]") -> None:
     ENCODERS.register(name, make)
 
 
-def activity(key: str, *, name: str, example: str, verbs: tuple[str, ...], perform: Callable[..., Any],
-             least_s: float, natural_s: float, hands: bool = False, **more: Any) -> None:  # fmt: skip
+def activity(
+    key: str,
+    *,
+    name: str,
+    example: str,
+    verbs: tuple[str, ...],
+    perform: Callable[..., Any],
+    least_s: float,
+    natural_s: float,
+    hands: bool = False,
+    **more: Any,
+) -> None:
     """Registers an activity that sentences can name by its verbs.
 
     `name` as in "walking", `example` a sentence with one of the verbs (base forms, one word each). `perform` is
@@ -66,6 +76,13 @@ def activity(key: str, *, name: str, example: str, verbs: tuple[str, ...], perfo
     from mmweaver.motion.register_activity import register_activity
 
     register_activity(
-        key, name=name, example=example, verbs=verbs, perform=perform, least_s=least_s, natural_s=natural_s,
-        hands=hands, **more,
-    )  # fmt: skip
+        key,
+        name=name,
+        example=example,
+        verbs=verbs,
+        perform=perform,
+        least_s=least_s,
+        natural_s=natural_s,
+        hands=hands,
+        **more,
+    )

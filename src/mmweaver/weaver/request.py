@@ -47,58 +47,79 @@ class Request:
 
     text: str | Sequence[str] | None = option(
         "what the person does; once more for each further person; 'nobody' is an empty room",
-        "TEXT", kind=str, many=True, group="motion",
-    )  # fmt: skip
+        "TEXT",
+        kind=str,
+        many=True,
+        group="motion",
+    )
     motion: "MotionClip | None" = None  # the first person's recorded motion, which its text then only names
     at: Place | Sequence[Place | None] | None = option(
         "where the person starts: metres right of and ahead of the radar (default: chosen); of several people the first"
         " --at is the first one's",
-        "X,Y", kind=Place, many=True,
-    )  # fmt: skip
+        "X,Y",
+        kind=Place,
+        many=True,
+    )
     heading_rad: float | None = option(
         "the direction that the person faces first: 0 towards the radar, 90 to the picture's right, 180 away (default:"
         " as the text says, else by seed)",
-        "DEG", kind=Heading, name="heading", rare=True,
-    )  # fmt: skip
+        "DEG",
+        kind=Heading,
+        name="heading",
+        rare=True,
+    )
     path_m: Sequence[Place] | None = option(
         "where the person walks: corners in metres right of and ahead of the radar",
-        "'X,Y X,Y ...'", kind=tuple[Place, ...], name="path", rare=True,
-    )  # fmt: skip
+        "'X,Y X,Y ...'",
+        kind=tuple[Place, ...],
+        name="path",
+        rare=True,
+    )
     height_m: float | Sequence[float | None] | None = option(
         "the person's height (default: as the text says, else by seed, or recorded); of several people once for each",
-        "M", kind=float, many=True, name="height",
-    )  # fmt: skip
+        "M",
+        kind=float,
+        many=True,
+        name="height",
+    )
     subject: int | Sequence[int | None] | None = option(
         "the person, 0 to 9999: skin, build, habits and usual height (default: by seed); of several people once for"
         " each",
-        "N", kind=int, many=True,
-    )  # fmt: skip
+        "N",
+        kind=int,
+        many=True,
+    )
     as_recorded: bool = option(
         "the motion's positions are the radar's own (x right, y away, z up); nothing is moved or checked",
-        default=False, rare=True,
-    )  # fmt: skip
+        default=False,
+        rare=True,
+    )
     frames: int | None = option(
-        "number of frames (default: as long as the sentence needs, at least 2 s, or as the recorded motion lasts)", "N",
+        "number of frames (default: as long as the sentence needs, at least 2 s, or as the recorded motion lasts)",
+        "N",
         group="radar",
-    )  # fmt: skip
+    )
     seconds: float | None = option("instead of --frames: how long", "S")
     fps: float | None = option("frames per second (default: the radar's own, 10 for awr1843)", "N")
     radar_poses: "Sequence[RadarPose]" = option(
         "where the radar stands, in metres right of, ahead of and above the camera, and degrees to which it is turned"
         " to the right, up, and about its boresight (default: at the camera, level); once more for each further radar,"
         " which records the same scene at the same time (docs/several_radars.md)",
-        "X,Y,Z,YAW,PITCH[,ROLL]", default=(), kind=radar_pose, many=True, name="radar-pose",
-    )  # fmt: skip
+        "X,Y,Z,YAW,PITCH[,ROLL]",
+        default=(),
+        kind=radar_pose,
+        many=True,
+        name="radar-pose",
+    )
     board: "str | Path | Board | None" = option(
         "the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
         " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
         " default is the recording's own",
-        "typical|ideal|FILE", kind=Source,
-    )  # fmt: skip
+        "typical|ideal|FILE",
+        kind=Source,
+    )
     seed: int = option("the same seed gives the same bits", "N", default=0, group="output")
-    keep_adc: bool = option(
-        "also write adc_data.bin, raw samples as a DCA1000 does", default=False, name="bin"
-    )  # fmt: skip
+    keep_adc: bool = option("also write adc_data.bin, raw samples as a DCA1000 does", default=False, name="bin")
 
     @property
     def sentences(self) -> list[str]:

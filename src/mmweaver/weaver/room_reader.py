@@ -65,9 +65,14 @@ class RoomReader:
         return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
 
     def read_capture(
-        self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None,
-        extra_views: Sequence[int] | str = (), **seen: Any,
-    ) -> Room:  # fmt: skip
+        self,
+        capture: str | Path,
+        *,
+        photo: int = 0,
+        rgb: str | Path | None = None,
+        extra_views: Sequence[int] | str = (),
+        **seen: Any,
+    ) -> Room:
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
         Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a ROS bag.
@@ -77,8 +82,10 @@ class RoomReader:
         in `read_room`.
         """
         if extra_views and (scan_kind(Path(capture)) is None or rgb is not None):
-            raise InputError("only scans with poses are joined of several photos: Stray Scanner, Record3D, Polycam, "
-                             "ScanNet, TUM RGB-D")  # fmt: skip
+            raise InputError(
+                "only scans with poses are joined of several photos: Stray Scanner, Record3D, Polycam, "
+                "ScanNet, TUM RGB-D"
+            )
         stages = Stages(self._listener)
         with stages("read the photo"):
             if not is_bag(Path(capture)):
@@ -151,9 +158,12 @@ class RoomReader:
 
     @staticmethod
     def _reconstruct(
-        photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages,
+        photo: RgbdPhoto,
+        assumptions: tuple[str, ...],
+        inputs: dict[str, Any],
+        stages: Stages,
         others: Sequence[PosedPhoto] = (),
-    ) -> Room:  # fmt: skip
+    ) -> Room:
         with stages("reconstruct the room"):
             scene = reconstruct(photo, others, assumptions=assumptions)
         return Room(scene=scene, inputs=inputs, seconds=stages.seconds, views=tuple(others))

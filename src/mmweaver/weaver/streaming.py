@@ -69,16 +69,19 @@ class StreamChunk(ShownByFacts):
     def first(self, count: int) -> "StreamChunk":
         """Its first frames; the dense motions stay whole."""
         return replace(
-            frames_of(self, 0, count), points=self.points.select(self.points.frame < count),
+            frames_of(self, 0, count),
+            points=self.points.select(self.points.frame < count),
             poses=tuple(replace(one, time_s=one.time_s[:count], joints_m=one.joints_m[:count]) for one in self.poses),
-        )  # fmt: skip
+        )
 
     def facts(self) -> dict[str, str]:
         """Which frames, and what happens in them."""
         return {
             "frames": f"{self.first_frame} to {self.first_frame + self.num_frames - 1}",
-            "text": self.text, "points": str(len(self.points.frame)), "radar": self.cube.config.name,
-        }  # fmt: skip
+            "text": self.text,
+            "points": str(len(self.points.frame)),
+            "radar": self.cube.config.name,
+        }
 
 
 class Streamer:
@@ -94,9 +97,12 @@ class Streamer:
         own, self.board = weaver.board_of(request, room)  # the method's argument for it, if it is not ideal
         self.firmware = weaver.firmware_of(own)
         self.meta = {
-            "seed": request.seed, "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs,
+            "seed": request.seed,
+            "points": weaver.points,
+            "weights": weaver.weights,
+            "inputs": room.inputs,
             "board": own.meta(),
-        }  # fmt: skip
+        }
 
     def chunks(self, sentences: Iterable[str | None]) -> Iterator[StreamChunk]:
         """Chunks for as long as sentences come. Raises InputError where the first sentence cannot be carried out."""
@@ -145,10 +151,17 @@ class Streamer:
     def _block(self, part: MotionPart, first: int, count: int) -> Signal:
         request, weaver = self.request, self.weaver
         return weaver.method(
-            self.room.scene, (part.pose,), request.config, num_frames=count, seed=request.seed,
-            keep_adc=request.keep_adc or needs_adc(weaver.points), stages=Stages(), background=self.room.background,
-            first_frame=first, **self.board,
-        )  # fmt: skip
+            self.room.scene,
+            (part.pose,),
+            request.config,
+            num_frames=count,
+            seed=request.seed,
+            keep_adc=request.keep_adc or needs_adc(weaver.points),
+            stages=Stages(),
+            background=self.room.background,
+            first_frame=first,
+            **self.board,
+        )
 
     def _chunk(self, part: MotionPart, signal: Signal, first: int) -> StreamChunk:
         time_s = signal.cube.grid.frame_time_s
@@ -159,14 +172,25 @@ class Streamer:
         refused = part.refused if first == part.first_frame else ""
         notes = (*self.room.scene.assumptions, *motion.assumptions, *signal.assumptions)
         meta = {
-            **self.meta, "text": part.text, "refused": refused, "method": signal.method or self.weaver.method_name,
-            "plan": motion.plan, "clauses": motion.clauses, "assumed": list(dict.fromkeys(notes)),
-        }  # fmt: skip
+            **self.meta,
+            "text": part.text,
+            "refused": refused,
+            "method": signal.method or self.weaver.method_name,
+            "plan": motion.plan,
+            "clauses": motion.clauses,
+            "assumed": list(dict.fromkeys(notes)),
+        }
         return StreamChunk(
-            cube=signal.cube, points=detect(signal.cube, signal.adc, self.weaver.points, self.firmware),
-            adc=signal.adc if self.request.keep_adc else None, poses=(resample(pose, time_s),), motions=(dense,),
-            first_frame=first, text=part.text, refused=refused, meta=meta,
-        )  # fmt: skip
+            cube=signal.cube,
+            points=detect(signal.cube, signal.adc, self.weaver.points, self.firmware),
+            adc=signal.adc if self.request.keep_adc else None,
+            poses=(resample(pose, time_s),),
+            motions=(dense,),
+            first_frame=first,
+            text=part.text,
+            refused=refused,
+            meta=meta,
+        )
 
 
 def check_streams(method: Method, name: str) -> None:

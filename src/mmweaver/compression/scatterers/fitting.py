@@ -126,9 +126,13 @@ class ScattererFit:
         if not self._num_points:
             return
         self.points = refined_factors(
-            self.points, _matrices(self.received), _matrices(self.residual), self.damping,
-            steps=steps, largest=MAX_GROUP,
-        )  # fmt: skip
+            self.points,
+            _matrices(self.received),
+            _matrices(self.residual),
+            self.damping,
+            steps=steps,
+            largest=MAX_GROUP,
+        )
         self.refinements += 1
         if self.recipe.with_calibration and (steps > 1 or self.refinements % CALIBRATED_EVERY == 0):
             self._calibrate()

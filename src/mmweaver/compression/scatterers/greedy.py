@@ -128,16 +128,19 @@ class Greedy:
         values = residual.reshape(-1, residual.shape[-1])
         peak = (values[cells] * steer).sum(axis=1)
         for kernel, index, stride, size in (
-            (self._kernels[0], row, power.shape[2], power.shape[1]), (self._kernels[1], column, 1, power.shape[2])
-        ):  # fmt: skip
+            (self._kernels[0], row, power.shape[2], power.shape[1]),
+            (self._kernels[1], column, 1, power.shape[2]),
+        ):
             offset = _offset(values, cells, steer, peak, index, stride, size)
             offsets.append(offset)
             amplitude /= kernel.bin_values(0.0, 1, offset)[0, :, 0]
         bins = np.stack([self.axes.first_range + row + offsets[0], self.axes.first_doppler + column + offsets[1]])
         return NewPoints(
-            frame=frame, bins=bins.astype(np.float32), direction=self.beams.direction.numpy()[beam.flat[cells]],
+            frame=frame,
+            bins=bins.astype(np.float32),
+            direction=self.beams.direction.numpy()[beam.flat[cells]],
             amplitude=amplitude * peak,
-        )  # fmt: skip
+        )
 
 
 def peaks(power: Array) -> Array:

@@ -31,10 +31,15 @@ class FactorAxes:
     @classmethod
     def of(cls, response: PointResponse, axes: Axes) -> "FactorAxes":
         return cls(
-            response=response, first_range=float(axes.range_bin[0]), num_range=len(axes.range_bin),
-            first_doppler=float(axes.doppler_bin[0]), num_doppler=len(axes.doppler_bin),
-            place=axes.place.numpy(), delay=axes.delay.numpy(), parts=axes.parts.numpy(),
-        )  # fmt: skip
+            response=response,
+            first_range=float(axes.range_bin[0]),
+            num_range=len(axes.range_bin),
+            first_doppler=float(axes.doppler_bin[0]),
+            num_doppler=len(axes.doppler_bin),
+            place=axes.place.numpy(),
+            delay=axes.delay.numpy(),
+            parts=axes.parts.numpy(),
+        )
 
 
 @dataclass(kw_only=True)
@@ -54,11 +59,14 @@ class PointFactors:
         """Factors of scatterers with these parameters."""
         response = axes.response
         return cls(
-            axes=axes, bins=bins, direction=direction, amplitude=amplitude,
+            axes=axes,
+            bins=bins,
+            direction=direction,
+            amplitude=amplitude,
             at_range=response.range_kernel.bin_values(axes.first_range, axes.num_range, bins[0]),
             at_doppler=response.doppler_kernel.bin_values(axes.first_doppler, axes.num_doppler, bins[1]),
             steer=_steering(axes, bins, direction),
-        )  # fmt: skip
+        )
 
     @classmethod
     def of(cls, points: Points, response: PointResponse, axes: Axes) -> "PointFactors":
@@ -70,9 +78,11 @@ class PointFactors:
     def points(self) -> Points:
         """The scatterers."""
         return Points(
-            range_bin=torch.from_numpy(self.bins[0]), doppler_bin=torch.from_numpy(self.bins[1]),
-            direction=torch.from_numpy(self.direction), amplitude=torch.from_numpy(self.amplitude),
-        )  # fmt: skip
+            range_bin=torch.from_numpy(self.bins[0]),
+            doppler_bin=torch.from_numpy(self.bins[1]),
+            direction=torch.from_numpy(self.direction),
+            amplitude=torch.from_numpy(self.amplitude),
+        )
 
     def counts(self) -> Array:
         """Scatterers of each frame (frame,), up to the last one that is no padding."""

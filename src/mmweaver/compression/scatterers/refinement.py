@@ -177,9 +177,10 @@ def _normal_matrix(at_range: Array, at_doppler: Array, vectors: Array) -> Array:
     np.multiply(others[..., own], -by_range[own, own] * by_doppler[own, slope], out=rest[..., num : 2 * num])
     cell = by_range[own, own] * by_doppler[own, own]
     np.multiply(
-        others[..., num:].reshape(kinds - 1, num, kinds - 1, num), cell[:, None],
+        others[..., num:].reshape(kinds - 1, num, kinds - 1, num),
+        cell[:, None],
         out=rest[..., 2 * num :].reshape(kinds - 1, num, kinds - 1, num),
-    )  # fmt: skip
+    )
     return out
 
 

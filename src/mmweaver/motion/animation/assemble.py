@@ -114,11 +114,19 @@ def assembled_controls(
         step = placed.step
         own_time_s = habits.warped(time_s, step.start_s, step.end_s) if _may_be_uneven(placed) else time_s
         context = StepContext(
-            time_s=own_time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
-            moves=placed.moves, seat_height_m=placed.seat_height_m, habits=habits, first=k == 0,
-            last=k == len(steps) - 1, arms_before=k > 0 and _same_arms(steps[k - 1], placed),
+            time_s=own_time_s,
+            step=step,
+            body=body,
+            path=path,
+            rng=stream(seed, "motion", "step", k, step.name),
+            moves=placed.moves,
+            seat_height_m=placed.seat_height_m,
+            habits=habits,
+            first=k == 0,
+            last=k == len(steps) - 1,
+            arms_before=k > 0 and _same_arms(steps[k - 1], placed),
             arms_after=k + 1 < len(steps) and _same_arms(placed, steps[k + 1]),
-        )  # fmt: skip
+        )
         parts.append(perform(context))
         before = steps[k - 1].step.end_s - steps[k - 1].step.start_s if k else step.end_s
         blends.append(float(min(LONGEST_BLEND_S, 0.6 * min(context.duration_s, before))))

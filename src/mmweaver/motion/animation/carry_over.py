@@ -50,12 +50,14 @@ class ControlsState:
         spline = CubicSpline(time_s[near], np.concatenate(flat, axis=1), axis=0)
         ends = np.cumsum([part.shape[1] for part in flat])[:-1]
         value, rate, acceleration = (
-            Controls(**{
-                name: values.reshape(1, *part.shape[1:])
-                for (name, part), values in zip(parts.items(), np.split(spline(at_s, order), ends), strict=True)
-            })
+            Controls(
+                **{
+                    name: values.reshape(1, *part.shape[1:])
+                    for (name, part), values in zip(parts.items(), np.split(spline(at_s, order), ends), strict=True)
+                }
+            )
             for order in range(3)
-        )  # fmt: skip
+        )
         return cls(value=value, rate=rate, acceleration=acceleration)
 
 
@@ -78,9 +80,11 @@ def carried_over(controls: Controls, time_s: Float[Array, " n"], before: Control
         gaps = [
             getattr(one, field.name) - getattr(other, field.name)
             for one, other in (
-                (before.value, own.value), (before.rate, own.rate), (before.acceleration, own.acceleration),
+                (before.value, own.value),
+                (before.rate, own.rate),
+                (before.acceleration, own.acceleration),
             )
-        ]  # fmt: skip
+        ]
         if field.name in ("heading_rad", *ROLLED):
             gaps[0] = np.asarray(gaps[0] - whole_turns(gaps[0]))
         if field.name == "arm_rad":

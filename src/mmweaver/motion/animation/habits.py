@@ -64,7 +64,10 @@ def habits_of(subject: int) -> Habits:
     rng = stream(subject, "motion", "habits")
     amplitude = np.exp(np.clip(rng.normal(0.0, _SPREAD), -2 * _SPREAD, 2 * _SPREAD))
     return Habits(
-        amplitude=float(amplitude), unevenness=float(rng.uniform(*_UNEVEN)),
-        drift_hz=float(rng.uniform(*_SLOW_HZ)), phase_rad=float(rng.uniform(0, 2 * np.pi)),
-        pause_every_s=float(rng.uniform(*_PAUSE_EVERY_S)), pause_s=float(rng.uniform(*_PAUSE_S)),
-    )  # fmt: skip
+        amplitude=float(amplitude),
+        unevenness=float(rng.uniform(*_UNEVEN)),
+        drift_hz=float(rng.uniform(*_SLOW_HZ)),
+        phase_rad=float(rng.uniform(0, 2 * np.pi)),
+        pause_every_s=float(rng.uniform(*_PAUSE_EVERY_S)),
+        pause_s=float(rng.uniform(*_PAUSE_S)),
+    )

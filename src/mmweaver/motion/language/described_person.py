@@ -19,8 +19,17 @@ _ANYBODY = (
 _NOUN = rf"(?P<noun>{_WOMEN}|{_MEN}|{_CHILDREN}|{_ANYBODY}|elderly|athlete|worker|student|player|dancer)"
 _OLD = frozenset(["old", "elderly", "aged", "senior", "aging", "ageing"])
 _GRAND = frozenset(["grandma", "grandmother", "granny", "grandpa", "grandfather", "elderly"])
-_STATURE = {"tall": 1, "short": -1, "small": -1, "little": -1, "tiny": -1, "huge": 2, "giant": 2, "gigantic": 2,
-            "dwarf": -2}  # fmt: skip
+_STATURE = {
+    "tall": 1,
+    "short": -1,
+    "small": -1,
+    "little": -1,
+    "tiny": -1,
+    "huge": 2,
+    "giant": 2,
+    "gigantic": 2,
+    "dwarf": -2,
+}
 _BUILD = {
     **dict.fromkeys(("heavy", "fat", "overweight", "obese", "stout", "chubby", "plump", "stocky", "big", "large"), 1),
     **dict.fromkeys(("muscular", "strong", "burly", "corpulent", "broad"), 1),

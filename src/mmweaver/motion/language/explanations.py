@@ -19,8 +19,14 @@ _SHOWN_AS = re.compile(r"(?P<what>.*)\b(?:is|are) shown as (?P<how>.+)")
 _ROUGHLY = re.compile("only (?:what|that) .* (?:is|are) shown.*")  # `fallback_parsing`
 _STEM = 4
 _ALIKE = {  # one limb either way; a knee is not kneeling
-    "arm": "hand", "arms": "hands", "fist": "hand", "foot": "leg", "feet": "legs", "knee": "joint", "knees": "joint",
-}  # fmt: skip
+    "arm": "hand",
+    "arms": "hands",
+    "fist": "hand",
+    "foot": "leg",
+    "feet": "legs",
+    "knee": "joint",
+    "knees": "joint",
+}
 
 
 def add_explanations(records: Sequence[ClauseRecord], steps: Sequence[Step], *, roughly: bool) -> list[ClauseRecord]:

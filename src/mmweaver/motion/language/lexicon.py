@@ -52,6 +52,19 @@ MORE_WORDS = _WORDS["more_words"]
 WHOLE_BODY = _WORDS["whole_body"]
 # What the spelling correction knows in addition to verbs.
 ALL_WORDS = frozenset().union(
-    ARMS, BOTH, DIRECTIONS, FILLERS, MANNERS, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS, SIZES,
-    SPEEDS, TARGETS,
-)  # fmt: skip
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    MANNERS,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    RADAR,
+    SEATS,
+    SIZES,
+    SPEEDS,
+    TARGETS,
+)

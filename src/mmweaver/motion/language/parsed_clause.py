@@ -97,9 +97,17 @@ class ParsedClause:
         aside = count in (1, 2) or any(word.text == "sideways" for word in more.words)
         lower = "sidestep" if aside else last.lower
         self.steps.append(
-            replace(last, lower=lower, direction=about.direction, count=count, speed=about.speed or last.speed,
-                    distance_m=about.distance_m, seconds=about.seconds, clauses=(*last.clauses, more.number))
-        )  # fmt: skip
+            replace(
+                last,
+                lower=lower,
+                direction=about.direction,
+                count=count,
+                speed=about.speed or last.speed,
+                distance_m=about.distance_m,
+                seconds=about.seconds,
+                clauses=(*last.clauses, more.number),
+            )
+        )
         self.forms.append("s")
 
     def take_its_speed(self, more: "ParsedClause") -> None:

@@ -79,9 +79,15 @@ def parse(text: str, *, in_part: bool = False) -> MotionPlan:
         similar = apply_approximations(other_words, is_understood=cache(_is_understood_alone))
         partly = apply_approximations(other_words, in_part=in_part)
         attempts = (
-            (normal, EXACT), (similar, EXACT), (normal, LEAVING_OUT), (similar, LEAVING_OUT), (similar, MISSING),
-            (partly, EXACT), (partly, ROUGH), (normal, ROUGH),
-        )  # fmt: skip
+            (normal, EXACT),
+            (similar, EXACT),
+            (normal, LEAVING_OUT),
+            (similar, LEAVING_OUT),
+            (similar, MISSING),
+            (partly, EXACT),
+            (partly, ROUGH),
+            (normal, ROUGH),
+        )
         for other, leaving in attempts if in_part else attempts[:4]:
             try:
                 return _parsed(other, given_text, leaving)
@@ -147,9 +153,12 @@ def _planned(words: list[Word], notes: list[str], given_text: str, leaving: int)
         raise InputError(not_known(given_text.strip()))
     steps, clauses, how_shown = explain_clauses(given_text, steps, records, roughly=bool(leaving))
     return MotionPlan(
-        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys([*notes, *how_shown])), clauses=tuple(clauses),
+        text=given_text,
+        steps=tuple(steps),
+        notes=tuple(dict.fromkeys([*notes, *how_shown])),
+        clauses=tuple(clauses),
         person=described_person(given_text),
-    )  # fmt: skip
+    )
 
 
 def _is_understood_alone(part: str) -> bool:
@@ -203,9 +212,14 @@ def _staying(parsed: ParsedClause) -> Step:
     about = parsed.about
     lower = "stand" if not about.seat else "lie_on_seat" if about.seat == "bed" else "sit"
     return Step(
-        lower=lower, seat=about.seat, place=about.place, seconds=about.seconds, facing=about.facing,
-        clause=parsed.text, clauses=(parsed.number,),
-    )  # fmt: skip
+        lower=lower,
+        seat=about.seat,
+        place=about.place,
+        seconds=about.seconds,
+        facing=about.facing,
+        clause=parsed.text,
+        clauses=(parsed.number,),
+    )
 
 
 def _is_understood(clause: Clause, found: list[ParsedClause]) -> bool:

@@ -124,10 +124,15 @@ def _merged_walk(one: Step, other: Step) -> list[Step]:
     more = one if one.direction or one.arc_deg else other
     return [
         replace(
-            more, count=one.count or other.count, speed=one.speed or other.speed, upper=one.upper or other.upper,
-            hand=one.hand or other.hand, target=one.target or other.target, clauses=(*one.clauses, *other.clauses),
+            more,
+            count=one.count or other.count,
+            speed=one.speed or other.speed,
+            upper=one.upper or other.upper,
+            hand=one.hand or other.hand,
+            target=one.target or other.target,
+            clauses=(*one.clauses, *other.clauses),
         )
-    ]  # fmt: skip
+    ]
 
 
 def _joined(one: Step, other: Step) -> list[Step]:

@@ -52,13 +52,19 @@ def _number(count: int) -> str:
 _SIDES = ("left", "right")
 _WAYS = {
     **{way: f" {way}" for way in ("forwards", "backwards", "away", "around")},
-    **{side: f" to the {side} in the photo" for side in _SIDES}, "away": " away from the radar",
-    "towards": " towards the radar", "pacing": " to and fro", "spot": " on the spot", "seat": " to a seat",
+    **{side: f" to the {side} in the photo" for side in _SIDES},
+    "away": " away from the radar",
+    "towards": " towards the radar",
+    "pacing": " to and fro",
+    "spot": " on the spot",
+    "seat": " to a seat",
     "back": " back the way it came",
-}  # fmt: skip
+}
 _ONTO = {
-    "back": "on the back", "front": "on the belly", **{side: f"on the person's {side} side" for side in _SIDES},
-}  # fmt: skip
+    "back": "on the back",
+    "front": "on the belly",
+    **{side: f"on the person's {side} side" for side in _SIDES},
+}
 _LYING = words_in("lie lie_down fall")
 
 

@@ -31,7 +31,7 @@ from mmweaver.motion.language.lexicon import (
     SPEEDS,
     TARGETS,
     TIMES,
-)  # fmt: skip
+)
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import ClauseRecord, Shape, Side, Step, Way
 from mmweaver.motion.language.spelling import correct_spelling
@@ -45,9 +45,22 @@ _OF_ACTIVITY = {key: words_in(words) for key, words in _TABLE["of_activity"].ite
 _SHOWN_BY = {word: (words_in(keys), *field) for words, keys, *field in _TABLE["shown_by"] for word in words.split()}
 _ALIKE = [words_in(group) for group in _TABLE["alike"]]
 _SILENT = frozenset().union(
-    _SETS["silent"], _SHOWN_BY, ARMS, LEGS, DIRECTIONS, DISTANCES, LIGHT, MANNERS, MANY, NUMBERS, OWN, PRONOUNS, RADAR,
-    SIZES, SPEEDS,
-)  # fmt: skip
+    _SETS["silent"],
+    _SHOWN_BY,
+    ARMS,
+    LEGS,
+    DIRECTIONS,
+    DISTANCES,
+    LIGHT,
+    MANNERS,
+    MANY,
+    NUMBERS,
+    OWN,
+    PRONOUNS,
+    RADAR,
+    SIZES,
+    SPEEDS,
+)
 _LIMBS = ARMS | LEGS | words_in("palm forearm elbow shoulder hip ear eye cheek thigh heel wrist fist finger ankle toe")
 _SIDE = re.compile(r"(left|right)(?:wards?)?")
 # Getting to one's feet, lengths in feet and "right after that" name no limb and no side.

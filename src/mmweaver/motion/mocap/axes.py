@@ -76,9 +76,9 @@ def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) ->
 def rotate_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
     """The joints rotated (never mirrored) so that z is up; y up becomes (x, -z, y)."""
     x, y, z = (joints[..., axis] for axis in range(3))
-    rotated = {
-        "z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)
-    }[up]  # fmt: skip
+    rotated = {"z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)}[
+        up
+    ]
     return np.stack(rotated, axis=-1)
 
 

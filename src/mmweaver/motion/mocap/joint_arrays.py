@@ -62,9 +62,13 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
         )
     ours = key == "joints_m"
     return RawMotion(
-        names=names, positions=positions, kind="joints", fps=rate_of(arrays, path) or _rate_of_times(arrays, path),
-        unit_m=1.0 if ours else None, up="z" if ours else None,
-    )  # fmt: skip
+        names=names,
+        positions=positions,
+        kind="joints",
+        fps=rate_of(arrays, path) or _rate_of_times(arrays, path),
+        unit_m=1.0 if ours else None,
+        up="z" if ours else None,
+    )
 
 
 def clips_of(path: Path) -> tuple[str, ...]:

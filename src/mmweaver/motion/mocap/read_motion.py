@@ -97,9 +97,12 @@ def to_clip(
     shown, t_pose = cut_t_pose(joints_m, rate, label)
     notes += [*gaps, *mirrored, *t_pose]
     return MotionClip(
-        joints_m=shown, fps=rate, label=label, notes=tuple(note for note in notes if note),
+        joints_m=shown,
+        fps=rate,
+        label=label,
+        notes=tuple(note for note in notes if note),
         first_frame=len(joints_m) - len(shown),
-    )  # fmt: skip
+    )
 
 
 def _rate(fps: float | None, label: str) -> float:

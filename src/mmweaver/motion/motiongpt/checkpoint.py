@@ -55,9 +55,13 @@ def tokenizer_config(vae: State, path: Path) -> TokenizerConfig:
     if first.ndim != 3 or book.ndim != 2 or not blocks or not depth:
         raise InputError(f"{path}: the motion tokenizer's tensors have other shapes than MotionGPT's")
     return TokenizerConfig(
-        features=first.shape[1], width=first.shape[0], codes=book.shape[0], code_width=book.shape[1],
-        halvings=len(blocks), depth=max(depth) + 1,
-    )  # fmt: skip
+        features=first.shape[1],
+        width=first.shape[0],
+        codes=book.shape[0],
+        code_width=book.shape[1],
+        halvings=len(blocks),
+        depth=max(depth) + 1,
+    )
 
 
 def _need(state: State, path: Path, prefix: str, *names: str) -> list[Tensor]:
@@ -83,12 +87,17 @@ def t5_sizes(language: State, path: Path) -> dict[str, int | str | bool]:
         for side in ("encoder", "decoder")
     }
     return {
-        "vocab_size": shared.shape[0], "d_model": shared.shape[1], "num_heads": bias.shape[1],
-        "relative_attention_num_buckets": bias.shape[0], "d_kv": query.shape[0] // bias.shape[1],
-        "d_ff": inner.shape[0], "num_layers": layers["encoder"], "num_decoder_layers": layers["decoder"],
+        "vocab_size": shared.shape[0],
+        "d_model": shared.shape[1],
+        "num_heads": bias.shape[1],
+        "relative_attention_num_buckets": bias.shape[0],
+        "d_kv": query.shape[0] // bias.shape[1],
+        "d_ff": inner.shape[0],
+        "num_layers": layers["encoder"],
+        "num_decoder_layers": layers["decoder"],
         "feed_forward_proj": "gated-gelu" if gated else "relu",
         "tie_word_embeddings": "lm_head.weight" not in language,
-    }  # fmt: skip
+    }
 
 
 def check_state(given: State, wanted: State, prefix: str, path: Path) -> None:

@@ -18,9 +18,16 @@ if TYPE_CHECKING:
 
 # flan-t5-base with 32,100 words and 515 motion tokens: what the published checkpoint holds.
 PUBLISHED_T5: dict[str, Any] = {
-    "vocab_size": 32_100 + 515, "d_model": 768, "d_kv": 64, "d_ff": 2048, "num_layers": 12, "num_decoder_layers": 12,
-    "num_heads": 12, "feed_forward_proj": "gated-gelu", "tie_word_embeddings": False,
-}  # fmt: skip
+    "vocab_size": 32_100 + 515,
+    "d_model": 768,
+    "d_kv": 64,
+    "d_ff": 2048,
+    "num_layers": 12,
+    "num_decoder_layers": 12,
+    "num_heads": 12,
+    "feed_forward_proj": "gated-gelu",
+    "tie_word_embeddings": False,
+}
 LONGEST_TEXT_TOKENS = 256
 
 

@@ -97,9 +97,14 @@ class MotionGPT:
             {name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()}
         )
         return cls(
-            tokenizer=tokenizer.eval(), language=language, words=plain, mean=mean_values.astype(float),
-            std=std_values.astype(float), first_motion_id=first, name=place.name,
-        )  # fmt: skip
+            tokenizer=tokenizer.eval(),
+            language=language,
+            words=plain,
+            mean=mean_values.astype(float),
+            std=std_values.astype(float),
+            first_motion_id=first,
+            name=place.name,
+        )
 
     def generate(
         self, text: str, *, seconds: float | None = None, seed: int = 0, temperature: float = 1.0, top_k: int = 50
@@ -120,10 +125,16 @@ class MotionGPT:
             )
         tokens = None if frames is None else -(-max(frames, MIN_FRAMES) // per_token)
         codes = sample_codes(
-            self.language, torch.tensor([self._ids(text)]), first_motion_id=self.first_motion_id,
-            codes=self.tokenizer.config.codes, tokens=tokens, most_tokens=MAX_FRAMES // per_token, seed=seed,
-            temperature=temperature, top_k=top_k,
-        )  # fmt: skip
+            self.language,
+            torch.tensor([self._ids(text)]),
+            first_motion_id=self.first_motion_id,
+            codes=self.tokenizer.config.codes,
+            tokens=tokens,
+            most_tokens=MAX_FRAMES // per_token,
+            seed=seed,
+            temperature=temperature,
+            top_k=top_k,
+        )
         if not codes:
             raise InputError(
                 f"the motion model {self.name} generates no motion for {text!r}; try another text or --seed"

@@ -14,13 +14,23 @@ from mmweaver.motion.animation.root_path import RootPath
 Array = np.ndarray
 # Limbs are tested as cylinders between two joints; each has one radius.
 _LIMB_ENDS = (
-    ("pelvis", "spine3"), ("spine3", "neck"), ("neck", "head"), ("left_hip", "right_hip"),
-    ("left_collar", "left_shoulder"), ("right_collar", "right_shoulder"),
-    ("left_hip", "left_knee"), ("right_hip", "right_knee"), ("left_knee", "left_ankle"), ("right_knee", "right_ankle"),
-    ("left_ankle", "left_foot"), ("right_ankle", "right_foot"),
-    ("left_shoulder", "left_elbow"), ("right_shoulder", "right_elbow"),
-    ("left_elbow", "left_wrist"), ("right_elbow", "right_wrist"),
-)  # fmt: skip
+    ("pelvis", "spine3"),
+    ("spine3", "neck"),
+    ("neck", "head"),
+    ("left_hip", "right_hip"),
+    ("left_collar", "left_shoulder"),
+    ("right_collar", "right_shoulder"),
+    ("left_hip", "left_knee"),
+    ("right_hip", "right_knee"),
+    ("left_knee", "left_ankle"),
+    ("right_knee", "right_ankle"),
+    ("left_ankle", "left_foot"),
+    ("right_ankle", "right_foot"),
+    ("left_shoulder", "left_elbow"),
+    ("right_shoulder", "right_elbow"),
+    ("left_elbow", "left_wrist"),
+    ("right_elbow", "right_wrist"),
+)
 # Where a mean of the capsules is too thin: the shoulder blades, and a head wider than the neck that carries it.
 _THICKER_M = {"neck": 0.02, "head": 0.015, "shoulder": 0.005}
 _RADIUS_STEP_M = 0.005  # mean radii are rounded up to it
@@ -116,9 +126,13 @@ class BodySamples:
         args = (float(path.facing_rad(at_lowest)[0]), path.position_m(at_lowest)[0])
         transform = _into_root if inverse else _out_of_root
         return BodySamples(
-            points_m=transform(self.points_m, heading, root_m), radius_m=self.radius_m, is_soft=self.is_soft,
-            time_s=self.time_s, lowest_m=transform(self.lowest_m, *args), lowest_s=self.lowest_s,
-        )  # fmt: skip
+            points_m=transform(self.points_m, heading, root_m),
+            radius_m=self.radius_m,
+            is_soft=self.is_soft,
+            time_s=self.time_s,
+            lowest_m=transform(self.lowest_m, *args),
+            lowest_s=self.lowest_s,
+        )
 
     @cached_property
     def _times(self) -> tuple[Float[Array, " time"], Int[Array, " point"]]:
@@ -127,9 +141,13 @@ class BodySamples:
 
     def _select(self, chosen: Int[Array, " chosen"]) -> "BodySamples":
         return BodySamples(
-            points_m=self.points_m[chosen], radius_m=self.radius_m[chosen], is_soft=self.is_soft[chosen],
-            time_s=self.time_s[chosen], lowest_m=self.lowest_m, lowest_s=self.lowest_s,
-        )  # fmt: skip
+            points_m=self.points_m[chosen],
+            radius_m=self.radius_m[chosen],
+            is_soft=self.is_soft[chosen],
+            time_s=self.time_s[chosen],
+            lowest_m=self.lowest_m,
+            lowest_s=self.lowest_s,
+        )
 
     @property
     def ahead(self) -> Float[Array, "2"]:

@@ -211,9 +211,13 @@ class CollisionMap:
         return distance_field(points_m, low, high)
 
     def penetration_m(
-        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0,
+        self,
+        pose: PoseSequence | BodySamples,
+        seats_m: Sequence[Place] = (),
+        *,
+        margin_m: float = 0.0,
         chair: PulledChair | None = None,
-    ) -> float:  # fmt: skip
+    ) -> float:
         """Greatest penetration depth in metres of the body, thickened by a margin, into anything; 0 where it is clear.
 
         Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead. `chair`
@@ -230,18 +234,24 @@ class CollisionMap:
         return max((self._beyond_seat_m(body, seat, margin_m, chair) for seat in dict.fromkeys(seats_m)), default=0.0)
 
     def estimates_m(
-        self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float,
+        self,
+        bodies: Sequence[BodySamples],
+        seats_m: Sequence[Sequence[Place]],
+        *,
+        margin_m: float,
         chairs: Sequence[PulledChair | None] = (),
-    ) -> Float[Array, " body"]:  # fmt: skip
+    ) -> Float[Array, " body"]:
         """`penetration_m` of many bodies at once, where what is ahead of a sitter counts as part of the seat."""
         points = np.concatenate([body.points_m for body in bodies])
         radius = np.concatenate([body.radius_m for body in bodies])
         at_seat = np.concatenate([_near(body, seats) for body, seats in zip(bodies, seats_m, strict=True)])
         soft = at_seat & np.concatenate([body.is_soft for body in bodies])
         allowed = np.where(soft, _ON_SEAT_M, _ALLOWED_M - margin_m)
-        distance = np.where(at_seat, self._solid.at(points), self._standing.at(points)) if at_seat.any() else (
-            self._standing.at(points)
-        )  # fmt: skip
+        distance = (
+            np.where(at_seat, self._solid.at(points), self._standing.at(points))
+            if at_seat.any()
+            else (self._standing.at(points))
+        )
         ends = np.cumsum([len(body.points_m) for body in bodies])
         for chair, end, body in zip(chairs, ends, bodies, strict=False):
             if chair is not None:

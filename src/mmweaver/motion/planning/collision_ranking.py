@@ -149,18 +149,24 @@ class _Ranking:
             return []
         bodies = [self._sketch(placement).along(placement.path) for placement in placements]
         seats = [placement.seats_m for placement in placements]
-        depths_m = self._obstacles.estimates_m(
-            bodies, seats, margin_m=MARGIN_M, chairs=[placement.chair for placement in placements]
-        ) - MARGIN_M  # fmt: skip
+        depths_m = (
+            self._obstacles.estimates_m(
+                bodies, seats, margin_m=MARGIN_M, chairs=[placement.chair for placement in placements]
+            )
+            - MARGIN_M
+        )
         trunk_m, legs_m = self._occlusion_costs_m(bodies, placements)
         costs = zip(placements, depths_m, trunk_m, legs_m, bodies, strict=True)
         estimates = [
             _Tested(
-                placement=each, penetration_m=float(depth), trunk_cost_m=float(trunk), legs_cost_m=float(legs),
+                placement=each,
+                penetration_m=float(depth),
+                trunk_cost_m=float(trunk),
+                legs_cost_m=float(legs),
                 samples=body,
             )
             for each, depth, trunk, legs, body in costs
-        ]  # fmt: skip
+        ]
         return _sorted(estimates)
 
     def _sketch(self, placement: Placement) -> BodySamples:
@@ -185,19 +191,23 @@ class _Ranking:
             return estimate
         ahead_m = self._obstacles.beyond_seats_m(
             estimate.samples, estimate.placement.seats_m, margin_m=MARGIN_M, chair=estimate.placement.chair
-        )  # fmt: skip
+        )
         return replace(estimate, penetration_m=max(estimate.penetration_m, ahead_m - MARGIN_M))
 
     def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence) -> _Tested:
         # Beyond the margin all are equally good.
-        penetration_m = self._obstacles.penetration_m(
-            samples, placement.seats_m, margin_m=MARGIN_M, chair=placement.chair
-        ) - MARGIN_M  # fmt: skip
+        penetration_m = (
+            self._obstacles.penetration_m(samples, placement.seats_m, margin_m=MARGIN_M, chair=placement.chair)
+            - MARGIN_M
+        )
         trunk_m, legs_m = self._occlusion_costs_m([samples], [placement])
         return _Tested(
-            placement=placement, penetration_m=penetration_m, trunk_cost_m=float(trunk_m[0]),
-            legs_cost_m=float(legs_m[0]), pose=pose,
-        )  # fmt: skip
+            placement=placement,
+            penetration_m=penetration_m,
+            trunk_cost_m=float(trunk_m[0]),
+            legs_cost_m=float(legs_m[0]),
+            pose=pose,
+        )
 
     def _occlusion_costs_m(
         self, bodies: Sequence[BodySamples], placements: Sequence[Placement]

@@ -25,10 +25,15 @@ Result = TypeVar("Result")
 _WALKS = ("walk", "jog", "limp", "stagger")  # gaits that can be shown on the spot
 # What is done on the spot instead of what travels, and its word; all else marches, and walks.
 _ON_THE_SPOT = {
-    "jog": ("jog", "runs"), "stumble": ("stumble", "stumbles"), "crawl": ("crawl", "crawls"), "hop": ("hop", "hops"),
-    "hop_one_leg": ("hop_one_leg", "hops"), "leap": ("jump", "jumps"),
-    "forward_roll": ("squat", "squats"), "walking_lunge": ("lunge", "lunges"),
-}  # fmt: skip
+    "jog": ("jog", "runs"),
+    "stumble": ("stumble", "stumbles"),
+    "crawl": ("crawl", "crawls"),
+    "hop": ("hop", "hops"),
+    "hop_one_leg": ("hop_one_leg", "hops"),
+    "leap": ("jump", "jumps"),
+    "forward_roll": ("squat", "squats"),
+    "walking_lunge": ("lunge", "lunges"),
+}
 _FALL_STYLES = {"back": "backwards", "left": "to the left", "right": "to the right", "front": "forwards"}
 _FALLEN = ("fall", "lie", "roll_over", "get_up")  # the steps of a fall, which lie one way
 _SAYS_AHEAD = frozenset({"forward", "forwards", "ahead", "straight", "advances", "advancing"})
@@ -128,9 +133,12 @@ def going_on_elsewhere(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
 
 def _like(floor: FloorMap, *, with_assumed: bool = False, is_tight: bool = False) -> FloorMap:
     return FloorMap.of(
-        floor.scene, floor.range_window_m, floor.height_m, with_assumed=with_assumed or floor.with_assumed,
+        floor.scene,
+        floor.range_window_m,
+        floor.height_m,
+        with_assumed=with_assumed or floor.with_assumed,
         is_tight=is_tight,
-    )  # fmt: skip
+    )
 
 
 def _walks_somewhere(step: Step) -> bool:
@@ -190,10 +198,9 @@ def recovery_options(floor: FloorMap, plan: MotionPlan, farthest_m: float = math
     if place is None:
         return {}
     near_m, far_m = window_about(floor.scene, floor.height_m, place, floor.range_window_m)
-    radars = [
-        name for name in PRESETS
-        if PRESETS[name].range_m[0] <= near_m and PRESETS[name].range_m[-1] >= far_m
-    ][:_MAX_RADARS]  # fmt: skip
+    radars = [name for name in PRESETS if PRESETS[name].range_m[0] <= near_m and PRESETS[name].range_m[-1] >= far_m][
+        :_MAX_RADARS
+    ]
     if not (is_own or radars):
         return {}
     return {

@@ -77,9 +77,14 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
         span = length / (0.85 * speed) + 0.5 * (ramps[0] + RAMP_S) if stops else step.end_s - begin
         span = min(span, step.end_s - begin)
         move = Move(
-            start_s=begin, end_s=begin + span, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
-            ramp_out_s=min(RAMP_S, 0.4 * span) if stops else ramps[1], curvature_per_m=bend / length,
-        )  # fmt: skip
+            start_s=begin,
+            end_s=begin + span,
+            length_m=length,
+            direction_rad=direction,
+            ramp_in_s=ramps[0],
+            ramp_out_s=min(RAMP_S, 0.4 * span) if stops else ramps[1],
+            curvature_per_m=bend / length,
+        )
         places = trajectory.position_m + move.shift_m(np.linspace(begin, begin + span, 60))
         if trajectory.floor.can_stand(places).all():
             trajectory.append(move, places, 0.5 * stops)

@@ -43,9 +43,7 @@ def distance_field(points_m: Points, low_m: Float[Array, "3"], high_m: Float[Arr
     count = np.bincount(flat, minlength=int(np.prod(shape)))
     occupied = np.flatnonzero(count)
     if not len(occupied):
-        return DistanceField(
-            low_m=low_m, distance_m=np.full(shape, FARTHEST_M, np.float32), points_m=np.zeros((0, 3))
-        )  # fmt: skip
+        return DistanceField(low_m=low_m, distance_m=np.full(shape, FARTHEST_M, np.float32), points_m=np.zeros((0, 3)))
     sums = [np.bincount(flat, weights=points_m[inside, axis], minlength=len(count))[occupied] for axis in range(3)]
     means_m = np.stack(sums, axis=1) / count[occupied, None]
     number = np.zeros(len(count), np.int32)

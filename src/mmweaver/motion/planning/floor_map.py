@@ -44,9 +44,14 @@ class FloorMap:
 
     @classmethod
     def of(
-        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False,
+        cls,
+        scene: Scene,
+        range_window_m: tuple[float, float],
+        height_m: float,
+        *,
+        with_assumed: bool = False,
         is_tight: bool = False,
-    ) -> "FloorMap":  # fmt: skip
+    ) -> "FloorMap":
         """The map for a body of about this height; the last ones are cached, as many motions are placed in one scene.
 
         A step in height of `HEIGHT_STEP_M` moves what is in view by less than a cell.
@@ -216,9 +221,12 @@ class FloorMap:
         return float(self.free_lengths_m(position_m, np.array([direction_rad]), wanted_m, excused_m)[0])
 
     def free_lengths_m(
-        self, position_m: Float[Array, "2"], directions_rad: Float[Array, " way"], wanted_m: float,
+        self,
+        position_m: Float[Array, "2"],
+        directions_rad: Float[Array, " way"],
+        wanted_m: float,
         excused_m: float = 0.0,
-    ) -> Float[Array, " way"]:  # fmt: skip
+    ) -> Float[Array, " way"]:
         """`free_length_m` in several directions."""
         steps = np.append(np.arange(0.0, wanted_m, _STEP_M), wanted_m)
         ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)

@@ -60,12 +60,17 @@ class Placement:
         sitting, height_m = None, self._last_seat_height_m()
         if height_m is not None:
             behind_m = pelvis_behind_feet_m(body, height_m) * unit_vector(heading_rad)
-            sitting = Sitting(feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m,
-                              chair=self.chair)  # fmt: skip
+            sitting = Sitting(
+                feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m, chair=self.chair
+            )
         return BodyState(
-            position_m=(float(feet_m[0]), float(feet_m[1])), heading_rad=heading_rad, posture=last.posture,
-            style=last.style, foot=last.foot, sitting=sitting,
-        )  # fmt: skip
+            position_m=(float(feet_m[0]), float(feet_m[1])),
+            heading_rad=heading_rad,
+            posture=last.posture,
+            style=last.style,
+            foot=last.foot,
+            sitting=sitting,
+        )
 
     def _last_seat_height_m(self) -> float | None:
         """Of the seat on which the body sits at the end, or from which it has just got up; None without one."""

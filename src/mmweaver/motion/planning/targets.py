@@ -81,10 +81,14 @@ def drop_targets(plan: MotionPlan) -> MotionPlan:
         for step in lost
     ) + tuple(f"for {step.clause!r}: without a photo there is no {step.facing} to face" for step in aimed)
     steps = tuple(
-        replace(step, target="" if step in lost else step.target, place=None if step in lost else step.place,
-                facing="" if step in aimed else step.facing)
+        replace(
+            step,
+            target="" if step in lost else step.target,
+            place=None if step in lost else step.place,
+            facing="" if step in aimed else step.facing,
+        )
         for step in plan.steps
-    )  # fmt: skip
+    )
     clauses = list(plan.clauses)
     for step, note in zip((*lost, *aimed), notes, strict=True):
         for number in step.clauses:

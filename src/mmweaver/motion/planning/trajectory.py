@@ -14,9 +14,15 @@ from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
 SLOWEST_MPS = {
-    "walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15, "hop": 0.25, "hop_one_leg": 0.25,
+    "walk": 0.5,
+    "jog": 1.6,
+    "limp": 0.4,
+    "stagger": 0.4,
+    "crawl": 0.15,
+    "hop": 0.25,
+    "hop_one_leg": 0.25,
     "walking_lunge": 0.3,
-}  # fmt: skip
+}
 SLOWED_TO, RUN_SLOWED_TO = 0.6, 0.8  # of the preferred speed, where the way is short; below that a run is none
 RAMP_S = 0.45  # acceleration from standing to walking, and back
 RUN_RAMP_S = 0.8  # to running
@@ -136,9 +142,13 @@ class Trajectory:
     ):
         """Appends a straight move over a time span; the caller has made sure that it is free."""
         move = Move(
-            start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
-            ramp_in_s=ramps[0], ramp_out_s=ramps[1],
-        )  # fmt: skip
+            start_s=span[0],
+            end_s=span[1],
+            length_m=length_m,
+            direction_rad=direction_rad,
+            ramp_in_s=ramps[0],
+            ramp_out_s=ramps[1],
+        )
         self.append(move, self.position_m + np.linspace(0, length_m, 8)[:, None] * unit_vector(direction_rad))
         self.last_direction_rad = direction_rad
 
@@ -335,9 +345,14 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
                 continue
             length = within_m  # there is time for a part of it
         move = Move(
-            start_s=begin, end_s=step.end_s, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
-            ramp_out_s=ramps[1], curvature_per_m=side / radius,
-        )  # fmt: skip
+            start_s=begin,
+            end_s=step.end_s,
+            length_m=length,
+            direction_rad=direction,
+            ramp_in_s=ramps[0],
+            ramp_out_s=ramps[1],
+            curvature_per_m=side / radius,
+        )
         circle_m = trajectory.position_m + move.shift_m(np.linspace(begin, step.end_s, 60))
         if trajectory.floor.can_stand(circle_m).all():
             trajectory.moves[-1].append(move)

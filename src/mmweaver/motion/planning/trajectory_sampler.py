@@ -46,7 +46,7 @@ from mmweaver.motion.planning.seating import (
     turned,
     usable_seats,
     usual_variation,
-)  # fmt: skip
+)
 from mmweaver.motion.planning.targets import (
     faced_landmarks,
     goes_to_target,

@@ -55,8 +55,9 @@ def _seat_of_back(height_map: HeightMap, back: GridMask, tables: GridMask) -> Se
     x_m, y_m = height_map.x_m[0] + column * CELL_M, height_map.y_m[0] + row * CELL_M
     return Seat(
         position_m=np.array([x_m, y_m, height_map.floor_z_m + _SEAT_HEIGHT_M]),
-        facing_rad=float(np.arctan2(ahead[0], ahead[1])), size_m=_SEAT_SIZE_M,
-    )  # fmt: skip
+        facing_rad=float(np.arctan2(ahead[0], ahead[1])),
+        size_m=_SEAT_SIZE_M,
+    )
 
 
 def _share_of_table(tables: GridMask, middle: Place, ahead: Place, reach_m: tuple[float, float]) -> float:

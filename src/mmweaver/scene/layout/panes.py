@@ -164,6 +164,11 @@ def _rectangle(points_m: Points, wall: Plane, offset_m: float, material: str) ->
         return None
     middle = wall.centre_m + (left + right) / 2 * wall.axis_u + (low + high) / 2 * wall.axis_v
     return Plane(
-        kind="panel", centre_m=middle + offset_m * wall.normal, normal=wall.normal, axis_u=wall.axis_u,
-        axis_v=wall.axis_v, half_size_m=half, material=material,
-    )  # fmt: skip
+        kind="panel",
+        centre_m=middle + offset_m * wall.normal,
+        normal=wall.normal,
+        axis_u=wall.axis_u,
+        axis_v=wall.axis_v,
+        half_size_m=half,
+        material=material,
+    )

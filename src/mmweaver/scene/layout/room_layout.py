@@ -140,7 +140,7 @@ def _find_wall(
     check_normals: bool = True,
     nearest_m: float = _MIN_DISTANCE_M,
 ) -> _Wall | None:
-    """The farthest plane of that normal with enough visible area and hardly any point behind it."""  # fmt: skip
+    """The farthest plane of that normal with enough visible area and hardly any point behind it."""
     is_cell = np.isfinite(grid.depth_m)
     points = grid.points_m[is_cell]
     distance_m = -(points @ normal)
@@ -227,8 +227,13 @@ def _rectangles(
     middle_m = (grid.floor_z_m + height_m / 2) * UP
     return tuple(
         Plane(
-            kind="wall", centre_m=(start + end) / 2 + middle_m, normal=wall.normal, axis_u=np.cross(UP, wall.normal),
-            axis_v=UP, half_size_m=(float(np.linalg.norm(end - start)) / 2, float(height_m) / 2), material=material,
+            kind="wall",
+            centre_m=(start + end) / 2 + middle_m,
+            normal=wall.normal,
+            axis_u=np.cross(UP, wall.normal),
+            axis_v=UP,
+            half_size_m=(float(np.linalg.norm(end - start)) / 2, float(height_m) / 2),
+            material=material,
         )
         for wall, (start, end) in ((wall, corners[name]) for name, wall in found.items())
-    )  # fmt: skip
+    )

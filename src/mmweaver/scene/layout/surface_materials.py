@@ -16,9 +16,19 @@ from mmweaver.scene.photo.depth_grid import GridBool, GridInt, GridVectors
 
 # ITU-R P.2040-3, table 3, and upholstery (fabric), which it does not list.
 MATERIAL_NAMES = (
-    "concrete", "brick", "plasterboard", "wood", "glass", "ceiling_board", "chipboard", "plywood", "marble",
-    "floorboard", "metal", "fabric",
-)  # fmt: skip
+    "concrete",
+    "brick",
+    "plasterboard",
+    "wood",
+    "glass",
+    "ceiling_board",
+    "chipboard",
+    "plywood",
+    "marble",
+    "floorboard",
+    "metal",
+    "fabric",
+)
 
 ASSUMPTION = (
     "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"

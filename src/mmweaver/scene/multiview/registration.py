@@ -68,9 +68,11 @@ class LevelPose:
             return landmark
         x, y, _ = self.points(np.array([*landmark.approach_m, 0.0]))
         return Landmark(
-            kind=landmark.kind, position_m=self.points(landmark.position_m), approach_m=(float(x), float(y)),
+            kind=landmark.kind,
+            position_m=self.points(landmark.position_m),
+            approach_m=(float(x), float(y)),
             facing_rad=_wrapped(landmark.facing_rad + self.azimuth_rad),
-        )  # fmt: skip
+        )
 
     def looked_up(self, values: np.ndarray, of: FreeSpace, x_m: np.ndarray, y_m: np.ndarray) -> np.ndarray:
         """Values (y, x) of this camera's map of the floor at squares of the first camera's; False outside the map."""

@@ -42,18 +42,24 @@ def read_views(path: Path, *, segmenter: str | None = None) -> CapturedPhoto:
             raise InputError(f"{path}: photo {number} needs rgb and depth, and may have {', '.join(sorted(KEYS))}")
         own = {name: path.parent / _name(path, number, entry[name]) for name in FILES if entry.get(name) is not None}
         photo, said = read_photo(
-            own["rgb"], own["depth"], own.get("camera"), classes=own.get("classes"),
+            own["rgb"],
+            own["depth"],
+            own.get("camera"),
+            classes=own.get("classes"),
             segmenter=None if "classes" in own else segmenter,
-        )  # fmt: skip
+        )
         photos.append(photo)
         poses.append(_pose(path, number, entry))
         files |= {f"{name} {number}": file for name, file in own.items()}
         notes += said
     others = _posed(path, photos, poses)
     return CapturedPhoto(
-        photo=photos[0], folder=path.parent, files={"views": path, **files}, assumptions=tuple(dict.fromkeys(notes)),
+        photo=photos[0],
+        folder=path.parent,
+        files={"views": path, **files},
+        assumptions=tuple(dict.fromkeys(notes)),
         others=others,
-    )  # fmt: skip
+    )
 
 
 def _name(path: Path, number: int, name: Any) -> str:

@@ -15,15 +15,19 @@ _D455_WIDTH, _D455_HEIGHT, _D455_FOCAL = 1280, 800, 640.0
 
 
 LIMITS = {
-    "fx": (1e-3, 1e6), "fy": (1e-3, 1e6), "width": (8, 1e5), "height": (8, 1e5), "depth_unit_m": (1e-6, 1.0),
-}  # fmt: skip
+    "fx": (1e-3, 1e6),
+    "fy": (1e-3, 1e6),
+    "width": (8, 1e5),
+    "height": (8, 1e5),
+    "depth_unit_m": (1e-6, 1.0),
+}
 
 
 def centred_intrinsics(width: int, height: int, focal_px: float) -> CameraIntrinsics:
     """Square pixels, and the principal point in the middle of the picture."""
     return CameraIntrinsics(
         fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
-    )  # fmt: skip
+    )
 
 
 def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
@@ -74,9 +78,13 @@ def intrinsics_for(path: Path, numbers: dict[str, float], width: int, height: in
     Raises InputError where the aspect ratios differ, or no camera could have such numbers.
     """
     stated = CameraIntrinsics(
-        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
-        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
-    )  # fmt: skip
+        fx=numbers["fx"],
+        fy=numbers["fy"],
+        cx=numbers["cx"],
+        cy=numbers["cy"],
+        width=round(numbers.get("width", width)),
+        height=round(numbers.get("height", height)),
+    )
     if abs(width / stated.width / (height / stated.height) - 1) > 0.01:
         raise InputError(
             f"{path} is for a picture of {stated.width} x {stated.height} pixels, this one has {width} x {height},"

@@ -35,9 +35,7 @@ def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
     """The upright picture, uint8 (height, width, 3), and how it lay in the file."""
     picture = open_picture(path)
     image = picture.image
-    turned = Turned(
-        stored_size=picture.stored_size, orientation=picture.orientation, focal_35mm=picture.focal_35mm
-    )  # fmt: skip
+    turned = Turned(stored_size=picture.stored_size, orientation=picture.orientation, focal_35mm=picture.focal_35mm)
     if image.mode.startswith("I;16") or image.mode == "I":
         grey = np.clip(np.asarray(image).astype(np.int64) // 256, 0, 255).astype(np.uint8)
         return np.repeat(grey[:, :, None], 3, axis=2), turned

@@ -40,9 +40,11 @@ def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: A
             repeat(builder, known.get(surface, surface), *(evaluate(span, known) for span in spans), **own)
     seats = [LocalSeat(*(float(evaluate(number, known)) for number in row)) for row in record.get("seats", ())]
     return Piece(
-        name=record.get("called", name), parts=tuple(builder.parts), seats=(*seats, *builder.seats),
+        name=record.get("called", name),
+        parts=tuple(builder.parts),
+        seats=(*seats, *builder.seats),
         **{flag: record[flag] for flag in _FLAGS if flag in record},
-    )  # fmt: skip
+    )
 
 
 def evaluate(formula: Any, sizes: dict[str, Any]) -> Any:
@@ -249,8 +251,22 @@ def _curtains(b: Builder, surface: str, x: float, y: Span, z: Span, **options: s
 
 REPEATS: dict[str, Callable[..., None]] = {
     "box": Builder.box,
-    **{build.__name__.strip("_"): build for build in (
-        _legs, _cushions, _fronts, _wall_doors, _doors, _drawers, _tools, _bookshelves, _loaded_shelves, _dumbbells,
-        _leaves, _glazed, _curtains,
-    )},
-}  # fmt: skip
+    **{
+        build.__name__.strip("_"): build
+        for build in (
+            _legs,
+            _cushions,
+            _fronts,
+            _wall_doors,
+            _doors,
+            _drawers,
+            _tools,
+            _bookshelves,
+            _loaded_shelves,
+            _dumbbells,
+            _leaves,
+            _glazed,
+            _curtains,
+        )
+    },
+}

@@ -96,10 +96,12 @@ def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, 
     return tuple(
         Seat(
             position_m=frame.points(item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]),
-            facing_rad=frame.angle(item.yaw_rad - np.pi / 2), size_m=(seat.width_m, seat.depth_m),
+            facing_rad=frame.angle(item.yaw_rad - np.pi / 2),
+            size_m=(seat.width_m, seat.depth_m),
         )
-        for item in placed for seat in item.piece.seats
-    )  # fmt: skip
+        for item in placed
+        for seat in item.piece.seats
+    )
 
 
 def landmarks_of(placed: tuple[PlacedPiece, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:

@@ -63,10 +63,12 @@ def area_lights(placed: tuple[PlacedPiece, ...], lighting: Lighting) -> list[Are
         ends = item.points(np.array(corners, float))
         lamps.append(
             AreaLight(
-                corner_m=ends[0], edges_m=ends[1:3] - ends[0], normal=ends[3] - ends[4],
+                corner_m=ends[0],
+                edges_m=ends[1:3] - ends[0],
+                normal=ends[3] - ends[4],
                 radiance=np.array(radiance, float),
             )
-        )  # fmt: skip
+        )
     return lamps
 
 

@@ -14,8 +14,13 @@ FACE_M = 0.25  # longest side: the simulator finds the edges of small faces
 _ROWS, _COLUMNS, _RING = 9, 20, 20
 _QUAD = np.array([[0, 1, 2], [0, 2, 3]])
 _SIDES = (  # normal axis, its sign, and the two tangent axes, whose cross product points outward
-    (0, -1, 2, 1), (0, 1, 1, 2), (1, -1, 0, 2), (1, 1, 2, 0), (2, -1, 1, 0), (2, 1, 0, 1),
-)  # fmt: skip
+    (0, -1, 2, 1),
+    (0, 1, 1, 2),
+    (1, -1, 0, 2),
+    (1, 1, 2, 0),
+    (2, -1, 1, 0),
+    (2, 1, 0, 1),
+)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,9 +27,17 @@ from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
 
 MAX_LAYOUTS = 1000
 _OF_SCENE = (  # the fields of a scene that a room has, too
-    "radar_from_camera", "vertices_m", "faces", "face_material", "material_names", "planes", "floor_z_m", "free_space",
-    "seats", "landmarks",
-)  # fmt: skip
+    "radar_from_camera",
+    "vertices_m",
+    "faces",
+    "face_material",
+    "material_names",
+    "planes",
+    "floor_z_m",
+    "free_space",
+    "seats",
+    "landmarks",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,15 +165,27 @@ def make_room_of(room_kind: RoomKind, layout: int, seed: int) -> ProceduralRoom:
     free = free_space_of(shell, boxes, frame)
     materials = np.array([MATERIAL_NAMES.index(appearance.material) for appearance in mesh.appearances])
     return ProceduralRoom(
-        kind=kind, layout=layout, seed=seed,
-        vertices_m=frame.points(mesh.vertices_m), faces=mesh.faces, face_material=materials[mesh.appearance],
-        material_names=MATERIAL_NAMES, boxes=boxes, planes=planes_of(shell, pieces, palette, frame),
-        floor_z_m=-shell.radar_m[2], seats=seats_of(pieces, frame), landmarks=landmarks_of(pieces, free, frame),
-        free_space=free, free_m2=free_m2, walkable_m2=walkable_m2,
+        kind=kind,
+        layout=layout,
+        seed=seed,
+        vertices_m=frame.points(mesh.vertices_m),
+        faces=mesh.faces,
+        face_material=materials[mesh.appearance],
+        material_names=MATERIAL_NAMES,
+        boxes=boxes,
+        planes=planes_of(shell, pieces, palette, frame),
+        floor_z_m=-shell.radar_m[2],
+        seats=seats_of(pieces, frame),
+        landmarks=landmarks_of(pieces, free, frame),
+        free_space=free,
+        free_m2=free_m2,
+        walkable_m2=walkable_m2,
         intrinsics=d455_intrinsics(640, 480),
         radar_from_camera=_camera_rotation(shell, draws(layout, "camera")),
-        pieces=pieces, shell=shell, mesh=mesh,
-    )  # fmt: skip
+        pieces=pieces,
+        shell=shell,
+        mesh=mesh,
+    )
 
 
 def _sample_furniture(

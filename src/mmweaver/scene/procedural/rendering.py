@@ -65,7 +65,7 @@ def render_rgb(
     rng = stream(seed, "procedural", "light")
     received = irradiance(
         caster, area_lights(placed, light), light, points.reshape(-1, 3), normals.reshape(-1, 3), rng
-    ).reshape(points.shape)  # fmt: skip
+    ).reshape(points.shape)
     received = _upsampled(denoised(received, points, normals), view)
     radiance = colour * (1.15 * received + 0.02) + emission
     value = 1.7 * light.exposure * radiance

@@ -141,8 +141,14 @@ def _keys(plane: Plane2, colour: np.ndarray) -> Shade:
 
 _NOISE = TABLES["noise"]
 PATTERNS: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
-    "boards": _boards, "tiles": partial(_tiled, size=(0.3, 0.3), joint_m=0.004, spread=0.05, joint=0.7, bond=False),
+    "boards": _boards,
+    "tiles": partial(_tiled, size=(0.3, 0.3), joint_m=0.004, spread=0.05, joint=0.7, bond=False),
     "brick": partial(_tiled, size=(0.24, 0.075), joint_m=0.006, spread=0.25, joint=1.6, bond=True),
-    "panels": _panels, "books": _books, "screen": _screen,
-    "scribbles": _scribbles, "picture": _picture, "sky": _sky, "keys": _keys,
-}  # fmt: skip
+    "panels": _panels,
+    "books": _books,
+    "screen": _screen,
+    "scribbles": _scribbles,
+    "picture": _picture,
+    "sky": _sky,
+    "keys": _keys,
+}

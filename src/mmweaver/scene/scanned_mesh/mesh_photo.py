@@ -70,9 +70,7 @@ def read_mesh_photo(
         *_unused(mesh, given),
         *(() if mesh.has_colours else ("The mesh has no colours: materials follow from names and geometry alone.",)),
     )
-    return CapturedPhoto(
-        photo=photo, folder=path.parent, files={"mesh": path}, assumptions=notes, others=tuple(others)
-    )  # fmt: skip
+    return CapturedPhoto(photo=photo, folder=path.parent, files={"mesh": path}, assumptions=notes, others=tuple(others))
 
 
 def _axes_around(azimuth_rad: float) -> list[np.ndarray]:

@@ -109,7 +109,10 @@ def _joined(path: Path, parts: list[tuple[np.ndarray, np.ndarray, np.ndarray | N
         raise InputError(f"{path} has corners that are no numbers or that its faces do not have; save it again")
     rgb = np.concatenate([np.full((len(faces), 3), GREY) if rgb is None else rgb for _, faces, rgb, _ in parts])
     return ColouredMesh(
-        vertices=vertices, faces=faces, rgb=rgb.round().astype(np.uint8),
-        name=np.concatenate([np.full(len(faces), names.index(name)) for _, faces, _, name in parts]), names=names,
+        vertices=vertices,
+        faces=faces,
+        rgb=rgb.round().astype(np.uint8),
+        name=np.concatenate([np.full(len(faces), names.index(name)) for _, faces, _, name in parts]),
+        names=names,
         has_colours=any(rgb is not None for *_, rgb, _ in parts),
-    )  # fmt: skip
+    )

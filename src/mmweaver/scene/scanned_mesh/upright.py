@@ -63,9 +63,7 @@ def upright(path: Path, mesh: ColouredMesh, *, unit: str | None = None, up: str 
             " side, z is up (--mesh-set up=z)."
         ]
     moved = replace(mesh, vertices=unit_m * (turned - np.array([0.0, 0.0, floor])))
-    return UprightMesh(
-        mesh=moved, to_mesh=to_mesh, unit_m=unit_m, floor=floor, assumptions=(*notes, *said)
-    )  # fmt: skip
+    return UprightMesh(mesh=moved, to_mesh=to_mesh, unit_m=unit_m, floor=floor, assumptions=(*notes, *said))
 
 
 def _normals_and_areas(mesh: ColouredMesh) -> tuple[np.ndarray, np.ndarray]:

@@ -33,9 +33,12 @@ def room_features(grid: DepthGrid, room: AlignedRoom) -> Features:
     aligned = room.grid
     height = aligned.points_m[..., 2] - aligned.floor_z_m
     geometry = [
-        height / HEIGHT_UNIT_M, aligned.normals[..., 2], 1 / grid.depth_m, np.isfinite(grid.depth_m).astype(float),
+        height / HEIGHT_UNIT_M,
+        aligned.normals[..., 2],
+        1 / grid.depth_m,
+        np.isfinite(grid.depth_m).astype(float),
         _wall_proximity(room),
-    ]  # fmt: skip
+    ]
     for kind in _KINDS:
         cells = [surface.cells for surface in room.surfaces if surface.plane.kind == kind]
         geometry.append(np.any(cells, axis=0).astype(float) if cells else np.zeros(height.shape))

@@ -26,9 +26,13 @@ def perform(act: StepContext) -> Controls:
             return controls
         # The other hand's arm is added; head and trunk go with the first activity alone.
         second = replace(
-            step.other_hand, lower=step.lower, start_s=step.start_s, end_s=step.end_s, pace=step.pace,
+            step.other_hand,
+            lower=step.lower,
+            start_s=step.start_s,
+            end_s=step.end_s,
+            pace=step.pace,
             speed=step.other_hand.speed or step.speed,
-        )  # fmt: skip
+        )
         alone = GESTURES[second.upper](replace(act, step=second), posture)
         side = LEFT if second.hand == "left" else RIGHT
         controls.arm_rad[:, side] = alone.arm_rad[:, side]
