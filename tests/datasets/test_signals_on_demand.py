@@ -98,7 +98,7 @@ def test_what_cannot_be_made_again_is_refused(tmp_path: Path):
     with_background = room.with_background(
         plain.generate(room, "a person stands", frames=2).cube  # any cube of this radar
     )
-    for weaver, where, said in ((first_order, room, "bounces"), (plain, with_background, "background")):
+    for weaver, where, said in ((first_order, room, "propagation"), (plain, with_background, "background")):
         with pytest.raises(InputError, match=said):
             SetBuilder(
                 tmp_path / "set", read_activities(tmp_path / "a.toml"), [where], weaver, replace(FEW, iq="none"),

@@ -161,7 +161,9 @@ def _upright_pose(folder: Path, kind: str, picture: Path, turns: int) -> Pose:
     """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
     pose = scan_pose(folder, kind, picture)
     if pose is None:
-        raise InputError(f"{folder}: the scan says no pose for {picture.name}; photos are joined by their poses")
+        raise InputError(
+            f"{folder}: photo {picture.name} has no pose, by which photos are joined; choose another with --photo"
+        )
     quarter = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # counterclockwise
     return pose @ np.linalg.matrix_power(quarter, turns).T
 
@@ -195,8 +197,6 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
         for index, pose in enumerate(poses)
         if pose is not None
     }
-    if first not in places:
-        raise InputError(f"photo {first} of the scan has no pose; choose another with --photo")
     chosen = [first]
     while len(chosen) <= most:
         new = {
