@@ -203,7 +203,7 @@ class SetBuilder:
 
     @cached_property
     def ignored_descriptions(self) -> list[str]:
-        """Descriptions of people in the sentences, if they differ; they are ignored, since each subject does all activities."""
+        """Differing descriptions of people in the sentences; they are ignored, since each subject does everything."""
         texts = [text for sentences in self.activities.values() for text in sentences]
         return differing_descriptions(self.weaver.request(text, seconds=self.options.seconds) for text in texts)
 

@@ -47,9 +47,10 @@ def write_mat(result: StoredResult, out: Path) -> str:
 
 @export_format("netcdf", "netCDF 3, for xarray", ending=".nc")
 def write_netcdf(result: StoredResult, out: Path) -> str:
-    """Writes `result.nc` (netCDF 3): `cube_real` and `cube_imag`, since netCDF lacks complex numbers, points and joints.
+    """Writes `result.nc` (netCDF 3) with points and joints.
 
-    Dimensions and coordinates share their names, so that xarray's `.sel(range=2.0)` works.
+    The cube is split into `cube_real` and `cube_imag`, since netCDF lacks complex numbers. Dimensions and coordinates
+    share their names, so that xarray's `.sel(range=2.0)` works.
 
     Raises:
         InputError: If xarray is not installed, or the cube is too large for the format.
