@@ -63,7 +63,14 @@ def option_name(one: "dataclasses.Field[Any]") -> str:
 
 
 def option_kind(one: "dataclasses.Field[Any]") -> tuple[Any, bool]:
-    """Type of one value of an option, and whether it takes several values."""
+    """Determines the type of an option.
+
+    Args:
+        one: The option.
+
+    Returns:
+        Type of one value, and whether the option takes several values.
+    """
     kind = one.metadata.get("kind") or one.type
     if get_origin(kind) in (Union, UnionType):
         kind = next(member for member in get_args(kind) if member is not NoneType)
@@ -165,7 +172,14 @@ def read_settings(given: list[Setting] | None, kinds: dict[str, Any], name: str)
 
 
 def write_word(value: Any) -> str:
-    """Formats a value such that `read_word` parses it."""
+    """Formats a value such that `read_word` parses it.
+
+    Args:
+        value: Number, text, or (nested) tuple of these.
+
+    Returns:
+        Word of the command line.
+    """
     if not isinstance(value, tuple | list):
         return str(getattr(value, "words", value))
     if len(value) > 1 and isinstance(value[0], str) and isinstance(value[1], tuple):

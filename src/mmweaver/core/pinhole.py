@@ -18,8 +18,10 @@ def pixel_coordinates(x_m: Any, y_m: Any, depth_m: Any, fx: Any, fy: Any, cx: An
         x_m: Coordinate to the right in metres.
         y_m: Coordinate downwards in metres.
         depth_m: Depth along the optical axis in metres.
-        fx, fy: Focal lengths in pixels.
-        cx, cy: Principal point in pixels.
+        fx: Horizontal focal length in pixels.
+        fy: Vertical focal length in pixels.
+        cx: Column of the principal point.
+        cy: Row of the principal point.
 
     Returns:
         Columns and rows in pixels.
@@ -59,7 +61,14 @@ def project(
 
 
 def normalized_coordinates(intrinsics: CameraIntrinsics) -> tuple[Float[Array, " width"], Float[Array, "height 1"]]:
-    """Normalised image coordinates: x / z of each column, (width,), and y / z of each row, (height, 1)."""
+    """Normalised image coordinates of a pinhole camera.
+
+    Args:
+        intrinsics: The camera.
+
+    Returns:
+        x / z of each column, (width,), and y / z of each row, (height, 1).
+    """
     x = (np.arange(intrinsics.width) - intrinsics.cx) / intrinsics.fx
     y = (np.arange(intrinsics.height) - intrinsics.cy) / intrinsics.fy
     return x, y[:, None]

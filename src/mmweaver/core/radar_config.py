@@ -260,7 +260,7 @@ class RadarConfig:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on unusual properties of this radar."""
+        """Sentences on unusual properties of this radar, such as a ramp that ends beyond the specified band."""
         end_hz = self.start_frequency_hz + self.chirp_slope_hz_per_s * self.ramp_end_time_s
         over_hz = end_hz - self.frequency_limits_hz[1]
         if over_hz <= 1e3:

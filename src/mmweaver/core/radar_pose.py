@@ -91,7 +91,7 @@ class RadarPose:
 
     @property
     def from_level(self) -> Rotation:
-        """Rotation from the camera's level frame to the radar's; rows are right, boresight and up."""
+        """Rotation from the camera's level frame to the radar's, (3, 3); rows are right, boresight and up."""
         yaw, pitch, roll = np.radians([self.yaw_deg, self.pitch_deg, self.roll_deg])
         boresight = np.array([np.sin(yaw) * np.cos(pitch), np.cos(yaw) * np.cos(pitch), np.sin(pitch)])
         level_right = np.array([np.cos(yaw), -np.sin(yaw), 0.0])

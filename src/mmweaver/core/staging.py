@@ -50,7 +50,14 @@ def is_staged(name: str) -> bool:
 
 
 def is_being_written(staged: Path) -> bool:
-    """Whether an unfinished file belongs to a running process of this host, or possibly to another host."""
+    """Whether an unfinished file belongs to a running process.
+
+    Args:
+        staged: The unfinished file or folder.
+
+    Returns:
+        True if its process runs on this host, or if it belongs to another host and changed within the last hour.
+    """
     found = STAGED.fullmatch(staged.name)
     if found is None:
         return False
@@ -142,7 +149,14 @@ def sync_tree(folder: Path) -> None:
 
 
 def sync(path: Path) -> None:
-    """Syncs the bytes of a file, or the entries of a folder, to disk."""
+    """Syncs a file's bytes, or a folder's entries, to disk.
+
+    Args:
+        path: File or folder.
+
+    Raises:
+        OSError: If the file system reports a failure.
+    """
     is_folder = path.is_dir()
     if is_folder and os.name == "nt":
         return  # Windows has no such call for folders

@@ -57,7 +57,14 @@ def read_tensors(file: Path) -> "tuple[dict[str, Tensor], dict[str, str]]":
 
 
 def sha256_of(tensors: "dict[str, Tensor]") -> str:
-    """SHA-256 over names, dtypes, shapes and values of tensors, hexadecimal."""
+    """Hashes tensors including their names, dtypes and shapes.
+
+    Args:
+        tensors: Tensors by name.
+
+    Returns:
+        SHA-256, hexadecimal; independent of the order of names.
+    """
     import torch
 
     digest = hashlib.sha256()

@@ -87,7 +87,14 @@ def has_elevation(config: RadarConfig) -> bool:
 
 
 def resolves_elevation(config: RadarConfig) -> bool:
-    """Whether an elevation spectrum is meaningful: columns of at least a wavelength, a beam of about 35 degrees."""
+    """Whether an elevation spectrum is meaningful for the array.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        True if a column of three or more antennas spans at least a wavelength, a beam of about 35 degrees.
+    """
     columns = elevation_columns(config.antenna_position_m, config.wavelength_m)
     place_m = config.antenna_position_m
     near_m = (1.0 - SAME_PLACE_WAVELENGTHS) * config.wavelength_m

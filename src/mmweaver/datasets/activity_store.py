@@ -171,7 +171,14 @@ class ActivitySet:
         return RadarCube(values=values, grid=grid, config=self.config, scale=1.0)
 
     def cloud(self, index: int) -> PointCloud:
-        """Point cloud of one sequence."""
+        """Point cloud of one sequence.
+
+        Args:
+            index: Index of the sequence.
+
+        Returns:
+            The stored points.
+        """
         own = self.point_sequence == index
         columns = dict(zip(POINT_COLUMNS, self.points[own].T.astype(np.float64), strict=True))
         return PointCloud(frame=self.point_frame[own].astype(int), **columns)

@@ -186,7 +186,14 @@ class SetBuilder:
         return draw if self.given is None else self.given.applied(draw)
 
     def request_of(self, one: PlannedSequence) -> ParsedRequest:
-        """Request that generates one sequence."""
+        """Builds the request that generates one sequence.
+
+        Args:
+            one: The planned sequence.
+
+        Returns:
+            The request, with place, heading, person and seed of its draw.
+        """
         draw = one.draw
         height_m = None if self.given is None else self.given.height_m
         request = self.weaver.request(

@@ -91,7 +91,14 @@ Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]
 
 
 def generate_one(task: Task) -> RoomReport:
-    """Generates and writes one room on a single thread."""
+    """Generates and writes one room on a single thread.
+
+    Args:
+        task: Folder, room, radar, frames per sequence, whether only geometry is stored, and board.
+
+    Returns:
+        Summary of the room.
+    """
     from threadpoolctl import threadpool_limits
 
     from mmweaver.datasets.room_generation import generate_room

@@ -134,7 +134,14 @@ class StoredGeometry:
         return cube_values(samples, self.config).cpu().numpy()
 
     def resynthesis(self, device: str) -> Any:
-        """The room's `Resynthesis` on a device, created once."""
+        """Prepares the room for synthesis on a device, once per device.
+
+        Args:
+            device: Torch device.
+
+        Returns:
+            The room's `Resynthesis`.
+        """
         from mmweaver.propagation.resynthesis import Resynthesis
 
         if device not in self._resyntheses:

@@ -396,7 +396,14 @@ def folder_leaks(
 
 # sentences that describe different people ("she", "an old man") ------------------------------------------------------
 def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
-    """Words of the sentences that describe their person; empty if all describe the same kind of person."""
+    """Finds descriptions of people that differ between sentences.
+
+    Args:
+        requests: Parsed sentences.
+
+    Returns:
+        Words that describe a person; empty if all sentences describe the same kind of person.
+    """
     people = [_described(request) for request in requests]
     if len({replace(one, words="") for one in people}) < 2:
         return []
@@ -404,7 +411,14 @@ def differing_descriptions(requests: Iterable[ParsedRequest]) -> list[str]:
 
 
 def done_by_anybody(request: ParsedRequest) -> ParsedRequest:
-    """Removes the description of the person from a request, so that only the subject determines it."""
+    """Removes the description of the person from a request, so that only the subject determines it.
+
+    Args:
+        request: The request.
+
+    Returns:
+        A copy without description.
+    """
     first, *others = request.people
     if first.plan is None:
         return request

@@ -138,7 +138,14 @@ def write_rf_genesis(result: StoredResult, out: Path) -> str:
 
 
 def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
-    """RF-Genesis' settings of a radar: MHz/us, microseconds, ksps; antenna positions in half wavelengths."""
+    """Converts a radar to RF-Genesis' settings.
+
+    Args:
+        config: The radar.
+
+    Returns:
+        Settings in MHz/us, microseconds and ksps; antenna positions (x, z, y) in half wavelengths.
+    """
     half_m = config.wavelength_m / 2
     places = {
         name: [[round(float(value) / half_m, 4) for value in (x, z, y)] for x, y, z in positions]

@@ -32,7 +32,14 @@ class CommonAxes:
 
 
 def shown_m(signal: ComparedSignal) -> np.ndarray:
-    """Ranges in metres that a signal covers: the entire band of its samples, or the window of its cube."""
+    """Ranges that a signal covers: the entire band of its samples, or the window of its cube.
+
+    Args:
+        signal: The signal.
+
+    Returns:
+        Ranges of the bins in metres, (range,).
+    """
     if signal.adc is None:
         return signal.cube.grid.range_m
     config = signal.adc.config

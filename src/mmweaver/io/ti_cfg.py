@@ -125,9 +125,15 @@ def cfg_path(name: str) -> Path | None:
 
 
 def adc_buffer(lines: Lines) -> tuple[float, float]:
-    """SampleSwap and interleaving of adcbufCfg; -1 if the line is missing.
+    """Reads SampleSwap and interleaving from adcbufCfg.
 
     SDK 1 has four numbers (format, swap, interleave, threshold); later versions prepend the sub-frame.
+
+    Args:
+        lines: Lines by command.
+
+    Returns:
+        SampleSwap (1: Q first) and interleaving (0: interleaved); -1 if the line is missing.
     """
     if "adcbufCfg" not in lines:
         return -1.0, -1.0

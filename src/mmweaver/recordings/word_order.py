@@ -80,7 +80,14 @@ def wrong_iq_order(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
 
 
 def mirrored_db(adc: AdcCube) -> float:
-    """Excess energy at negative beat frequencies over positive ones in dB."""
+    """Compares energy at negative and positive beat frequencies.
+
+    Args:
+        adc: Raw samples.
+
+    Returns:
+        Energy within a quarter of the sample rate below zero relative to that above zero, in dB.
+    """
     level = _power(adc).mean(axis=(0, 1, 2, 3))
     num = adc.config.num_samples
     near = max(num // 4, 3)

@@ -36,7 +36,14 @@ _PLANE_X = (6,)  # columns of a plane's features: normal
 
 
 def reflected_scene(scene: SceneTensors) -> SceneTensors:
-    """Reflects a scene at the plane x = 0."""
+    """Reflects a scene at the plane x = 0.
+
+    Args:
+        scene: Scene tensors.
+
+    Returns:
+        The reflected scene, including image, camera, points and planes.
+    """
     flip = scene.point_m.new_tensor([-1.0, 1.0, 1.0])
     camera = scene.camera.clone()
     camera[..., 2] = scene.image.shape[-1] - 1 - camera[..., 2]
@@ -69,7 +76,14 @@ def reflected_joints(joints: Tensor) -> Tensor:
 
 
 def reflected_targets(targets: Targets) -> Targets:
-    """Reverses azimuth in the targets; range, Doppler and elevation are unchanged."""
+    """Reverses azimuth in the targets; range, Doppler and elevation are unchanged.
+
+    Args:
+        targets: Target maps.
+
+    Returns:
+        The reflected targets.
+    """
     person = None if targets.person is None else _azimuth_flipped(targets.person)
     return Targets(maps=_azimuth_flipped(targets.maps), static=_azimuth_flipped(targets.static), person=person)
 

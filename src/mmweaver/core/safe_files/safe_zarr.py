@@ -129,7 +129,14 @@ class ZarrFolder:
         self._checks.shape(name, found, wanted)
 
     def rows_a_file(self, name: str) -> int:
-        """Rows along the first axis per chunk file."""
+        """Number of rows along the first axis that one chunk file contains.
+
+        Args:
+            name: Name of the array.
+
+        Raises:
+            InputError: If there is none of that name.
+        """
         self.promise(name)
         array = self._array(name)
         return int((array.shards or array.chunks)[0])

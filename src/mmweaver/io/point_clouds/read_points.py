@@ -57,7 +57,14 @@ def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
 
 
 def recognised_kind(path: Path) -> str | None:
-    """Format that recognises a file or folder by its name and first bytes; None if none does."""
+    """Detects the format of a point cloud by its name and first 64 KiB.
+
+    Args:
+        path: File or folder.
+
+    Returns:
+        Key of FORMATS; None if no format recognises it.
+    """
     head = b""
     if not path.is_dir():
         with open_regular(path) as stream:
