@@ -1,4 +1,4 @@
-"""Frozen dataclasses of torch tensors that are moved, stacked, joined and indexed as one."""
+"""Frozen dataclasses of torch tensors that are moved, stacked, concatenated and indexed together."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ RecordT = TypeVar("RecordT", bound="TensorRecord")
 
 @dataclass(frozen=True, kw_only=True)
 class TensorRecord:
-    """Base of records whose fields are tensors that share their leading axes.
+    """Base of records whose tensor fields share their leading axes.
 
-    Operations apply to every tensor and to nested records; None and other values stay as they are, taken from the first
-    record where several are combined.
+    Operations apply to every tensor and to nested records. None and non-tensor values are kept, taken from the first
+    record when several are combined.
 
     >>> import torch
     >>> @dataclass(frozen=True, kw_only=True)
@@ -28,28 +28,43 @@ class TensorRecord:
     """
 
     def map(self: RecordT, function: Callable[["Tensor"], "Tensor"]) -> RecordT:
-        """The record with `function` applied to each tensor."""
+        """Applies a function to each tensor.
+
+        Args:
+            function: Maps a tensor to a tensor.
+
+        Returns:
+            The record of results.
+        """
         values = {name: _mapped(getattr(self, name), function) for name in self.__dataclass_fields__}
         return type(self)(**values)  # `replace` takes twice as long
 
     def to(self: RecordT, *target: Any, **options: Any) -> RecordT:
-        """The record on another device or of another type; arguments are those of `Tensor.to`."""
+        """Moves or converts each tensor; arguments are those of `Tensor.to`."""
         return self.map(lambda tensor: tensor.to(*target, **options))
 
     def __getitem__(self: RecordT, index: Any) -> RecordT:
-        """Every tensor indexed along the axes the record's tensors share."""
+        """Indexes each tensor along the shared leading axes."""
         return self.map(lambda tensor: tensor[index])
 
     @classmethod
     def stack(cls: type[RecordT], records: Sequence[RecordT]) -> RecordT:
-        """Records of equal shapes along a new leading axis."""
+        """Stacks records of equal shapes along a new leading axis."""
         import torch
 
         return _combined(records, torch.stack)
 
     @classmethod
     def cat(cls: type[RecordT], records: Sequence[RecordT], dim: int = 0) -> RecordT:
-        """Records joined along an axis they all have; `dim` counts from the front, for the axes are shared there."""
+        """Concatenates records along a shared axis.
+
+        Args:
+            records: Records of one type.
+            dim: Axis, counted from the front. Default: 0.
+
+        Returns:
+            The combined record.
+        """
         import torch
 
         return _combined(records, lambda tensors: torch.cat(tensors, dim))
