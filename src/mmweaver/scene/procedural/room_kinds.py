@@ -1,4 +1,4 @@
-"""The kinds of rooms, by the rows of rooms.toml: size, surfaces, and furniture."""
+"""The kinds of rooms from rooms.toml: size, surfaces and furniture."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -27,7 +27,7 @@ class RoomKind:
 
 
 def _room_kind(name: str, *, small_objects: bool = True, optional: tuple, **row: Any) -> RoomKind:
-    """A row of [kinds] in rooms.toml."""
+    """Makes a kind from a row of [kinds] in rooms.toml."""
     return RoomKind(name=name, optional=optional + (TABLES["small_objects"] if small_objects else ()), **row)
 
 
