@@ -218,14 +218,11 @@ def spread_out(poses: Sequence[Pose | None], first: int, most: int = 5) -> list[
 
     Args:
         poses: Transforms (4, 4) from camera to world, metres; None where a frame has none.
-        first: Frame to start from.
+        first: Frame to start from; it must have a pose.
         most: Maximum number of frames to add.
 
     Returns:
         Indices of the added frames; fewer than `most` if the remaining ones are too close.
-
-    Raises:
-        InputError: If the first frame has no pose.
     """
     places = {
         index: np.concatenate([pose[:3, 3], pose[:3, 2] * 57.3 / DEGREES_A_METRE])  # metres, and direction as metres

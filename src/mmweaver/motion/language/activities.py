@@ -1,4 +1,4 @@
-"""What a body and its hands can do: one record per activity, in `activities.toml`."""
+"""The activities of body and hands: one record per activity, in `activities.toml`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,15 +14,15 @@ class Activity:
     key: str
     name: str  # as in "walking and waving"
     example: str
-    shown: str = ""  # what a step of it shows, where the name does not say it, with {hand}, {arm}, {leg}, {foot}
+    shown: str = ""  # description of a step if the name is too short, with {hand}, {arm}, {leg}, {foot}
     least_s: float  # shortest time in which it can be shown
     natural_s: float
-    once: bool = False  # takes its natural time; time that is left goes to other steps
-    counted_s: tuple[float, float, float] | None = None  # of one repetition: least, natural; extra at start and end
+    once: bool = False  # takes its natural time; spare time goes to other steps
+    counted_s: tuple[float, float, float] | None = None  # of one repetition: minimum, natural; extra at start and end
     clearance_m: float = 0.5  # free floor around the body
     moves: bool = False  # changes the position on the floor
     hands: bool = False
-    posture: str = "feet"  # what the body rests on at its end: feet | seat | couch | knees | floor
+    posture: str = "feet"  # support of the body at its end: feet | seat | couch | knees | floor
     uses_seat: bool = False  # needs a seat, bed or couch
 
 
@@ -32,7 +32,7 @@ def words_in(text: str) -> frozenset[str]:
 
 
 ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {}  # verb -> (lower, upper) of a Step
-PARAPHRASES: dict[str, tuple[str, ...]] = {}  # with which unknown clauses are compared to make a suggestion
+PARAPHRASES: dict[str, tuple[str, ...]] = {}  # compared with unknown clauses for suggestions
 
 
 def _activity(key: str, record: dict[str, Any], *, hands: bool) -> Activity:
@@ -51,7 +51,7 @@ CLEARANCE_M: dict[str, float] = {key: activity.clearance_m for key, activity in 
 
 
 def known() -> str:
-    """All names, separated by commas, for messages.
+    """Names of all activities, separated by commas, for messages.
 
     >>> known().count(", ") > 50
     True

@@ -1,4 +1,4 @@
-"""How a motion ends, so that the next can begin there: place, heading, posture and seat."""
+"""Final state of a motion, from which the next can begin: position, heading, posture and seat."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from mmweaver.motion.planning.seating import Sitting
 
 @dataclass(frozen=True, kw_only=True)
 class BodyState:
-    """Where a body's root stands, (x, y) in metres, where it faces, and in which posture; in the radar's frame."""
+    """Position (x, y) of a body's root in metres, its heading and its posture, in the radar's frame."""
 
     position_m: tuple[float, float]
     heading_rad: float  # from +x towards +y
