@@ -13,9 +13,9 @@ Times = Float[Array, "*shape"]
 
 @dataclass(frozen=True, kw_only=True)
 class Move:
-    """A move along an arc (a line where curvature is 0) at constant speed, with ramps at its ends.
+    """A move along an arc (a line if the curvature is 0) at constant speed, with ramps at its ends.
 
-    With `ramp_in_s` 0 the person was moving before the start, with `ramp_out_s` 0 goes on after the end.
+    With `ramp_in_s` 0 the person was moving before the start, with `ramp_out_s` 0 continues after the end.
     """
 
     start_s: float
@@ -42,7 +42,7 @@ class Move:
         return self.shift_after_m(self.gone_m(time_s))
 
     def shift_after_m(self, gone: Float[Array, "*shape"]) -> Float[Array, "*shape 2"]:
-        """Displacement (x, y) in metres after so many metres of the way."""
+        """Displacement (x, y) in metres after a distance `gone` along the path, metres."""
         bend = self.curvature_per_m
         ahead = np.sin(bend * gone) / bend if bend else gone
         left = (1 - np.cos(bend * gone)) / bend if bend else np.zeros_like(gone)
@@ -57,7 +57,7 @@ class Move:
 
 @dataclass(frozen=True, kw_only=True)
 class Turn:
-    """A turn on the spot, to the person's left where positive."""
+    """A turn on the spot, positive to the person's left."""
 
     start_s: float
     end_s: float
@@ -66,7 +66,7 @@ class Turn:
 
 @dataclass(frozen=True, kw_only=True)
 class RootPath:
-    """Path of the ground point under a person: start, moves and turns. Frame: x right, y away from the radar."""
+    """Path of the floor point below a person: start, moves and turns. Frame: x right, y away from the radar."""
 
     start_m: tuple[float, float]
     heading_rad: float
@@ -81,7 +81,7 @@ class RootPath:
         return position
 
     def facing_rad(self, time_s: Times) -> Times:
-        """Heading from +x towards +y at each time."""
+        """Heading from +x towards +y at each time in seconds."""
         heading = np.full(np.shape(time_s), self.heading_rad)
         for turn in self.turns:
             heading = heading + turn.angle_rad * rise((time_s - turn.start_s) / (turn.end_s - turn.start_s))
@@ -90,7 +90,7 @@ class RootPath:
         return heading
 
     def speed_mps(self, time_s: Times) -> Times:
-        """Speed over the floor at each time, by central differences."""
+        """Speed over the floor in m/s at each time in seconds, by central differences."""
         step = 1e-3
         gap = self.position_m(time_s + step) - self.position_m(time_s - step)
         return np.hypot(gap[..., 0], gap[..., 1]) / (2 * step)
