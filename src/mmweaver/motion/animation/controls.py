@@ -80,7 +80,12 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
 
 
 def scaled(values: Array, share: Array) -> Array:
-    """Multiplies values (n, ...) by shares (n,) or (n, 2)."""
+    """Multiplies values by shares.
+
+    Args:
+        values: Values (n, ...).
+        share: Shares (n,), or (n, 2) for fields with a value per foot.
+    """
     return values * share.reshape(share.shape + (1,) * (values.ndim - share.ndim))
 
 
@@ -97,7 +102,14 @@ def mix_arm(controls: Controls, side: int, arm: Float[Array, "*n 4"], weight: Fl
 
 
 def whole_turns(gap_rad: Array) -> Array:
-    """The multiples of 2 pi nearest to differences of angles, in radians, any shape."""
+    """Nearest multiples of 2 pi.
+
+    Args:
+        gap_rad: Differences of angles in radians, any shape.
+
+    Returns:
+        Radians, same shape.
+    """
     return np.asarray(2 * np.pi * np.round(gap_rad / (2 * np.pi)))
 
 

@@ -27,7 +27,14 @@ class Move:
     curvature_per_m: float = 0.0
 
     def gone_m(self, time_s: Times) -> Times:
-        """Distance covered, in metres, at each time in seconds."""
+        """Distance covered since the start of the move.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            Metres, same shape.
+        """
         span_s = self.end_s - self.start_s
         u = np.asarray((time_s - self.start_s) / span_s)
         return np.asarray(self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s))
@@ -38,11 +45,25 @@ class Move:
         return self.length_m / (self.end_s - self.start_s - self.ramp_in_s / 2 - self.ramp_out_s / 2)
 
     def shift_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
-        """Displacement (x, y) in metres from the start of the move, at each time."""
+        """Displacement since the start of the move.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         return self.shift_after_m(self.gone_m(time_s))
 
     def shift_after_m(self, gone: Float[Array, "*shape"]) -> Float[Array, "*shape 2"]:
-        """Displacement (x, y) in metres after a distance `gone` along the path, metres."""
+        """Displacement after a distance along the path.
+
+        Args:
+            gone: Distance in metres, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         bend = self.curvature_per_m
         ahead = np.sin(bend * gone) / bend if bend else gone
         left = (1 - np.cos(bend * gone)) / bend if bend else np.zeros_like(gone)
@@ -74,14 +95,28 @@ class RootPath:
     turns: tuple[Turn, ...] = ()
 
     def position_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
-        """Position (x, y) in metres at each time in seconds."""
+        """Position of the root.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            (x, y) in metres, (..., 2).
+        """
         position = np.zeros((*np.shape(time_s), 2)) + np.array(self.start_m)
         for move in self.moves:
             position = position + move.shift_m(time_s)
         return position
 
     def facing_rad(self, time_s: Times) -> Times:
-        """Heading from +x towards +y at each time in seconds."""
+        """Heading of the root.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            Radians from +x towards +y, same shape.
+        """
         heading = np.full(np.shape(time_s), self.heading_rad)
         for turn in self.turns:
             heading = heading + turn.angle_rad * rise((time_s - turn.start_s) / (turn.end_s - turn.start_s))
@@ -90,7 +125,14 @@ class RootPath:
         return heading
 
     def speed_mps(self, time_s: Times) -> Times:
-        """Speed over the floor in m/s at each time in seconds, by central differences."""
+        """Speed over the floor, by central differences.
+
+        Args:
+            time_s: Times in seconds, any shape.
+
+        Returns:
+            m/s, same shape.
+        """
         step = 1e-3
         gap = self.position_m(time_s + step) - self.position_m(time_s - step)
         return np.hypot(gap[..., 0], gap[..., 1]) / (2 * step)

@@ -45,7 +45,14 @@ class Span:
         return self.begin_s + share * self.lasts_s
 
     def plateau(self, begin: Number, end: Number, up: Number, down: Number) -> PerTime:
-        """`profiles.plateau` from share `begin` to share `end`, with ramps of these shares."""
+        """`profiles.plateau` at shares of the duration.
+
+        Args:
+            begin: Start.
+            end: End.
+            up: Duration of the rise.
+            down: Duration of the fall.
+        """
         return plateau(self.time_s, self.at(begin), self.at(end), up * self.lasts_s, down * self.lasts_s)
 
     def progress(self) -> PerTime:
@@ -53,7 +60,12 @@ class Span:
         return (self.time_s - self.begin_s) / self.lasts_s
 
     def keys(self, shares: Sequence[Number], values: Sequence[Number]) -> PerTime:
-        """`spline_through` keyframes at shares of the duration."""
+        """`spline_through` keyframes at shares of the duration.
+
+        Args:
+            shares: Shares of the keyframes, increasing.
+            values: Values of the keyframes.
+        """
         return spline_through(self.time_s, [self.at(share) for share in shares], values)
 
     def rows(self, movement: str, *names: str) -> list[PerTime]:

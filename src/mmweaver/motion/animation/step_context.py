@@ -75,7 +75,13 @@ class StepContext:
         return 2 if self.step.several else 1
 
     def by_speed(self, slow: float, usual: float, fast: float) -> float:
-        """One of three values, by the speed in the sentence."""
+        """One of three values, by the speed in the sentence.
+
+        Args:
+            slow: Value for 'slowly'.
+            usual: Value by default.
+            fast: Value for 'quickly'.
+        """
         return (usual, fast, slow)[self.speed]
 
     def tempo(self, slow: float, usual: float, fast: float, spread: float = 0.1) -> float:
@@ -108,7 +114,12 @@ class StepContext:
         return value * self.habits.amplitude * size
 
     def wander(self, slow_hz: float, fast_hz: float) -> PerTime:
-        """`profiles.wander` at the times of the motion."""
+        """`profiles.wander` at the times of the motion.
+
+        Args:
+            slow_hz: Lowest frequency in Hz.
+            fast_hz: Highest frequency in Hz.
+        """
         return wander(self.time_s, self.rng, slow_hz=slow_hz, fast_hz=fast_hz)
 
     def sides(self) -> tuple[int, ...]:
@@ -205,7 +216,14 @@ class StepContext:
         return 2 * np.pi * rate_hz * (self.time_s - self.start_s)
 
     def plateau(self, begin_s: float, end_s: float, up_s: float, down_s: float) -> PerTime:
-        """`profiles.plateau` at the times of the motion."""
+        """`profiles.plateau` at the times of the motion.
+
+        Args:
+            begin_s: Time at which the rise begins, seconds.
+            end_s: Time at which the fall ends, seconds.
+            up_s: Duration of the rise in seconds.
+            down_s: Duration of the fall in seconds.
+        """
         return plateau(self.time_s, begin_s, end_s, up_s, down_s)
 
     def since_start(self, low: float, slow: float, usual: float, fast: float, share: float) -> PerTime:
@@ -267,14 +285,27 @@ class StepContext:
             self.add(spline_through(u, MOVEMENTS[movement]["at"], values), side, **{channel: gain})
 
     def pelvis(self, ahead: Curve = 0.0, left: Curve = 0.0, up: Curve = 0.0) -> None:
-        """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""
+        """Moves the pelvis in the body's own frame.
+
+        Args:
+            ahead: Metres ahead, (n,) or constant.
+            left: Metres to the body's left.
+            up: Metres up.
+        """
         cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
         self.controls.pelvis_m[:, 0] += ahead * cos - left * sin
         self.controls.pelvis_m[:, 1] += ahead * sin + left * cos
         self.controls.pelvis_m[:, 2] += up
 
     def move_foot(self, side: int, ahead: Curve = 0.0, out: Curve = 0.0, up: Curve = 0.0) -> None:
-        """Moves a foot ahead, outward and up; metres, (n,) or constant."""
+        """Moves a foot in the body's own frame.
+
+        Args:
+            side: LEFT or RIGHT.
+            ahead: Metres ahead, (n,) or constant.
+            out: Metres outward.
+            up: Metres up.
+        """
         cos, sin = np.cos(self.controls.heading_rad), np.sin(self.controls.heading_rad)
         left = OUTWARD[side] * out
         self.controls.foot_m[:, side, 0] += ahead * cos - left * sin
@@ -286,12 +317,22 @@ class StepContext:
         self.controls.knee_room[:] = np.maximum(self.controls.knee_room, room)
 
     def lift_weight(self, side: int, air: PerTime) -> None:
-        """Unloads a foot as `air` (n,) goes to 1; both knees bend slightly."""
+        """Unloads a foot; both knees bend slightly.
+
+        Args:
+            side: LEFT or RIGHT.
+            air: 0 to 1 (n,): 1 unloads it completely.
+        """
         self.add(air, side, contact=-1)
         self.bend_knees(0.8 * air)
 
     def lean_over(self, side: int, share: PerTime) -> None:
-        """Shifts the body over one foot as `share` (n,) goes to 1; the trunk stays upright."""
+        """Shifts the body over one foot; the trunk stays upright.
+
+        Args:
+            side: LEFT or RIGHT.
+            share: 0 to 1 (n,): 1 is over the foot.
+        """
         self.pelvis(left=OUTWARD[side] * 0.043 * self.height_m * share)
         self.add(share, spine_roll=-OUTWARD[side] * 0.05)
 
@@ -324,7 +365,14 @@ class StepContext:
     def hand_to(
         self, side: int | tuple[int, ...], target: Place, weight: Curve = 1.0, elbow: Sequence[float] | None = None
     ) -> None:
-        """As `hand_to_m`, with the target in body heights."""
+        """As `hand_to_m`, with the target in body heights.
+
+        Args:
+            side: LEFT, RIGHT, or several.
+            target: Ahead, outward and up of spine3 in the chest's frame, body heights; curves, or (n, 3).
+            weight: As in `hand_to_m`.
+            elbow: As in `hand_to_m`.
+        """
         self.hand_to_m(side, self._points(target) * self.height_m, weight, elbow)
 
     def hand_to_m(

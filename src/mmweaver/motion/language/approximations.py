@@ -125,7 +125,14 @@ def _filled(found: re.Match[str], instead: str) -> str:
 
 
 def approximation_of(token: str) -> tuple[str, bool]:
-    """Report of a token of `apply_approximations`, and whether movements are shown one after the other."""
+    """Report of an approximation.
+
+    Args:
+        token: Token of `apply_approximations`.
+
+    Returns:
+        What is shown instead, and whether movements are shown one after the other.
+    """
     words, _, number = token.removeprefix(MARK).rpartition("_")
     one = APPROXIMATIONS[int(number)]
     return one.how.replace(_THESE, repr(words.replace("_", " "))), one.in_turn

@@ -129,7 +129,12 @@ class Step(Action, Path, Target, Repetition):
         return upper if self.lower == "stand" else f"{lower} and {upper}"
 
     def straight(self, direction: Direction | None = None, **changes: Any) -> "Step":
-        """The step in a direction, without bends and turns, and with other changes."""
+        """The step in a direction, without bends and turns.
+
+        Args:
+            direction: New direction.
+            **changes: Other fields to replace.
+        """
         return replace(self, direction=direction, arc_deg=0.0, turn_deg=0.0, **changes)
 
     @property

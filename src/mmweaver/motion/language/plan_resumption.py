@@ -42,7 +42,15 @@ def continued(plan: MotionPlan, before: Step | None, *, seat_m: float | None = N
 
 
 def goes_on(plan: MotionPlan, seconds: float) -> Step | None:
-    """The last activity of a plan continued for `seconds`; None if it ends by itself or leads elsewhere."""
+    """Continues the last activity of a plan.
+
+    Args:
+        plan: Plan of the last sentence.
+        seconds: Duration.
+
+    Returns:
+        The step; None if the activity ends by itself or leads elsewhere.
+    """
     last = next((step for step in reversed(plan.steps) if step.clause), None)
     if last is None or last.moves or last.count or last.seconds or last.turn_deg or last.lower == "turn":
         return None

@@ -199,7 +199,11 @@ def inherit_state(steps: list[Step]) -> list[Step]:
 
 
 def merged(steps: list[Step]) -> list[Step]:
-    """Merges two equal static postures in a row, unless the second is a pause before the next movement."""
+    """Merges two equal static postures in a row, unless the second is a pause before the next movement.
+
+    Args:
+        steps: Steps in temporal order.
+    """
     result: list[Step] = []
     for number, step in enumerate(steps, start=1):
         plain = (

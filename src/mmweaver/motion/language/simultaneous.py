@@ -85,7 +85,11 @@ def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Ste
 
 
 def going_on(steps: list[Step]) -> list[Step]:
-    """Merges steps that continue from the final pose of the previous one, which does not start anew."""
+    """Merges steps that continue from the final pose of the previous one, which does not start anew.
+
+    Args:
+        steps: Steps in temporal order.
+    """
     result = steps[:1]
     for step in steps[1:]:
         before = result[-1]

@@ -43,10 +43,12 @@ def frequency_text(step: Step, key: str) -> str:
 
 
 def times_said(count: int) -> str:
+    """Words for a number of repetitions: once, twice, three times."""
     return {1: "once", 2: "twice"}.get(count, f"{_number(count)} times")
 
 
 def steps_said(count: int) -> str:
+    """Words for a number of paces: one step, two steps."""
     return "one step" if count == 1 else f"{_number(count)} steps"
 
 
@@ -74,7 +76,11 @@ _LYING = words_in("lie lie_down fall")
 
 
 def body_phrase(step: Step) -> str:
-    """Describes a body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'."""
+    """Describes a body activity: 'walking three steps backwards', 'lunging ahead with the left leg twice'.
+
+    Args:
+        step: The step.
+    """
     name = BY_KEY[step.lower].shown or BY_KEY[step.lower].name
     if step.lower == "jog" and step.style != "jog":
         name = "running"
@@ -216,6 +222,7 @@ def hand_phrase(step: Step, part: Step) -> str:
 
 
 def hand_suffix(hand: str) -> str:
+    """Words for the acting hand, such as " with both hands"."""
     return {"both": " with both hands", "one": " with one hand"}.get(hand, f" with the {hand} hand")
 
 
@@ -300,7 +307,11 @@ def _at(places: Sequence[int], steps: Sequence[Step]) -> str:
 
 
 def in_turn(steps: Iterable[Step]) -> str:
-    """Describes steps in order: 'walking backwards, then standing'."""
+    """Describes steps in order: 'walking backwards, then standing'.
+
+    Args:
+        steps: Steps in temporal order; repetitions are summarized.
+    """
     names = [doing(step) for step in steps]
     for length in range(1, len(names) // 2 + 1):
         times, rest = divmod(len(names), length)
@@ -311,7 +322,11 @@ def in_turn(steps: Iterable[Step]) -> str:
 
 
 def doing(step: Step) -> str:
-    """Complete description of a step: 'walking three steps backwards', 'sitting on the sofa while waving'."""
+    """Complete description of a step: 'walking three steps backwards', 'sitting on the sofa while waving'.
+
+    Args:
+        step: The step.
+    """
     body = "" if step.lower == "stand" and step.upper else body_phrase(step)
     parts = [body, *(hand_phrase(step, part) for part in step.each if part.upper)]
     facing = {"towards": "the radar", "away": "away from the radar"}.get(step.facing) or (

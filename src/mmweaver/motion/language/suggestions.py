@@ -42,7 +42,14 @@ def not_known(clause_text: str, word: str = "") -> str:
 
 @cache
 def nearest_example(clause_text: str) -> str:
-    """Example of the activity with most words similar to the unknown ones of a clause; "" if too few are."""
+    """Example of the known activity most similar to a clause.
+
+    Args:
+        clause_text: Words of the clause.
+
+    Returns:
+        Example sentence; "" if too few words are similar.
+    """
     words = [word for word in clause_text.lower().replace("_", " ").split() if word not in _EMPTY | ALL_WORDS | OWN]
     asked = [word for word in words if not word_of(word).is_verb] or words
     found = dict.fromkeys(BY_KEY, 0.0)

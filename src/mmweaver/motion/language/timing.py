@@ -79,12 +79,26 @@ def _check(duration_s: float) -> None:
 
 
 def natural_s(plan: MotionPlan) -> float:
-    """Natural duration of a plan in seconds, at the person's pace."""
+    """Natural duration of a plan at the person's pace.
+
+    Args:
+        plan: Parsed plan.
+
+    Returns:
+        Seconds.
+    """
     return sum(max(_limits(step)[1] / step.pace, _limits(step)[0]) for step in plan.steps)
 
 
 def least_s(plan: MotionPlan) -> float:
-    """Minimum duration of a plan in seconds."""
+    """Minimum duration in which a plan can be shown.
+
+    Args:
+        plan: Parsed plan.
+
+    Returns:
+        Seconds.
+    """
     return sum(_limits(step)[0] for step in plan.steps)
 
 

@@ -51,7 +51,15 @@ def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "f
 
 
 def rotated_about_y(vectors: Float[Array, "*shape 3"], half_rad: Float[Array, "..."]) -> Float[Array, "*shape 3"]:
-    """Rotates vectors (..., 3) about y by twice `half_rad`, radians."""
+    """Rotates vectors about y.
+
+    Args:
+        vectors: Vectors (..., 3).
+        half_rad: Half the angle in radians, broadcast against the vectors.
+
+    Returns:
+        Rotated vectors (..., 3).
+    """
     cos, sin = np.cos(2 * half_rad), np.sin(2 * half_rad)
     x, y, z = (vectors[..., axis] for axis in range(3))
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)

@@ -94,7 +94,14 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
 
 
 def clips_of(path: Path) -> tuple[str, ...]:
-    """Names of the motions of a file that holds several; otherwise ()."""
+    """Names of the motions of a file.
+
+    Args:
+        path: Motion file.
+
+    Returns:
+        Names; () if the file holds a single motion.
+    """
     arrays = safe_arrays.read_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
     return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
 

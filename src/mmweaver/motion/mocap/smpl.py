@@ -60,7 +60,15 @@ def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = No
 
 
 def rate_of(arrays: dict[str, Array], path: Path) -> float | None:
-    """Frame rate stated by an .npz, in Hz; None if there is none."""
+    """Frame rate stated by an .npz.
+
+    Args:
+        arrays: Arrays of the file by name.
+        path: The file, for error messages.
+
+    Returns:
+        Hz; None if there is none.
+    """
     found = [name for name in RATES if name in arrays and arrays[name].size == 1 and arrays[name].dtype.kind in "fiuc"]
     if not found:
         return None

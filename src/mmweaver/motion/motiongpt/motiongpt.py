@@ -180,7 +180,14 @@ class MotionGPT:
         return made * self.std + self.mean
 
     def codes_of(self, features: Float[Array, "frame 263"]) -> list[int]:
-        """Encodes HumanML3D features (frame, 263) as motion codes."""
+        """Encodes features as motion codes.
+
+        Args:
+            features: HumanML3D features (frame, 263), not normalised.
+
+        Returns:
+            Motion codes, one per four frames.
+        """
         normal = torch.from_numpy(((features - self.mean) / self.std)[None]).float()
         with torch.inference_mode():
             return self.tokenizer.encode(normal)[0].tolist()

@@ -78,7 +78,11 @@ class BodySamples:
 
     @classmethod
     def of(cls, pose: PoseSequence) -> "BodySamples":
-        """Samples a pose sequence in the radar's frame."""
+        """Samples a pose sequence in the radar's frame.
+
+        Args:
+            pose: The motion.
+        """
         steps = np.arange(max(float(pose.time_s[0]), 0.0), float(pose.time_s[-1]), STEP_S)
         rows = np.unique(np.minimum(np.searchsorted(pose.time_s, steps), len(pose.time_s) - 1))
         joints = pose.joints_m[rows].astype(float)
@@ -112,11 +116,19 @@ class BodySamples:
         return self._select(np.flatnonzero(index % 2 == 0))
 
     def relative_to(self, path: RootPath) -> "BodySamples":
-        """Transforms the points relative to the root of the path that the body follows: x ahead, y to its left."""
+        """Transforms the points relative to the root of the path that the body follows: x ahead, y to its left.
+
+        Args:
+            path: Path of the body.
+        """
         return self._moved(path, inverse=True)
 
     def along(self, path: RootPath) -> "BodySamples":
-        """Transforms points relative to a root to another root path; exact if neither body moves over the floor."""
+        """Transforms points relative to a root to another root path; exact if neither body moves over the floor.
+
+        Args:
+            path: Path of the other body.
+        """
         return self._moved(path, inverse=False)
 
     def _moved(self, path: RootPath, *, inverse: bool) -> "BodySamples":

@@ -86,7 +86,14 @@ class PulledChair:
         return np.asarray((points_m[:, :2] - np.array(self.place_m)) @ ahead > _FRONT_AHEAD_M)
 
     def covers(self, places_m: Float[Array, "*shape 2"]) -> Bool[Array, "*shape"]:
-        """Whether the chair covers places (x, y) in metres where it stands in the photo."""
+        """Whether the chair covers positions where it stands in the photo.
+
+        Args:
+            places_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions.
+        """
         away = places_m - np.array(self.place_m)
         cos, sin = np.cos(self.facing_rad), np.sin(self.facing_rad)
         along, aside = away[..., 0] * cos + away[..., 1] * sin, away[..., 1] * cos - away[..., 0] * sin
@@ -101,7 +108,11 @@ class CollisionMap:
 
     @classmethod
     def of(cls, scene: Scene) -> "CollisionMap":
-        """The map of a scene; the last one is cached, because many motions are tested in one scene."""
+        """The map of a scene; the last one is cached, because many motions are tested in one scene.
+
+        Args:
+            scene: The room, in the radar's frame.
+        """
         if not _latest or _latest[0].scene is not scene:
             _latest[:] = [cls(scene)]
         return _latest[0]

@@ -22,7 +22,15 @@ def distance_m(one: Any, other: Any) -> float:
 
 
 def distances_m(positions: Float[np.ndarray, "position 2"], other: Any) -> Float[np.ndarray, " position"]:
-    """Distance of each of many positions (x, y) to another one, in metres."""
+    """Distance of each of many positions to another one.
+
+    Args:
+        positions: Positions (x, y) in metres, (position, 2).
+        other: Position (x, y) in metres.
+
+    Returns:
+        Metres, (position,).
+    """
     return np.hypot(*(positions - np.asarray(other)).T)
 
 

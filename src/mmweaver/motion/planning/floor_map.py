@@ -206,15 +206,36 @@ class FloorMap:
         )
 
     def can_stand(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """Whether each position is walkable."""
+        """Whether a body can stand at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions; False off the grid.
+        """
         return np.asarray(self._bordered[0][self._cells(positions_m)])
 
     def clearance_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
-        """Distance in metres to the nearest cell that is not free, 0 off the grid."""
+        """Distance to the nearest cell that is not free.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Metres, 0 off the grid.
+        """
         return np.asarray(self._bordered[1][self._cells(positions_m)])
 
     def is_seen_floor(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """Whether the photo shows free floor at each position."""
+        """Whether the photo shows free floor at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Mask of the positions; False off the grid.
+        """
         return np.asarray(self._seen_floor[self._cells(positions_m)])
 
     @cached_property
@@ -222,7 +243,14 @@ class FloorMap:
         return np.pad(self.scene.free_space.is_free & self.scene.free_space.is_seen, 1)
 
     def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
-        """`cell_cost` at each position."""
+        """`cell_cost` at each position.
+
+        Args:
+            positions_m: Positions (x, y) in metres, (..., 2).
+
+        Returns:
+            Cost of each position, 3 off the grid.
+        """
         return np.asarray(self._bordered[2][self._cells(positions_m)])
 
     def free_length_m(
@@ -249,7 +277,17 @@ class FloorMap:
         wanted_m: float,
         excused_m: float = 0.0,
     ) -> Float[Array, " way"]:
-        """`free_length_m` in several directions."""
+        """`free_length_m` in several directions.
+
+        Args:
+            position_m: Position (x, y) in metres.
+            directions_rad: Directions (way,) from +x towards +y.
+            wanted_m: Maximum length in metres.
+            excused_m: As in `free_length_m`.
+
+        Returns:
+            Metres, (way,).
+        """
         steps = np.append(np.arange(0.0, wanted_m, _STEP_M), wanted_m)
         ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)
         lines_m = position_m + steps[:, None] * ways[:, None]
@@ -261,7 +299,15 @@ class FloorMap:
         return np.where(is_free.all(axis=1), wanted_m, reached)
 
     def are_free_ways(self, starts_m: Float[Array, "way 2"], ends_m: Float[Array, "way 2"]) -> Bool[Array, " way"]:
-        """Whether a body can move straight from each start (way, 2) to its end (way, 2), metres."""
+        """Whether a body can move straight from each start to its end.
+
+        Args:
+            starts_m: Starts (x, y) in metres, (way, 2).
+            ends_m: Ends (x, y) in metres, (way, 2).
+
+        Returns:
+            Mask (way,).
+        """
         gaps = ends_m - starts_m
         lengths, directions = np.hypot(*gaps.T), np.arctan2(gaps[:, 1], gaps[:, 0])
         longest = float(lengths.max(initial=0.0))
@@ -302,7 +348,14 @@ class FloorMap:
         return np.where(is_free.all(axis=1), _FARTHEST_M, steps[np.maximum(np.argmin(is_free, axis=1) - 1, 0)])
 
     def longest_free_m(self, wanted_m: float) -> float:
-        """The longest straight path in metres, at most `wanted_m`, from some places in eight directions; cached."""
+        """Length of the longest straight path from some places in eight directions; cached.
+
+        Args:
+            wanted_m: Maximum length in metres.
+
+        Returns:
+            Metres, 0 without walkable floor.
+        """
         if wanted_m not in self._longest_m:
             cells = self.walkable_m
             some = cells[:: max(1, len(cells) // 40)]

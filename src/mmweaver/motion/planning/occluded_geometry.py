@@ -52,7 +52,14 @@ def extended_to_floor(points: Points, floor_z_m: float) -> Float[np.ndarray, "be
 
 
 def table_legs(scene: Scene) -> Points:
-    """Points of legs at the corners of level tops, unless the camera sees through them."""
+    """Points of legs at the corners of level tops, unless the camera sees through them.
+
+    Args:
+        scene: The room.
+
+    Returns:
+        Points (point, 3).
+    """
     legs = [
         _leg(scene, plane, u, v) for plane in scene.planes if _is_table(scene, plane) for u in (-1, 1) for v in (-1, 1)
     ]

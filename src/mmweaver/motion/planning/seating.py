@@ -61,16 +61,28 @@ class Sitting:
         return np.array([-np.sin(self.facing_rad), np.cos(self.facing_rad)])
 
     def fitted_to(self, body: SkeletonProportions) -> "Sitting":
-        """Adapts feet and knees to the legs of a body."""
+        """Adapts feet and knees to the legs of a body.
+
+        Args:
+            body: Bone lengths.
+        """
         feet_m = self.seat_m + pelvis_behind_feet_m(body, self.height_m) * self.ahead
         return replace(self, feet_m=feet_m, knees_m=knees_ahead_m(body, self.height_m)).clear_knees()
 
     def moved_ahead(self, by_m: float) -> "Sitting":
-        """Moves the sitter ahead on the seat by `by_m` metres."""
+        """Moves the sitter ahead on the seat.
+
+        Args:
+            by_m: Distance in metres.
+        """
         return replace(self.moved(by_m * self.ahead), edge_m=self.edge_m - by_m)
 
     def moved(self, by_m: Float[Array, "2"]) -> "Sitting":
-        """Translates seat and sitter by `by_m` (x, y) metres."""
+        """Translates seat and sitter.
+
+        Args:
+            by_m: Displacement (x, y) in metres.
+        """
         return replace(self, feet_m=self.feet_m + by_m, seat_m=self.seat_m + by_m)
 
     def clear_knees(self) -> "Sitting":
@@ -109,7 +121,12 @@ def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
 
 
 def long_enough_to_lie_on(seats: list[Sitting], scene: Scene) -> list[Sitting]:
-    """Couches and beds on which a person can lie, along the edge on which one sits."""
+    """Couches and beds on which a person can lie, along the edge on which one sits.
+
+    Args:
+        seats: Seats of the room.
+        scene: The room, whose landmarks tell the beds.
+    """
     return [seat for seat in seats if seat.width_m >= LYING_M or _is_bed(seat, scene)]
 
 
@@ -261,7 +278,12 @@ def pulled_out(sitting: Sitting, floor: FloorMap, by_m: float) -> Sitting | None
 
 
 def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
-    """A random subset of the seats, never empty unless there are none."""
+    """Samples a subset of the seats, never empty unless there are none.
+
+    Args:
+        seats: Seats of the room.
+        rng: Random stream.
+    """
     kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
     return kept or seats
 
@@ -286,7 +308,13 @@ def turned(sitting: Sitting, turn: float) -> Sitting:
 
 
 def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:
-    """A stool behind a person who stands at `feet_m` (x, y) and faces `facing_rad`."""
+    """An assumed stool behind a standing person.
+
+    Args:
+        feet_m: Position (x, y) of the feet in metres.
+        facing_rad: Heading of the person, from +x towards +y.
+        body: Bone lengths.
+    """
     behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * unit_vector(facing_rad)
     return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
 

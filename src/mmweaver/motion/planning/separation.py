@@ -23,7 +23,15 @@ _HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretche
 
 
 def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
-    """Whether two people keep their minimum distances at all times."""
+    """Whether two people keep their minimum distances at all times.
+
+    Args:
+        one: Motion of one person.
+        other: Motion of the other person.
+
+    Returns:
+        True if the pelvises stay 0.5 m apart and the body surfaces 2 cm.
+    """
     pelvis_m, body_m = separations_m(one, other)
     return pelvis_m >= MIN_PELVIS_DISTANCE_M and body_m >= MIN_SURFACE_DISTANCE_M
 

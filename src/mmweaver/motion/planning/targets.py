@@ -35,7 +35,11 @@ _NUM_GOALS = 6  # positions tried in a place
 
 
 def kinds_of(target: str) -> tuple[str, ...]:
-    """The kinds of landmarks that a word matches."""
+    """The kinds of landmarks that a word matches.
+
+    Args:
+        target: Word of the sentence, such as "desk".
+    """
     return ALIKE.get(target, (target,))
 
 
@@ -69,7 +73,15 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
 
 
 def faced_landmarks(step: Step, scene: Scene) -> list[Landmark]:
-    """The landmarks that a step's body faces, seats included; empty if it faces none."""
+    """The landmarks that a step's body faces, seats included.
+
+    Args:
+        step: The step.
+        scene: The room.
+
+    Returns:
+        Landmarks of the faced kind; empty if the step faces none or the room has none.
+    """
     if step.facing not in TARGETS:
         return []
     found = [mark for mark in scene.landmarks if mark.kind in kinds_of(step.facing)]

@@ -45,9 +45,15 @@ class AlignedGrid:
         return 0.01 + depth_tolerance_m(self.depth_m)
 
     def spacing_m(self, normal: Vec3) -> GridFloat:
-        """Upper bound on the distance of neighbouring cells on a surface of that normal, (row, column).
+        """Upper bound on the distance between neighbouring cells on a surface.
 
         It grows with distance and with the obliqueness of the view.
+
+        Args:
+            normal: Normal of the surface, (3,).
+
+        Returns:
+            Metres, (row, column).
         """
         distance_m = np.linalg.norm(self.points_m, axis=-1)
         normal_distance_m = np.maximum(np.abs(self.points_m @ normal), 0.05)

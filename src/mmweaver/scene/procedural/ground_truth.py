@@ -115,7 +115,15 @@ def _faces(item: PlacedPiece, part: Part, frame: RadarFrame) -> Iterator[Plane]:
 
 
 def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, ...]:
-    """All seats of the furniture in the radar's frame."""
+    """All seats of the furniture.
+
+    Args:
+        placed: All pieces in the room.
+        frame: Transform to the radar's frame.
+
+    Returns:
+        Seats in the radar's frame, facing the front of their piece.
+    """
     return tuple(
         Seat(
             position_m=frame.points(item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]),

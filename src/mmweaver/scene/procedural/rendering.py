@@ -99,7 +99,15 @@ def render_rgb(
 
 
 def render_classes(mesh: Mesh, view: CameraView) -> ClassMask:
-    """The COCO-Stuff class of every pixel; the mask names all classes of the room in alphabetical order."""
+    """The COCO-Stuff class of every pixel.
+
+    Args:
+        mesh: Mesh of the room.
+        view: Surface point of each pixel.
+
+    Returns:
+        Mask (row, column) that names all classes of the room in alphabetical order.
+    """
     names = ("unlabeled", *sorted({appearance.coco for appearance in mesh.appearances}))
     index = np.array([names.index(appearance.coco) for appearance in mesh.appearances], np.uint8)
     return ClassMask(index=index[mesh.appearance[view.face]], names=names)

@@ -37,7 +37,14 @@ class Hop:
         return self.off_s + self.flight_s
 
     def progress(self, time_s: PerTime) -> PerTime:
-        """0 until take-off, 1 after landing, smooth in between, (n,)."""
+        """Progress of the flight.
+
+        Args:
+            time_s: Times (n,) in seconds.
+
+        Returns:
+            0 until take-off, 1 after landing, smooth in between, (n,).
+        """
         return rise((time_s - self.off_s) / self.flight_s)
 
     def sole_m(self, time_s: PerTime) -> PerTime:

@@ -129,7 +129,7 @@ def balancing(act: StepContext) -> None:
 def lunging(act: StepContext) -> None:
     """A long step ahead with one leg, down until the thigh is nearly level, and back.
 
-    A front lunge leaves the leg behind straight and goes less deep, again and again; half of those who do it keep both
+    A front lunge leaves the leg behind straight and goes less deep, again and again; half of the subjects keep both
     feet where they are in between, and many turn to the side of the leg ahead, as the first subject of MARS does.
     """
     h, side, is_front = act.height_m, act.leg_side(), act.style == "frontlunge"
