@@ -25,15 +25,25 @@ RUN_ROOM_M = 3.5  # straight free floor required to run to and fro at 3 m/s
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """Motion of a body in a scene, the plan that it realizes, and the assumptions made."""
+    """Motion of a body in a scene, the plan that it realizes, and the assumptions made.
 
-    pose: PoseSequence  # 120 Hz, from two samples before 0 to two after the end, in the radar's frame
+    Attributes:
+        pose: Joints at 120 Hz in the radar's frame, from two samples before 0 to two after the end.
+        plan: The scheduled plan.
+        assumptions: Plain sentences.
+        person: The person; None for a recorded motion.
+        end: Final state of the body; None for a recorded motion.
+        controls: Pose parameters at the times of `pose`; None for a recorded motion.
+        chair: A chair assumed to be pulled out, if any.
+    """
+
+    pose: PoseSequence
     plan: MotionPlan
-    assumptions: tuple[str, ...]  # plain sentences
-    person: Person | None = None  # None of a recorded motion
-    end: BodyState | None = None  # how it ends; None of a recorded motion
-    controls: Controls | None = None  # at the times of the pose; None of a recorded motion
-    chair: PulledChair | None = None  # that is taken as pulled out
+    assumptions: tuple[str, ...]
+    person: Person | None = None
+    end: BodyState | None = None
+    controls: Controls | None = None
+    chair: PulledChair | None = None
 
     @property
     def shown(self) -> str:

@@ -35,14 +35,23 @@ _NOTHING_SAID = "a person stands"
 
 @dataclass(frozen=True, kw_only=True)
 class MotionPart:
-    """The motion of one sentence, or of waiting for the next one, on the time axis of the whole stream."""
+    """The motion of one sentence, or of waiting for the next one, on the time axis of the whole stream.
 
-    pose: PoseSequence  # 120 Hz, time since the stream's first frame; begins HISTORY_S before the part
+    Attributes:
+        pose: Motion at 120 Hz, time since the stream's first frame; begins HISTORY_S before the part.
+        first_frame: First radar frame of the part.
+        num_frames: Number of radar frames.
+        text: The sentence in force.
+        motion: The composed motion, on its own time axis.
+        refused: Why the sentence could not be carried out; "" if it was.
+    """
+
+    pose: PoseSequence
     first_frame: int
     num_frames: int
-    text: str  # the sentence in force
+    text: str
     motion: Motion
-    refused: str = ""  # why the sentence could not be carried out
+    refused: str = ""
 
     @property
     def end_frame(self) -> int:

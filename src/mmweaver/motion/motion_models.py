@@ -25,12 +25,20 @@ _GOES_M = 0.3  # displacement of the pelvis that defines its direction
 
 @dataclass(frozen=True, kw_only=True)
 class MotionTask:
-    """Input of a motion model."""
+    """Input of a motion model.
+
+    Attributes:
+        sentence: What the person does.
+        start_m: Position (x, y) of the pelvis at time 0, in the radar's frame; None if unconstrained.
+        path_m: Corners (x, y) that the pelvis passes, from the start on; empty if unconstrained.
+        seconds: Duration; None for the model's natural one.
+        seed: Seed of the model's random choices.
+    """
 
     sentence: str
-    start_m: Place | None = None  # (x, y) of the pelvis at time 0, in the radar's frame; None: unconstrained
-    path_m: tuple[Place, ...] = ()  # corners (x, y) that the pelvis passes, from the start on; empty: unconstrained
-    seconds: float | None = None  # None: the model's natural duration
+    start_m: Place | None = None
+    path_m: tuple[Place, ...] = ()
+    seconds: float | None = None
     seed: int = 0
 
 

@@ -39,17 +39,29 @@ LEFT_HANDED = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class Person:
-    """One person. The default is the average man of his height, at the usual pace, with no preferred hand."""
+    """One person. The default is the average man of his height, at the usual pace, with no preferred hand.
+
+    Attributes:
+        height_m: Height in metres.
+        subject: Number that identifies skin and micro-motion.
+        sex: female or male; "" if not sampled.
+        age: baby, toddler, child, teenager, adult or old.
+        girth: Thickness of trunk and limbs relative to an average body of this height.
+        pace: Tempo relative to the usual one.
+        pace_on_the_spot: The same for activities on the spot.
+        hand: Preferred hand: left or right.
+        described: Words of the sentence that describe the person.
+    """
 
     height_m: float
-    subject: int = 0  # identifies skin and micro-motion
-    sex: str = ""  # female | male | "": not sampled
-    age: str = "adult"  # baby | toddler | child | teenager | adult | old
-    girth: float = 1.0  # thickness of trunk and limbs relative to an average body of this height
-    pace: float = 1.0  # tempo relative to the usual one
-    pace_on_the_spot: float = 1.0  # the same of activities on the spot
-    hand: str = ""  # preferred hand: left | right
-    described: str = ""  # words of the sentence that describe the person
+    subject: int = 0
+    sex: str = ""
+    age: str = "adult"
+    girth: float = 1.0
+    pace: float = 1.0
+    pace_on_the_spot: float = 1.0
+    hand: str = ""
+    described: str = ""
 
     @property
     def note(self) -> str:

@@ -27,7 +27,20 @@ from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_g
 
 @dataclass(frozen=True, kw_only=True)
 class SingleView:
-    """A photo aligned with gravity, its surfaces with their materials, and the places for people that it shows."""
+    """The room as one photo shows it, in the level frame of its camera.
+
+    Attributes:
+        view: The photo aligned with gravity.
+        grid: Its depth grid in the camera frame.
+        room: The aligned grid with its planar surfaces.
+        is_floor: Cells of the floor, (row, column).
+        height_map: The room from above.
+        free_space: Floor on which a body may stand.
+        seats: Seats, the best first.
+        material: Index into MATERIAL_NAMES of each cell, (row, column).
+        planes: Planes of `room.surfaces` with their materials.
+        assumptions: Sentences on what was assumed.
+    """
 
     view: AlignedPhoto
     grid: DepthGrid
@@ -36,8 +49,8 @@ class SingleView:
     height_map: HeightMap
     free_space: FreeSpace
     seats: tuple[Seat, ...]
-    material: GridInt  # index into MATERIAL_NAMES
-    planes: tuple[Plane, ...]  # of room.surfaces
+    material: GridInt
+    planes: tuple[Plane, ...]
     assumptions: tuple[str, ...]
 
     @property

@@ -22,13 +22,22 @@ _RATE_HZ = 60.0
 
 @dataclass(frozen=True, kw_only=True)
 class Habits:
-    """Habits of one person; the default has none."""
+    """Habits of one person; the default has none.
 
-    amplitude: float = 1.0  # relative to the usual
-    unevenness: float = 0.0  # relative change of the tempo over time
+    Attributes:
+        amplitude: Size of movements relative to the usual one.
+        unevenness: Relative variation of the tempo over time.
+        drift_hz: Frequency of this variation.
+        phase_rad: Its phase at the start of a step.
+        pause_every_s: Interval of pauses in a continuous movement.
+        pause_s: Duration of a pause.
+    """
+
+    amplitude: float = 1.0
+    unevenness: float = 0.0
     drift_hz: float = 0.1
     phase_rad: float = 0.0
-    pause_every_s: float = np.inf  # of a continuous movement
+    pause_every_s: float = np.inf
     pause_s: float = 0.8
 
     def warped(self, time_s: Float[Array, " n"], start_s: float, end_s: float) -> Float[Array, " n"]:

@@ -15,7 +15,14 @@ Times = Float[Array, "*shape"]
 class Move:
     """A move along an arc (a line if the curvature is 0) at constant speed, with ramps at its ends.
 
-    With `ramp_in_s` 0 the person was moving before the start, with `ramp_out_s` 0 continues after the end.
+    Attributes:
+        start_s: Start in seconds.
+        end_s: End in seconds.
+        length_m: Length of the path in metres.
+        direction_rad: Direction at the start, from +x towards +y.
+        ramp_in_s: Time of acceleration; 0 if the person was moving before the start.
+        ramp_out_s: Time of deceleration; 0 if the person keeps moving after the end.
+        curvature_per_m: Inverse radius, positive to the person's left.
     """
 
     start_s: float
@@ -78,7 +85,13 @@ class Move:
 
 @dataclass(frozen=True, kw_only=True)
 class Turn:
-    """A turn on the spot, positive to the person's left."""
+    """A turn on the spot.
+
+    Attributes:
+        start_s: Start in seconds.
+        end_s: End in seconds.
+        angle_rad: Angle, positive to the person's left.
+    """
 
     start_s: float
     end_s: float
@@ -87,7 +100,14 @@ class Turn:
 
 @dataclass(frozen=True, kw_only=True)
 class RootPath:
-    """Path of the floor point below a person: start, moves and turns. Frame: x right, y away from the radar."""
+    """Path of the floor point below a person. Frame: x right, y away from the radar.
+
+    Attributes:
+        start_m: Start (x, y) in metres.
+        heading_rad: Initial heading, from +x towards +y.
+        moves: Moves in temporal order.
+        turns: Turns on the spot in temporal order.
+    """
 
     start_m: tuple[float, float]
     heading_rad: float

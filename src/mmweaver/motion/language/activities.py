@@ -9,21 +9,37 @@ from mmweaver.core.safe_files.safe_text import read_toml
 
 @dataclass(frozen=True, kw_only=True)
 class Activity:
-    """One activity. A body activity moves legs and trunk, a hand activity is overlaid on one."""
+    """One activity. A body activity moves legs and trunk, a hand activity is overlaid on one.
+
+    Attributes:
+        key: Key in `activities.toml`.
+        name: As in "walking and waving".
+        example: Sentence that names it.
+        shown: Description of a step if the name is too short, with {hand}, {arm}, {leg}, {foot}.
+        least_s: Minimum duration in seconds.
+        natural_s: Natural duration in seconds.
+        once: Whether it takes its natural time; spare time goes to other steps.
+        counted_s: Minimum and natural duration of one repetition, and extra time at start and end.
+        clearance_m: Free floor around the body in metres.
+        moves: Whether it changes the position on the floor.
+        hands: Whether it is a hand activity.
+        posture: Support of the body at its end: feet, seat, couch, knees or floor.
+        uses_seat: Whether it needs a seat, bed or couch.
+    """
 
     key: str
-    name: str  # as in "walking and waving"
+    name: str
     example: str
-    shown: str = ""  # description of a step if the name is too short, with {hand}, {arm}, {leg}, {foot}
-    least_s: float  # shortest time in which it can be shown
+    shown: str = ""
+    least_s: float
     natural_s: float
-    once: bool = False  # takes its natural time; spare time goes to other steps
-    counted_s: tuple[float, float, float] | None = None  # of one repetition: minimum, natural; extra at start and end
-    clearance_m: float = 0.5  # free floor around the body
-    moves: bool = False  # changes the position on the floor
+    once: bool = False
+    counted_s: tuple[float, float, float] | None = None
+    clearance_m: float = 0.5
+    moves: bool = False
     hands: bool = False
-    posture: str = "feet"  # support of the body at its end: feet | seat | couch | knees | floor
-    uses_seat: bool = False  # needs a seat, bed or couch
+    posture: str = "feet"
+    uses_seat: bool = False
 
 
 def words_in(text: str) -> frozenset[str]:

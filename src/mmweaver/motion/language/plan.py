@@ -171,12 +171,19 @@ DONE, APPROXIMATED, NOT_DONE = "done", "approximated", "not done"
 
 @dataclass(frozen=True)
 class ClauseRecord:
-    """Outcome of one clause of the sentence; `how` states what is shown instead, and what is not."""
+    """Outcome of one clause of the sentence.
+
+    Attributes:
+        clause: Words of the clause.
+        status: done, approximated or not done.
+        how: What is shown instead unless the words state it, and what is not shown.
+        shown: Description of its steps in order (`step_names`); "" without steps.
+    """
 
     clause: str
-    status: str = DONE  # done | approximated | not done
+    status: str = DONE
     how: str = ""
-    shown: str = ""  # description of its steps in order (`step_names`); "" without steps
+    shown: str = ""
 
     @property
     def sentence(self) -> str:
@@ -201,14 +208,23 @@ class ClauseRecord:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionPlan:
-    """The steps of a sentence in temporal order; `notes` are sentences on what the parser assumed."""
+    """The parsed sentence.
+
+    Attributes:
+        text: The sentence.
+        steps: Steps in temporal order.
+        notes: Sentences on what the parser assumed.
+        clauses: Outcome of each clause.
+        person: Traits of the person in the sentence.
+        duration_s: Duration in seconds; 0 until the plan is scheduled.
+    """
 
     text: str
     steps: tuple[Step, ...]
     notes: tuple[str, ...] = ()
     clauses: tuple[ClauseRecord, ...] = ()
     person: DescribedPerson = field(default_factory=DescribedPerson)
-    duration_s: float = 0.0  # 0 until the plan is scheduled
+    duration_s: float = 0.0
 
     def __post_init__(self) -> None:
         """Sets the pace of the described person, by which the plan is scheduled; `people` adds the individual pace."""

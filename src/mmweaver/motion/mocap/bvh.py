@@ -21,7 +21,15 @@ ROTATIONS = {"Xrotation": "X", "Yrotation": "Y", "Zrotation": "Z"}
 
 @dataclass
 class Node:
-    """One joint: its parent's index, its offset, and its channels within each frame."""
+    """One joint of the hierarchy.
+
+    Attributes:
+        name: Name in the file.
+        parent: Index of the parent, -1 for a root.
+        offset: Offset from the parent in the file's unit, (3,).
+        channels: Names of its channels in order.
+        first_channel: Index of the first one within a frame.
+    """
 
     name: str
     parent: int

@@ -21,28 +21,48 @@ LEGS = (("hip", "knee"), ("knee", "ankle"))
 
 @dataclass(frozen=True, kw_only=True)
 class RawMotion:
-    """Joints of a file under its own names, in its own unit and axes; None where the file does not state it."""
+    """Joints of a file in its own unit and axes; None where the file does not state them.
+
+    Attributes:
+        names: The file's own joint names.
+        positions: Joints (frame, joint, 3).
+        kind: Kind of file: BVH, SMPL, ...
+        fps: Frames per second.
+        unit_m: Metres per unit.
+        up: Upward axis: y, z, -y, -z, x or -x.
+        notes: Sentences on the assumptions made.
+    """
 
     names: tuple[str, ...]
     positions: Float[Array, "frame joint 3"]
-    kind: str  # of file: BVH, SMPL, ...
+    kind: str
     fps: float | None = None
-    unit_m: float | None = None  # metres in one unit
-    up: str | None = None  # y | z | -y | -z | x | -x
+    unit_m: float | None = None
+    up: str | None = None
     notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionClip:
-    """A recorded motion of 22 joints: metres, z up, right-handed, uniformly sampled; anywhere on its floor."""
+    """A recorded motion of 22 joints: metres, z up, right-handed, uniformly sampled; anywhere on its floor.
+
+    Attributes:
+        joints_m: Joints (frame, 22, 3) in metres.
+        fps: Frames per second.
+        label: Name in titles and meta.json.
+        notes: Sentences on the assumptions made.
+        has_jitter: Whether marker jitter is to be filtered out (see `clip_resampling`).
+        file: File it was read from.
+        first_frame: Index in the file.
+    """
 
     joints_m: Joints
     fps: float
-    label: str  # its name in titles and meta.json
-    notes: tuple[str, ...] = ()  # sentences on what was assumed
-    has_jitter: bool = True  # marker jitter is filtered out (see clip_resampling)
-    file: Path | None = None  # where it was read from
-    first_frame: int = 0  # index in the file
+    label: str
+    notes: tuple[str, ...] = ()
+    has_jitter: bool = True
+    file: Path | None = None
+    first_frame: int = 0
 
     @property
     def duration_s(self) -> float:

@@ -48,7 +48,17 @@ RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionGPT:
-    """A motion tokenizer, a language model with its text tokenizer, and mean and standard deviation of the features."""
+    """A MotionGPT model for inference.
+
+    Attributes:
+        tokenizer: Motion tokenizer.
+        language: Language model.
+        words: Its text tokenizer, with the motion tokens.
+        mean: Mean of the HumanML3D features, (263,).
+        std: Standard deviation of the features, (263,).
+        first_motion_id: Id of the first motion token.
+        name: Name in notes and error messages.
+    """
 
     tokenizer: MotionTokenizer
     language: "T5ForConditionalGeneration"

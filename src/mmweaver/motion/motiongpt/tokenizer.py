@@ -21,7 +21,17 @@ from torch.nn import functional
 
 @dataclass(frozen=True, kw_only=True)
 class TokenizerConfig:
-    """Sizes of the tokenizer; the defaults are the published ones."""
+    """Sizes of the tokenizer; the defaults are the published ones.
+
+    Attributes:
+        features: Features per frame.
+        codes: Number of codes.
+        code_width: Dimension of a code vector.
+        width: Channels of the convolutions.
+        halvings: Number of downsamplings by two.
+        depth: Residual convolutions per level.
+        dilation_growth: Ratio of successive dilations.
+    """
 
     features: int = 263
     codes: int = 512

@@ -59,11 +59,17 @@ _DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this 
 
 @dataclass(frozen=True, kw_only=True)
 class Approach:
-    """How to sit on a seat, and where walks to it may start: (x, y) in metres."""
+    """How to sit on a seat, and where walks to it may start.
+
+    Attributes:
+        sitting: The way to sit.
+        gate_m: Start (x, y) in metres of a narrow path along the seat; None if the path is straight.
+        starts_m: Walkable places with a free straight path to the gate, or to the seat, (start, 2) metres.
+    """
 
     sitting: Sitting
-    gate_m: Float[Array, "2"] | None  # before a narrow way along the seat; None where the way is straight
-    starts_m: Float[Array, "start 2"]  # walkable places with a free straight way to the gate, or to the seat
+    gate_m: Float[Array, "2"] | None
+    starts_m: Float[Array, "start 2"]
 
     @property
     def corners_m(self) -> list[Float[Array, "2"]]:

@@ -67,13 +67,22 @@ _LEGS = tuple((f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("lef
 
 @dataclass(frozen=True, kw_only=True)
 class BodySamples:
-    """Limbs of a body ten times per second; points in metres, in the radar's frame or relative to the root."""
+    """Limbs of a body ten times per second.
+
+    Attributes:
+        points_m: Points in metres, in the radar's frame or relative to the root, (point, 3).
+        radius_m: Radius of the limb at each point in metres, (point,).
+        is_soft: Points of trunk and thighs, which sink into a seat, (point,).
+        time_s: Time of each point in seconds, (point,).
+        lowest_m: Joints at the time of the lowest pelvis, (22, 3).
+        lowest_s: That time in seconds.
+    """
 
     points_m: Float[Array, "point 3"]
     radius_m: Float[Array, " point"]
-    is_soft: Bool[Array, " point"]  # trunk and thighs, which sink into a seat
+    is_soft: Bool[Array, " point"]
     time_s: Float[Array, " point"]
-    lowest_m: Float[Array, "22 3"]  # the joints where the pelvis is lowest
+    lowest_m: Float[Array, "22 3"]
     lowest_s: float
 
     @classmethod

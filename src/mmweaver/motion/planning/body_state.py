@@ -9,12 +9,22 @@ from mmweaver.motion.planning.seating import Sitting
 
 @dataclass(frozen=True, kw_only=True)
 class BodyState:
-    """Position (x, y) of a body's root in metres, its heading and its posture, in the radar's frame."""
+    """Final state of a body, in the radar's frame.
+
+    Attributes:
+        position_m: Position (x, y) of the root in metres.
+        heading_rad: Heading, from +x towards +y.
+        posture: feet, seat, knees or floor.
+        style: Side on which a lying body rests: back or front.
+        foot: Knee on which a body kneels, if on one.
+        sitting: The seat that is used, or directly behind.
+        controls: Pose parameters with their derivatives.
+    """
 
     position_m: tuple[float, float]
-    heading_rad: float  # from +x towards +y
-    posture: str = "feet"  # feet | seat | knees | floor
-    style: str = ""  # of lying: back | front
-    foot: Foot = ""  # of kneeling on one knee
-    sitting: Sitting | None = None  # the seat that is used, or that is right behind
-    controls: ControlsState | None = None  # how the body moves there
+    heading_rad: float
+    posture: str = "feet"
+    style: str = ""
+    foot: Foot = ""
+    sitting: Sitting | None = None
+    controls: ControlsState | None = None

@@ -50,11 +50,18 @@ _latest: list["CollisionMap"] = []
 
 @dataclass(frozen=True)
 class PulledChair:
-    """A chair assumed to be pulled out: its position (x, y) in the photo in metres, and its heading."""
+    """A chair assumed to be pulled out.
+
+    Attributes:
+        place_m: Position (x, y) in the photo in metres.
+        facing_rad: Heading of the chair, from +x towards +y.
+        by_m: Distance in metres by which it is pulled back; not compared, since the room without it does not depend on
+            it.
+    """
 
     place_m: Place
     facing_rad: float
-    by_m: float = field(compare=False)  # excluded: the room without the chair does not depend on it
+    by_m: float = field(compare=False)
 
     def holds(self, points_m: Float[Array, "point 3"], floor_z_m: float) -> Bool[Array, " point"]:
         """Whether points belong to the chair in the photo; points ahead above the armrests belong to a table.

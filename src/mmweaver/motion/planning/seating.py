@@ -37,7 +37,20 @@ _STRAIGHT_TO_SEAT_M = 0.6  # the last part of the walk to a seat, where the seat
 
 @dataclass(frozen=True, kw_only=True)
 class Sitting:
-    """A way to sit on a seat: (x, y) of the feet and of the seat, the sitter's heading, the surface's height."""
+    """A way to sit on a seat.
+
+    Attributes:
+        feet_m: Position (x, y) of the feet in metres.
+        facing_rad: Heading of the sitter, from +x towards +y.
+        height_m: Height of the surface above the floor in metres.
+        seat_m: Position (x, y) of the pelvis on the seat in metres.
+        width_m: Width of the seat in metres.
+        depth_m: Depth of the seat in metres.
+        edge_m: Distance from `seat_m` ahead to the seat's edge in metres.
+        knees_m: Distance from `seat_m` ahead to the sitter's knees in metres.
+        cost: Penalty of an unusual way to sit.
+        chair: The chair if it is not where the photo shows it.
+    """
 
     feet_m: Float[Array, "2"]
     facing_rad: float
@@ -45,10 +58,10 @@ class Sitting:
     seat_m: Float[Array, "2"]
     width_m: float = 0.4
     depth_m: float = 0.4
-    edge_m: float = 0.2  # from `seat_m` ahead to the seat's edge
-    knees_m: float = 1.0  # from `seat_m` ahead to the sitter's knees
-    cost: float = 0.0  # penalty of unusual ways to sit
-    chair: PulledChair | None = None  # if the seat is not where the photo shows it
+    edge_m: float = 0.2
+    knees_m: float = 1.0
+    cost: float = 0.0
+    chair: PulledChair | None = None
 
     @property
     def ahead(self) -> Float[Array, "2"]:

@@ -91,7 +91,28 @@ def slowest_mps(step: Step, speed_mps: float) -> float:
 
 @dataclass
 class Trajectory:
-    """Trajectory under construction; `cost` sums its penalties. Positions are (x, y) in metres in the radar's frame."""
+    """A trajectory under construction, in the radar's frame.
+
+    Attributes:
+        floor: Floor of the room.
+        rng: Random stream.
+        position_m: Current position (x, y) in metres.
+        heading_rad: Current heading, from +x towards +y.
+        start_m: Start (x, y) in metres.
+        start_heading_rad: Initial heading.
+        moves: Moves of each step.
+        turns: Turns on the spot.
+        notes: Assumptions to report.
+        seat_height_m: Height of the seat of each step in metres.
+        seats_m: Seats (x, y) on which the person sits.
+        chair: Chair on which the person sits, if pulled out.
+        cost: Sum of the penalties.
+        last_direction_rad: Direction of the last move.
+        invents_seat: Whether a stool was assumed although the room has a reachable seat.
+        from_seat: Whether the body has just stood up: the seat's own edge does not block the first metre.
+        turn_rate_radps: Angular rate of turns on the spot.
+        heading_is_given: Whether the initial heading is prescribed; an undirected walk begins that way.
+    """
 
     floor: FloorMap
     rng: np.random.Generator
@@ -99,18 +120,18 @@ class Trajectory:
     heading_rad: float
     start_m: tuple[float, float] = (0.0, 0.0)
     start_heading_rad: float = 0.0
-    moves: list[list[Move]] = field(default_factory=list)  # by step
+    moves: list[list[Move]] = field(default_factory=list)
     turns: list[Turn] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    seat_height_m: list[float] = field(default_factory=list)  # by step
-    seats_m: list[tuple[float, float]] = field(default_factory=list)  # seats on which the person sits
-    chair: PulledChair | None = None  # chair on which the person sits
+    seat_height_m: list[float] = field(default_factory=list)
+    seats_m: list[tuple[float, float]] = field(default_factory=list)
+    chair: PulledChair | None = None
     cost: float = 0.0
     last_direction_rad: float | None = None
-    invents_seat: bool = False  # although the room has a reachable seat
-    from_seat: bool = False  # just stood up: the seat's own edge does not block the first metre
+    invents_seat: bool = False
+    from_seat: bool = False
     turn_rate_radps: float = TURN_RATE_RADPS
-    heading_is_given: bool = False  # the initial heading is prescribed; an undirected walk begins that way
+    heading_is_given: bool = False
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.position_m[0]), float(self.position_m[1]))

@@ -35,7 +35,14 @@ LIGHTINGS: Registry[Lighting] = Registry(
 
 @dataclass(frozen=True, kw_only=True)
 class AreaLight:
-    """A rectangle that emits to one side, in the room's frame; without a normal it emits to both sides."""
+    """A rectangle that emits to one side, in the room's frame.
+
+    Attributes:
+        corner_m: One corner in metres.
+        edges_m: The two edges from this corner in metres, (2, 3).
+        normal: Direction of emission; zero emits to both sides.
+        radiance: Red, green, blue.
+    """
 
     corner_m: Float[Array, "3"]
     edges_m: Float[Array, "2 3"]
