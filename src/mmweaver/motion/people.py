@@ -26,7 +26,7 @@ ADULT_M = {"male": (1.756, 0.069), "female": (1.629, 0.064)}  # mean, standard d
 YOUNG_M = {"baby": (0.81, 0.01), "toddler": (0.85, 0.03), "child": (1.33, 0.07)}
 TEENAGER_M = {"male": (1.68, 0.08), "female": (1.61, 0.065)}
 OLD_SHORTER_M = 0.04
-MAX_SDS = 2.5  # standard deviations from the mean, at most
+MAX_SDS = 2.5  # maximum number of standard deviations from the mean
 TALL_SDS = (1.0, 2.0)  # of "tall"; negated for "short"
 GIANT_SDS = (4.0, 5.0)  # of "giant"; negated for "dwarf"
 # relative to the average man's, at equal height

@@ -60,7 +60,7 @@ def sequence_steps(parsed_clauses: list[ParsedClause], leaving: int) -> list[Ste
                     parsed.say_in_turn(before, first)
             except InputError:
                 steps.append(before)
-                arms_alone = first.upper and first.lower == "stand"  # goes on in the posture of the step before
+                arms_alone = first.upper and first.lower == "stand"  # continues in the previous posture
                 if not leaving or (leaving < ROUGH and steps[-1].posture != first.posture and not arms_alone):
                     raise
                 steps.append(first)
@@ -188,7 +188,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
         return True
     if parsed.link == "and":
         if one.upper in _HELD and other.upper and {one.hand, other.hand} == {"left", "right"}:
-            return True  # one hand stays where it is
+            return True  # one hand stays in place
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             pauses = any(word.lemma in _PAUSING for word in before.words)
             return one.lower == "sit" or (before.form == parsed.form and not pauses)

@@ -406,7 +406,7 @@ def _concerns(step: Step, noun: str) -> bool:
 
 
 def _again(token: _Token) -> str:
-    """One more of what has been shown: 'then another one', '90 more'."""
+    """A further repetition: 'then another one', '90 more'."""
     is_more = token.text == "another" or (token.text == "more" and not "".join(token.after(1)).endswith("ly"))
     keys = [key for step in token.steps for key in _doing(step)]
     often = len({*keys}) < len(keys) or any(step.count > 1 for step in token.own)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 SMALL_NAME = "small"
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
-MIN_FRAMES, MAX_FRAMES = 40, 196  # what MotionGPT was trained on
+MIN_FRAMES, MAX_FRAMES = 40, 196  # range of MotionGPT's training data
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs by a factor of about 25
 
 

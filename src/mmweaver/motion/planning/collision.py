@@ -179,7 +179,7 @@ class CollisionMap:
 
     @cached_property
     def _solid(self) -> DistanceField:
-        """Distance to measured points, and to what must lie just behind and below them."""
+        """Distance to measured points, and to inferred points just behind and below them."""
         points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
         low = self._low_m

@@ -46,9 +46,9 @@ class _Tested:
     placement: Placement
     penetration_m: float
     trunk_cost_m: float = 0.0  # for an occluded trunk
-    legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
-    pose: PoseSequence | None = None  # where it was animated
-    samples: BodySamples | None = None  # where it was estimated
+    legs_cost_m: float = 0.0  # for occluded legs, frequent under tables
+    pose: PoseSequence | None = None  # if animated
+    samples: BodySamples | None = None  # if estimated
 
     @property
     def cost_m(self) -> float:

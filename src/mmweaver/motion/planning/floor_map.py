@@ -294,7 +294,7 @@ class FloorMap:
         is_free = self.can_stand(lines_m)
         if excused_m:
             is_free |= (steps < excused_m) & (self.clearance_at(lines_m) > _SEAT_EDGE_M)
-        first = np.argmin(is_free, axis=1)  # the first that is not, 0 where all are
+        first = np.argmin(is_free, axis=1)  # the first blocked one, 0 if all are free
         reached = steps[np.maximum(first - 1, 0)]
         return np.where(is_free.all(axis=1), wanted_m, reached)
 

@@ -32,7 +32,7 @@ _BED_WIDTH_M = 0.7  # width of an edge per sitter
 _KNEE_M, _ON_SEAT_M = 0.05, 0.12  # seat edge to the middle of the knees, and at least to the pelvis
 PULLED_COST = 0.5  # cost of a chair that must be pulled out
 _CHAIR_BEHIND_M, _CHAIR_ASIDE_M = 0.27, 0.2  # chair's middle to its back, and half its width
-_STRAIGHT_TO_SEAT_M = 0.6  # the last part of the walk to a seat, where the seat's own edge is near
+_STRAIGHT_TO_SEAT_M = 0.6  # end of the walk to a seat, near the seat's own edge
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -455,7 +455,7 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
 
 
 def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step, is_bed: bool) -> Sitting:
-    """A stool (or bed) at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
+    """A stool (or bed) at the end of a walk, at most a quarter turn away, or behind a standing person."""
     to_radar = float(np.arctan2(-trajectory.position_m[1], -trajectory.position_m[0]))
     options = (
         [trajectory.heading_rad]

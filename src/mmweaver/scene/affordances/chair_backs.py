@@ -14,7 +14,7 @@ from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 
 _BACK_TOP_M, _LONG_M, _THICK_M = (0.78, 1.05), (0.3, 0.62), 0.22  # as seen: squares are 5 cm
 _LEVEL_M, _MIN_SQUARES = 0.05, 7  # between the quartiles of a back's height: plants and laptops slope
-_AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # where a table is, and where none is: a laptop stands on one
+_AHEAD_M, _NEAR_M = (0.4, 0.8), (0.05, 0.3)  # ranges with a table, and without: a laptop stands on one
 _MIN_AHEAD, _MAX_ELSEWHERE = 0.3, 0.05  # share of table squares in these two ranges
 _TO_SEAT_M, _SEAT_HEIGHT_M, _SEAT_SIZE_M = 0.18, 0.45, (0.42, 0.4)  # of a usual chair: the seat itself is occluded
 _APART_M = 0.45  # from seats already found

@@ -80,7 +80,7 @@ def _is_rim(height_map: HeightMap, squares: GridMask) -> GridMask:
 
 
 _UPPER_BODY_M = (1.2, 1.35, 1.5)  # heights above the floor at which a body behind a table is visible
-_BODY_M = 0.25  # from the centre of a standing body to what is next to it
+_BODY_M = 0.25  # from the centre of a standing body to adjacent objects
 _BODY_HEIGHTS_M = (0.1, 1.9)
 _BEARINGS = 180  # of two degrees each
 

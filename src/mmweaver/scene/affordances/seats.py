@@ -1,4 +1,4 @@
-"""Where a person could sit: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
+"""Finds seats: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -85,7 +85,7 @@ class _Squares:
 
     @property
     def height_m(self) -> Float[Array, "candidate a b"]:
-        """Height above the seat of what stands there, metres; nan where nothing does."""
+        """Height of obstacles above the seat in metres; nan where there are none."""
         return np.where(self.inside, self.height_map.top_m[self.row, self.column], np.nan) - self.seat_m
 
     @property

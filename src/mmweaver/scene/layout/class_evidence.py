@@ -122,7 +122,7 @@ def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[t
 
 
 def _intersection_with_walls(rays: Points, planes: tuple[Plane, ...]) -> Points:
-    """Where rays from the radar first meet a wall, metres; nan where they meet none."""
+    """First intersection of rays from the radar with a wall, metres; nan if there is none."""
     nearest = np.full(len(rays), np.inf)
     for wall in (plane for plane in planes if plane.kind == "wall"):
         along = rays @ wall.normal

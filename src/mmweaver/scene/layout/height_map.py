@@ -1,4 +1,4 @@
-"""The room from above: what stands in each square of 5 cm, and which squares the camera has observed."""
+"""The room from above: obstacles in each square of 5 cm, and which squares the camera has observed."""
 
 from dataclasses import dataclass, replace
 

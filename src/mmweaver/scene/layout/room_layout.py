@@ -38,7 +38,7 @@ class RoomLayout:
     """All planes of the room except the floor."""
 
     planes: tuple[Plane, ...]
-    extended: tuple[Plane, ...]  # those of `planes` that reach beyond what was measured
+    extended: tuple[Plane, ...]  # those of `planes` that extend beyond the measurements
     assumptions: tuple[str, ...]
 
 

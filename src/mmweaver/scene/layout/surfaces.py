@@ -41,7 +41,7 @@ class AlignedGrid:
 
     @property
     def tolerance_m(self) -> GridFloat:
-        """How far a cell may lie from the plane it belongs to, (row, column)."""
+        """Maximum distance of a cell from the plane to which it belongs, (row, column)."""
         return 0.01 + depth_tolerance_m(self.depth_m)
 
     def spacing_m(self, normal: Vec3) -> GridFloat:

@@ -266,8 +266,8 @@ def _overlap(plane: Plane, other: Plane, axis: Vec3) -> bool:
 
 CELL_M, REACH_M = 0.05, 8.0
 SAME_HEIGHT_M = 0.06
-MIN_HEIGHT_M = 0.15  # above the floor: what is lower is floor
-FLOOR_WEIGHT = 0.2  # of cells where both show the floor: it is the same everywhere
+MIN_HEIGHT_M = 0.15  # above the floor; lower points are floor
+FLOOR_WEIGHT = 0.2  # of cells where both show the floor, which is uninformative
 MIN_CELLS = 150  # seen by both, floor excepted
 
 

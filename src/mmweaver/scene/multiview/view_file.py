@@ -1,11 +1,11 @@
-"""views.json: several photos of one room with depth, and where their cameras stood.
+"""views.json: several photos of one room with depth, and the poses of their cameras.
 
     {"photos": [
       {"rgb": "a.png", "depth": "a_depth.png", "camera": "camera.json"},
       {"rgb": "b.png", "depth": "b_depth.png", "camera": "camera.json", "place_m": [1.5, 3.0], "turned_deg": 170}
     ]}
 
-The radar stands at the first. A further photo has either `place_m`, metres right of and ahead of the first camera, and
+The radar is at the first camera. A further photo has either `place_m`, metres right of and ahead of the first camera, and
 `turned_deg`, how far it is turned to the right of it, both roughly; or `pose`, the 4 x 4 matrix from its camera (x
 right, y down, z forward) to a world in metres that is the same for all photos, which the first then has, too.
 """

@@ -220,7 +220,7 @@ def _intrinsics(path: Path, content: Any) -> CameraIntrinsics:
 
 
 def _is_rotated(folder: Path) -> bool:
-    """Whether config.toml says that the camera's pictures were rotated."""
+    """Whether the camera's pictures were rotated, according to config.toml."""
     try:
         content = read_toml(folder.parent / "config.toml")
         return bool(content["hardware"][folder.name].get("rotate", False))

@@ -16,7 +16,7 @@ from mmweaver.scene.procedural.parts import Boxes, Part, PlacedPiece
 
 _MIN_FACE_M2 = 0.15  # of furniture, to count as a flat rectangle of the room
 _MIN_DISTANCE_M = 0.5  # of a body from the radar
-_REACH_M = 0.45  # from which one uses a landmark
+_REACH_M = 0.45  # distance from which a landmark is used
 
 
 class RadarFrame:

@@ -1,6 +1,6 @@
 """The built-in segmenter: a small U-Net from features of the depth grid to a class of each cell.
 
-    13 channels a cell (about 80 x 60)                      class scores a cell
+    13 channels per cell (about 80 x 60)                    class scores per cell
       see `segmenter_features`                                   |
          |                                                       |
         32 --/2-- 48 --/2-- 80 --/2-- 128 -x2-- 80 --x2-- 48 --x2-- 32

@@ -183,7 +183,7 @@ def shrugging(act: StepContext) -> None:
 
 @gesture("arms_out")
 def arms_out(act: StepContext) -> None:
-    """Straight arms held out: to the sides (as in a T), or ahead where the sentence says so."""
+    """Straight arms held out: to the sides (as in a T), or ahead if stated."""
     tired = 0.03 * act.wander(0.2, 0.9)
     for side in act.named_arms:
         arm = np.zeros((len(tired), 4))

@@ -160,7 +160,7 @@ def opening_door(act: StepContext) -> None:
 
 @gesture("guitar")
 def playing_guitar(act: StepContext) -> None:
-    """One hand strums in front of the belly, the other holds the neck; left-handed only if the sentence says so."""
+    """One hand strums in front of the belly, the other holds the neck; left-handed only if stated."""
     time_s, side, rate = act.time_s, act.named_side, act.tempo(1.4, 2.1, 2.9)
     strum = np.sin(act.phase(rate)) * (0.8 + 0.2 * np.sin(2 * np.pi * 0.4 * time_s))
     wide = act.vary(0.028) * min(1.0, 2.0 / rate)
