@@ -27,7 +27,13 @@ STOOL_HEIGHT_M = 0.45  # of an assumed seat
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedStep:
-    """A step of a plan with its moves over the floor and the height of the seat that it uses."""
+    """A step of a plan as placed in the room.
+
+    Attributes:
+        step: The scheduled step.
+        moves: Its moves over the floor.
+        seat_height_m: Height in metres of the seat that it uses.
+    """
 
     step: Step
     moves: tuple[Move, ...] = ()
@@ -36,20 +42,35 @@ class PlacedStep:
 
 @dataclass(kw_only=True)
 class StepContext:
-    """One step of the motion. `time_s` covers the whole motion, so that neighbouring steps can be blended."""
+    """One step of the motion, with the controls that its function changes.
+
+    Attributes:
+        time_s: Times (n,) of the whole motion in seconds, so that neighbouring steps can be blended.
+        step: The scheduled step.
+        body: Bone lengths.
+        path: Path of the root over the whole motion.
+        rng: Random stream of this step.
+        moves: Moves of the path that belong to this step.
+        seat_height_m: Height of the seat above the floor in metres.
+        first: Whether no step precedes: the motion is already under way at its start.
+        habits: Habits of the person.
+        last: Whether no step follows: the motion continues at its end.
+        arms_before: Whether the previous step holds the arms alike.
+        arms_after: Whether the next step holds the arms alike.
+    """
 
     time_s: PerTime
     step: Step
     body: SkeletonProportions
     path: RootPath
     rng: np.random.Generator
-    moves: tuple[Move, ...] = ()  # the moves of the path that belong to this step
+    moves: tuple[Move, ...] = ()
     seat_height_m: float = STOOL_HEIGHT_M
-    first: bool = True  # no step before: the motion is already under way at its start
+    first: bool = True
     habits: Habits = field(default_factory=Habits)
-    last: bool = True  # no step after: the motion continues at its end
-    arms_before: bool = False  # the previous step holds the arms alike
-    arms_after: bool = False  # the next step holds the arms alike
+    last: bool = True
+    arms_before: bool = False
+    arms_after: bool = False
 
     def __post_init__(self) -> None:
         step = self.step

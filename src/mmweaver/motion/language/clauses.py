@@ -17,11 +17,17 @@ SUBJECTS = PRONOUNS | MANY | {"the", "a", "person", "man", "woman", "user", "his
 
 @dataclass
 class Clause:
-    """Words between two connectives; `link` is the relation: first, then, and, comma, before, after, while."""
+    """Words between two connectives.
+
+    Attributes:
+        link: Relation to the previous clause: first, then, and, comma, before, after, while.
+        words: Words of the clause.
+        number: Position in the sentence's own order.
+    """
 
     link: str
     words: list[Word] = field(default_factory=list)
-    number: int = 0  # in the sentence's own order
+    number: int = 0
 
     @property
     def text(self) -> str:

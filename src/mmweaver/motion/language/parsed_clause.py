@@ -12,21 +12,37 @@ from mmweaver.motion.language.words import Word
 
 @dataclass
 class ParsedClause:
-    """Steps and modifiers of one clause."""
+    """Steps and modifiers of one clause.
+
+    Attributes:
+        link: Relation to the previous clause, see `Clause`.
+        text: Words of the clause.
+        steps: Steps of its verbs.
+        form: Form of the first verb: ing, s, ...
+        forms: Form of each step's verb.
+        about: Direction, hand, speed, ... of a clause without a verb.
+        notes: Assumptions.
+        approximations: Deviations from the sentence.
+        unknown: Unknown words.
+        number: Position of the clause in the sentence.
+        words: Words of the clause.
+        lost: As `approximations`, found after all clauses are parsed.
+        in_turn: Whether its report states that movements are shown one after the other.
+    """
 
     link: str
     text: str
     steps: list[Step] = field(default_factory=list)
-    form: str = ""  # of the first verb: ing, s, ...
-    forms: list[str] = field(default_factory=list)  # of each step's verb
-    about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
-    notes: list[str] = field(default_factory=list)  # what was assumed
-    approximations: list[str] = field(default_factory=list)  # deviations from the sentence
+    form: str = ""
+    forms: list[str] = field(default_factory=list)
+    about: Step = field(default_factory=Step)
+    notes: list[str] = field(default_factory=list)
+    approximations: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
-    number: int = 0  # of the clause in the sentence
+    number: int = 0
     words: list[Word] = field(default_factory=list)
-    lost: list[str] = field(default_factory=list)  # as `approximations`, found after all clauses are parsed
-    in_turn: bool = False  # its report states that movements are shown one after the other
+    lost: list[str] = field(default_factory=list)
+    in_turn: bool = False
 
     @property
     def adds_nothing(self) -> bool:

@@ -15,11 +15,17 @@ _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
 @dataclass(frozen=True)
 class Word:
-    """One token: the text, the lemma of a known verb (else the text again), and the verb form."""
+    """One token of a sentence.
+
+    Attributes:
+        text: The text.
+        lemma: Lemma of a known verb, else the text again.
+        form: Verb form: base, s, ing or past; "" if it is no known verb.
+    """
 
     text: str
     lemma: str
-    form: str  # base | s | ing | past | "" (no known verb)
+    form: str
 
     @property
     def is_verb(self) -> bool:

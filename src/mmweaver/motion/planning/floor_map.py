@@ -34,13 +34,21 @@ _latest: list["FloorMap"] = []
 
 @dataclass(frozen=True)
 class FloorMap:
-    """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid."""
+    """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid.
+
+    Attributes:
+        scene: The room.
+        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+        height_m: Height of the body in metres.
+        with_assumed: Whether assumed floor counts as free.
+        is_tight: Whether a body that kneels, lies or stands in a gap may touch furniture.
+    """
 
     scene: Scene
     range_window_m: tuple[float, float]
     height_m: float
-    with_assumed: bool = False  # whether assumed floor counts as free
-    is_tight: bool = False  # whether a body that kneels, lies or stands in a gap may touch furniture
+    with_assumed: bool = False
+    is_tight: bool = False
 
     @classmethod
     def of(

@@ -38,14 +38,23 @@ _SEAT_RADIUS_M = 0.65  # radius within which a position counts as sitting
 
 @dataclass(frozen=True, kw_only=True)
 class Placement:
-    """The path of the root, the steps with their moves and seats, and the assumptions made."""
+    """Placement of a plan in the room.
+
+    Attributes:
+        path: Path of the root.
+        steps: Steps with their moves and seat heights.
+        seats_m: Seats (x, y) in metres on which the person sits.
+        assumptions: Sentences on what was assumed.
+        invents_seat: Whether a stool was assumed although the room has a reachable seat.
+        chair: A chair assumed to be pulled out, if any.
+    """
 
     path: RootPath
     steps: tuple[PlacedStep, ...]
-    seats_m: tuple[tuple[float, float], ...]  # seats on which the person sits
+    seats_m: tuple[tuple[float, float], ...]
     assumptions: tuple[str, ...]
-    invents_seat: bool = False  # although the room has a reachable seat
-    chair: PulledChair | None = None  # assumed to be pulled out
+    invents_seat: bool = False
+    chair: PulledChair | None = None
 
     @property
     def is_still(self) -> bool:

@@ -98,7 +98,20 @@ def lies_on_seat(plan: MotionPlan) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class CandidateSampler:
-    """Samples candidates for a plan on a floor; see `placement.place` for `start_m` and `attempt`."""
+    """Samples candidates for a plan on a floor.
+
+    Attributes:
+        plan: Scheduled plan.
+        floor: Floor of the room.
+        body: Bone lengths.
+        rng: Random stream of the candidates.
+        start_m: Prescribed start (x, y) in metres, or None.
+        attempt: Number of the attempt, see `placement.place`.
+        heading_rad: Prescribed initial heading, from +x towards +y, or None.
+        off_radar_rad: Sampled angle of a standing body off the radar; None faces it.
+        favourite_m: Sampled position (x, y) near which a start costs least; None for none.
+        after: Final state of the previous motion, if any.
+    """
 
     plan: MotionPlan
     floor: FloorMap
@@ -106,10 +119,10 @@ class CandidateSampler:
     rng: np.random.Generator
     start_m: tuple[float, float] | None
     attempt: int
-    heading_rad: float | None = None  # prescribed initial heading
-    off_radar_rad: float | None = None  # sampled: angle of a standing body off the radar
-    favourite_m: Float[Array, "2"] | None = None  # sampled: position near which a start costs least
-    after: BodyState | None = None  # final state of the previous motion, if any
+    heading_rad: float | None = None
+    off_radar_rad: float | None = None
+    favourite_m: Float[Array, "2"] | None = None
+    after: BodyState | None = None
 
     def sample(self) -> Trajectory:
         """Samples one candidate: a start, and every step laid out from there.

@@ -5,9 +5,9 @@
       {"rgb": "b.png", "depth": "b_depth.png", "camera": "camera.json", "place_m": [1.5, 3.0], "turned_deg": 170}
     ]}
 
-The radar is at the first camera. A further photo has either `place_m`, metres right of and ahead of the first camera, and
-`turned_deg`, how far it is turned to the right of it, both roughly; or `pose`, the 4 x 4 matrix from its camera (x
-right, y down, z forward) to a world in metres that is the same for all photos, which the first then has, too.
+The radar is at the first camera. A further photo has either a rough `place_m`, metres right of and ahead of the first
+camera, and `turned_deg`, its yaw to the right of it; or `pose`, the 4 x 4 matrix from its camera (x right, y down, z
+forward) to a world frame in metres shared by all photos, in which case the first photo has one too.
 """
 
 import math

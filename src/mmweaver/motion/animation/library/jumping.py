@@ -16,7 +16,12 @@ LAUNCH_S, CATCH_S = 0.26, 0.3  # of a leap: acceleration before take-off, decele
 
 @dataclass(frozen=True, kw_only=True)
 class Hop:
-    """One flight: the pelvis takes off and lands at the same height and rises by `rise_m` in between."""
+    """One flight: the pelvis takes off and lands at the same height.
+
+    Attributes:
+        off_s: Time of take-off in seconds.
+        rise_m: Rise of the pelvis in between, metres.
+    """
 
     off_s: float
     rise_m: float

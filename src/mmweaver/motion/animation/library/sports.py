@@ -16,16 +16,27 @@ _GUARD = (0.15, 0.06, 0.11)  # of a fist: ahead, outward and up of spine3, in bo
 
 @dataclass(frozen=True, kw_only=True)
 class Punch:
-    """Path of a fist by its positions (ahead, outward, up; body heights), and the response of the trunk."""
+    """Path of a fist and the response of the trunk; positions are ahead, outward and up in body heights.
+
+    Attributes:
+        on_the_way: Waypoint of the fist between guard and hit.
+        hits: Position of the fist at the hit.
+        turn_rad: Turn of the trunk with the fist.
+        dip: Dip of the body before the hit, in body heights.
+        elbow: Direction of the elbow.
+        leads: Whether the leading hand punches by default.
+        in_turn: Whether several punches alternate.
+        lasts_s: Usual time from guard to guard.
+    """
 
     on_the_way: list[float]
     hits: list[float]
-    turn_rad: float  # of the trunk, with the fist
-    dip: float  # of the body before the hit, in body heights
-    elbow: list[float]  # direction of the elbow
-    leads: bool  # by default the leading hand
-    in_turn: bool  # several punches alternate
-    lasts_s: float  # usual time from guard to guard
+    turn_rad: float
+    dip: float
+    elbow: list[float]
+    leads: bool
+    in_turn: bool
+    lasts_s: float
 
 
 PUNCHES = {name: Punch(**MOVEMENTS[name]) for name in ("jab", "cross", "hook", "uppercut")}
