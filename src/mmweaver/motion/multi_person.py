@@ -1,8 +1,7 @@
-"""Several people in one room: composed one after the other, each clear of those who are already there.
+"""Several people in one room: composed one after the other, each clear of those already there.
 
-People with a given start go first, the others follow in the order of their sentences. Where one finds no place, all
-are composed again with other random numbers, and that person goes first.
-
+People with a given start go first, the others follow in the order of their sentences. If one finds no place, all are
+composed again with other random numbers, and that person goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
@@ -35,13 +34,27 @@ def compose_people(
     heading_rad: float | None = None,
     farthest_m: float = math.inf,
 ) -> tuple[Motion, ...]:
-    """One motion for each scheduled plan, in their order; each is another subject.
+    """Composes one motion per scheduled plan, each of another subject.
 
-    `starts_m`, `heights_m` and `subjects` hold each person's start (x, y), height and number, None where it is chosen.
-    `heading_rad` is where the first faces first. `first` is the first
-    person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
-    the first person moves as they would alone, wherever that leaves room for the others. Raises InputError as
-    `compose` does, and where the people cannot be kept separate.
+    The first person moves as they would alone, unless that leaves no room for the others.
+
+    Args:
+        plans: Scheduled plans, one per person; that of a given `first` is not used.
+        scene: The room, in the radar's frame.
+        seed: Determines what the sentences leave open.
+        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
+        starts_m: Start (x, y) of each person in metres; None entries are chosen.
+        heights_m: Height of each person in metres; None entries are sampled or described.
+        subjects: Number of each person; None entries are sampled.
+        first: Existing motion of the first person (a recorded one), kept unchanged.
+        heading_rad: Initial heading of the first person in radians, from +x towards +y.
+        farthest_m: Maximum range in metres with all range bins, for advice in error messages.
+
+    Returns:
+        The motions in the order of `plans`.
+
+    Raises:
+        InputError: As in `compose`, or if the people cannot be kept apart.
     """
     starts = [None] * len(plans) if starts_m is None else list(starts_m)
     heights = [None] * len(plans) if heights_m is None else list(heights_m)
@@ -78,10 +91,10 @@ def compose_people(
             try:
                 people[index] = _join(list(people.values()), alone, (seed, index, attempt))
             except InputError:
-                if attempt == 0:  # an error that the person would meet alone is reported as such
+                if attempt == 0:  # an error that also occurs without the others is reported as such
                     alone(index, _seed_of(seed, index, 0, 0), ())
                 crowded = index
-                order.sort(key=lambda one: (starts[one] is None, one != crowded))  # it goes first the next time
+                order.sort(key=lambda one: (starts[one] is None, one != crowded))  # first in the next attempt
                 break
         if len(people) == len(plans):
             return tuple(people[index] for index in range(len(plans)))
@@ -94,11 +107,11 @@ def compose_people(
 
 
 def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int, int, int]) -> Motion:
-    """One more person, clear of the others; `numbers` are seed, index of the person and attempt."""
+    """Adds one person, clear of the others; `numbers` are seed, index of the person and attempt."""
     seed, index, attempt = numbers
     others = tuple(one.pose for one in people)
     for retry in range(TRIES_PER_PERSON):
-        may_touch = not others or attempt == TRIES_FOR_ALL - 1  # other orders of the people are tried before
+        may_touch = not others or attempt == TRIES_FOR_ALL - 1  # only after other orders of the people
         motion = alone(index, _seed_of(seed, index, attempt, retry), others, may_touch=may_touch)
         if all(are_separate(motion.pose, other) for other in others):
             return motion
@@ -106,7 +119,7 @@ def _join(people: list[Motion], alone: Callable[..., Motion], numbers: tuple[int
 
 
 def _subjects(seed: int, given: list[int | None]) -> list[int]:
-    """Each person's number, as given or sampled by the seed, all different. Raises InputError for one given twice."""
+    """Number of each person, as given or sampled, all different. Raises InputError for duplicates."""
     fixed = [check_subject(subject) for subject in given if subject is not None]
     if len(set(fixed)) < len(fixed):
         raise InputError(f"nobody is there twice; the subjects {', '.join(map(str, fixed))} must differ")
@@ -120,7 +133,7 @@ def _subjects(seed: int, given: list[int | None]) -> list[int]:
 
 
 def _seed_of(seed: int, index: int, attempt: int, retry: int) -> int:
-    """The first person's first attempt has the seed of a person alone."""
+    """Seed of an attempt; that of the first person's first attempt is the seed of a person alone."""
     if (index, attempt, retry) == (0, 0, 0):
         return seed
     return int(stream(seed, "company", index, attempt, retry).integers(2**31))

@@ -34,8 +34,14 @@ LONGEST_TEXT_TOKENS = 256
 def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
     """A T5 of the given sizes with random weights.
 
-    `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
-    share one with the input words whatever the configuration says.
+    `tie_word_embeddings` False gives the output words a matrix of their own, as in flan-t5; transformers 5 would share
+    one with the input words whatever the configuration.
+
+    Args:
+        sizes: Result of `checkpoint.t5_sizes`.
+
+    Raises:
+        InputError: If transformers is not installed.
     """
     need("pretrained", "the motion model", "transformers")
     from transformers import T5Config, T5ForConditionalGeneration
@@ -51,7 +57,18 @@ def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
 
 
 def add_motion_tokens(words: "PreTrainedTokenizerBase", codes: int) -> int:
-    """Appends the motion tokens to the vocabulary; returns the id of the first."""
+    """Appends the motion tokens to the vocabulary.
+
+    Args:
+        words: Text tokenizer, modified in place.
+        codes: Number of motion codes; three special tokens follow them.
+
+    Returns:
+        Id of the first motion token.
+
+    Raises:
+        InputError: If the tokenizer already has motion tokens in another order.
+    """
     names = [f"<motion_id_{k}>" for k in range(codes + 3)]
     words.add_tokens(names)
     first, last = words.convert_tokens_to_ids(names[0]), words.convert_tokens_to_ids(names[-1])
@@ -74,9 +91,20 @@ def sample_codes(
 ) -> list[int]:
     """Samples motion codes for a text.
 
-    With `tokens`, exactly that many: all other tokens, and an early end, are masked. Without, as many as the model
-    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. The same seed gives the same
-    codes.
+    Args:
+        t5: Language model.
+        text_ids: Token ids of the text, (1, word).
+        first_motion_id: Id of the first motion token.
+        codes: Number of motion codes.
+        tokens: Exact number of codes; other tokens and an early end are masked. None lets the model end, as in the
+            published demo, and drops other tokens.
+        most_tokens: Maximum number of codes if `tokens` is None.
+        seed: Seed; the same seed gives the same codes.
+        temperature: Sampling temperature.
+        top_k: Number of most likely tokens to sample from.
+
+    Returns:
+        Motion codes.
     """
     from transformers import LogitsProcessorList
 

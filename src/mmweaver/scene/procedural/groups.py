@@ -26,9 +26,15 @@ def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> Furni
     """Samples a group, or a single piece, until its pieces do not penetrate each other.
 
     Args:
-        name: of the group's record, or the piece's.
-        palette: surfaces by name.
-        rng: random sizes and places are sampled from it.
+        name: Name of the group's record, or of the piece's.
+        palette: Surfaces by name.
+        rng: Random stream of sizes and positions.
+
+    Returns:
+        The group in its own frame.
+
+    Raises:
+        RuntimeError: If the pieces overlap in 20 samples.
     """
     for _ in range(_MAX_DRAWS):
         if name in RECORDS["groups"]:
@@ -47,7 +53,7 @@ def sample_group(name: str, palette: Palette, rng: np.random.Generator) -> Furni
 
 
 def _placed(record: dict[str, Any], palette: Palette, rng: np.random.Generator) -> list[PlacedPiece]:
-    """Makes and places the pieces of a group's record in their order."""
+    """Makes and places the pieces of a group's record in order."""
     draw = Builder(palette, rng, "")
     known: dict[str, Any] = {"uniform": draw.uniform, "chance": draw.chance, **draw.sampled(record.get("sizes", {}))}
     items = []
