@@ -143,7 +143,16 @@ class PointFactors:
             getattr(self, name)[frame] = getattr(other, name)[frame]
 
     def rendered(self, frame: int, count: int, first: int = 0) -> Array:
-        """Response of scatterers `first` to `count` of a frame in centred phase, real (range, (doppler, antenna, part))."""
+        """Response of some scatterers of a frame in centred phase.
+
+        Args:
+            frame: Index of the frame.
+            count: Index after the last scatterer.
+            first: Index of the first scatterer.
+
+        Returns:
+            Real values (range, (doppler, antenna, part)).
+        """
         axes, response, own, count = self.axes, self.axes.response, slice(first, count), count - first
         echo = self.amplitude[frame, own, None] * self.steer[frame, own]
         along = np.float32(response.num_loops / (2 * math.pi) * response.migration) * self.bins[1, frame, own, None]
