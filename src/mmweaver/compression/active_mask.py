@@ -1,4 +1,4 @@
-"""Which cells hold signal (encoder side)."""
+"""Cells that contain signal (encoder side)."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ ACTIVE_DB = 12.0  # above the noise floor, as in metrics.cells
 
 
 def active_mask(values: CubeValues, min_power: float | None = None) -> RangeDopplerMask:
-    """Marks the cells with signal.
+    """Marks the cells that contain signal.
 
     Args:
-        values: (frame, range, doppler, antenna).
-        min_power: threshold on the power averaged over the antennas; by default 12 dB above its median.
+        values: Cube (frame, range, doppler, antenna).
+        min_power: Threshold on the power averaged over the antennas; by default 12 dB above its median.
 
     Returns:
         Mask (frame, range, doppler); all cells where none exceeds the threshold.
@@ -23,12 +23,12 @@ def active_mask(values: CubeValues, min_power: float | None = None) -> RangeDopp
 
 
 def cell_power(values: CubeValues) -> np.ndarray:
-    """Antenna-averaged power (frame, range, doppler), float64: the squares of 1e-30 are zero in float32."""
+    """Antenna-averaged power (frame, range, doppler), float64, since squares of 1e-30 underflow in float32."""
     return np.mean(np.square(values.real, dtype=np.float64) + np.square(values.imag, dtype=np.float64), axis=-1)
 
 
 def active_power(power: np.ndarray) -> float:
-    """12 dB above the median of the powers of cells.
+    """Threshold 12 dB above the median of cell powers.
 
     Cells that are exactly zero, such as Doppler bins missing from a file, are excluded from the median.
     """

@@ -1,4 +1,4 @@
-"""Antennas as beams: a unitary transform of the array."""
+"""Unitary transform of the array's antennas to beams."""
 
 import numpy as np
 from jaxtyping import Complex
@@ -8,7 +8,14 @@ from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
 
 
 def beams_of(config: RadarConfig) -> Complex[np.ndarray, "beam antenna"]:
-    """Unitary beamforming matrix: a DFT per row of the array, boresight in the middle, rows from low to high."""
+    """Unitary beamforming matrix: a DFT per row of the array, boresight in the middle, rows from low to high.
+
+    Args:
+        config: The radar, for its antenna positions.
+
+    Returns:
+        Matrix (beam, antenna), complex128.
+    """
     position_m = config.antenna_position_m
     height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
     beams = np.zeros((config.num_antennas, config.num_antennas), complex)

@@ -1,10 +1,10 @@
-"""Entropy coding of cells (time, range, doppler): a class for each one, then the integer levels of the open ones.
+"""Entropy coding of cells (time, range, doppler): a class per cell, then the integer levels of the open cells.
 
-Order: a coarse lattice first, then the cells in between, so that every cell but those of the first phase has known
-neighbours on both sides along at least one axis, whatever the shape. Levels are coded beam by beam, or a few beams at
-once where few cells are open. Contexts are the known neighbours, the preceding beams, the real part for the imaginary
-one, and the place. The FFT windows correlate neighbouring cells along range and Doppler, signs included, so a weighted
-sum of the neighbours predicts the level.
+Order: a coarse lattice first, then the cells in between, so that every cell except those of the first phase has known
+neighbours on both sides along at least one axis, whatever the shape. Levels are coded beam by beam, or several beams
+at once where few cells are open. Contexts are the known neighbours, the preceding beams, the real part for the
+imaginary one, and the position. The FFT windows correlate neighbouring cells along range and Doppler, including signs,
+so a weighted sum of the neighbours predicts the level.
 """
 
 import operator
@@ -18,7 +18,7 @@ import numpy as np
 from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.symbol_model import ALWAYS, Batches, MixedModel, SignedModel
 
-Integers = np.ndarray  # int64; called thousands of times a cube
+Integers = np.ndarray  # int64; called thousands of times per cube
 Classes = np.ndarray  # (time, range, doppler) int64
 Phase = tuple[int, int, int]
 
@@ -27,28 +27,28 @@ PHASES: tuple[Phase, ...] = ((0, 0, 0), (0, 0, 1), (0, 1, 0), (1, 0, 0), (0, 1, 
 WEIGHTS = {1: 4, 2: 2, 3: 1}  # of a neighbour, by the number of axes along which it differs
 
 CLOSED, COARSE, FINE = 0, 1, 2
-CLASS_STRIDES = (4, 2, 1)  # of the lattices, one after the other
+CLASS_STRIDES = (4, 2, 1)  # of the lattices, in coding order
 CLASS_MARGIN = 4
 OPEN_BOUNDS = np.array([1, 3, 6, 9, 13])  # sixteenths of the known neighbours
 FINE_BOUNDS = np.array([1, 6, 12])
 BYTE = 255
-SEEN = np.array([0, 1, 1 + (1 << 8)], np.int16)  # what a class adds to the sums of open and of fine neighbours
+SEEN = np.array([0, 1, 1 + (1 << 8)], np.int16)  # contribution of a class to the counts of open and fine neighbours
 NUM_OPEN, NUM_FINE, NUM_NEAR = len(OPEN_BOUNDS) + 2, len(FINE_BOUNDS) + 1, 4
 
 SIZE_BOUNDS = np.array([1, 2, 4, 6, 9, 13, 18, 26, 36, 50, 70, 100, 150, 230, 400, 800, 1600, 3200])  # eighths
 TREND_BOUNDS = np.array([1, 3, 6, 9])  # eighths of a level
 WIDE_BOUNDS = np.array([1, 3, 8, 24])
 CORNERS = ((-1, -1), (-1, 1), (1, -1), (1, 1))
-FAR = 12  # eighths of a level; from this prediction on, the deviation from it is coded
+FAR = 12  # eighths of a level; for larger predictions the deviation is coded
 NUM_SIZES, NUM_TRENDS, NUM_WIDE = len(SIZE_BOUNDS) + 1, len(TREND_BOUNDS) + 2, len(WIDE_BOUNDS) + 1
 NUM_REAL = 4
-UNKNOWN = NUM_SIZES  # class of a size that is not known
-OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
+UNKNOWN = NUM_SIZES  # class of an unknown size
+OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of the predictors of the size
 LARGER, MIN_SCALE = 2.0, 0.3
 DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
 LARGE, MIDDLE = 20_000, 500  # open cells
-FEW_BEAMS = 3  # up to which all lattices pay
-# strides of the lattices, one after the other, by the number of open cells from which on they pay
+FEW_BEAMS = 3  # up to which all lattices pay off
+# strides of the lattices in coding order, by the number of open cells from which on they pay off
 LATTICES = ((LARGE, (4, 2, 1)), (MIDDLE, (2, 1)), (0, (1,)))
 LATTICES_IN = {3: (1,), 4: (4, 2, 1)}
 VALUES_AT_ONCE = 20_000  # open cells times beams that are coded in the phases of one pass
@@ -68,14 +68,26 @@ def _known_neighbours(phase: Phase) -> tuple[tuple[Phase, int], ...]:
 
 
 class ClassMapCoder:
-    """`code` encodes classes, or fills them in when decoding. `prior`: probabilities of the classes to begin with."""
+    """Codes the map of classes with adaptive contexts."""
 
     def __init__(self, num_doppler: int, prior: tuple[float, ...] = (0.94, 0.03, 0.03)):
+        """Initialises the models.
+
+        Args:
+            num_doppler: Number of Doppler bins.
+            prior: Initial probabilities of the classes.
+        """
         contexts = (NUM_OPEN * NUM_FINE * len(CLASS_STRIDES), NUM_OPEN * NUM_FINE * NUM_NEAR, NUM_OPEN * num_doppler)
         self.model = MixedModel([np.tile(prior, (num, 1)) for num in contexts])
 
     def code(self, stream: BitStream, classes: Classes, near: Classes) -> None:
-        """`near` (time, range, doppler): strength of the nearest scatterer, 0 for none."""
+        """Encodes the classes, or fills them in when decoding.
+
+        Args:
+            stream: Encoder or decoder.
+            classes: Class of each cell (time, range, doppler), int64.
+            near: Strength of the nearest scatterer (time, range, doppler), 0 for none.
+        """
         batches = Batches(stream)
         seen = np.zeros([size + 2 * CLASS_MARGIN for size in classes.shape], np.int16)
         inside = seen[(slice(CLASS_MARGIN, -CLASS_MARGIN),) * 3]
@@ -121,12 +133,15 @@ class ClassMapCoder:
 
 @dataclass(frozen=True, kw_only=True)
 class PhaseGroup:
-    """Open cells of one phase (n,), as indices in the list of open cells; neighbours that are closed are its end."""
+    """Open cells of one phase (n,), as indices into the list of open cells.
+
+    Closed neighbours have the index after the last.
+    """
 
     cells: Integers
     column: Integers
     factor: Integers  # step of the cell in units of the fine step
-    around: list[tuple[int, Integers]]  # weights of the known neighbours, and where they are
+    around: list[tuple[int, Integers]]  # weights and indices of the known neighbours
     rows: list[Integers]  # neighbours that predict the sign: along range, along Doppler, and diagonal ones
     columns: list[Integers]
     corners: list[Integers]
@@ -142,18 +157,21 @@ class KnownSizes:
     real: Integers | None = None  # magnitude of the real part, in levels
 
     def some(self, values: slice, real: Integers | None) -> "KnownSizes":
-        """Of some values, with the magnitude of the real part of all."""
+        """The entries of a slice of values, with the magnitudes of the real part of all."""
         own, other, real = (None if size is None else size[values] for size in (self.own, self.other, real))
         return KnownSizes(own=own, other=other, wide=self.wide[values], real=real)
 
 
 class LevelCoder:
-    """Codes levels of open cells (beam, time, range, doppler).
-
-    `correlated`: whether neighbours along range, and along Doppler, predict the sign.
-    """
+    """Codes the levels of open cells (beam, time, range, doppler) with adaptive contexts."""
 
     def __init__(self, shape: tuple[int, int, int, int], correlated: tuple[bool, bool] = (True, True)):
+        """Initialises the models.
+
+        Args:
+            shape: Shape (beam, time, range, doppler) of all cells.
+            correlated: Whether neighbours along range, and along Doppler, predict each other's sign.
+        """
         self.shape, self.correlated = shape, correlated
         middle = np.append(SIZE_BOUNDS, 2 * SIZE_BOUNDS[-1]) / 8 * LARGER + MIN_SCALE
         known_or_not = np.append(middle, 1.0)
@@ -169,9 +187,9 @@ class LevelCoder:
         """Encodes levels, or fills them in when decoding.
 
         Args:
-            stream: encoder or decoder.
-            levels: (part, beam, cell) of the open cells.
-            factor: (time, range, doppler), step of each cell in units of the finest, 0 where it is closed.
+            stream: Encoder or decoder.
+            levels: Levels (part, beam, cell) of the open cells, int64.
+            factor: Step of each cell (time, range, doppler) in units of the finest, 0 where it is closed.
         """
         beams, num = levels.shape[1:]
         if not num:
@@ -201,14 +219,20 @@ class LevelCoder:
 
     @staticmethod
     def passes(beams: int, num_open: int) -> Iterator[int]:
-        """The beams that are known after each pass."""
+        """The number of beams that are known after each pass."""
         last = 0
         while last < beams:
             last = min(beams, last + min(max(last, 1), -(-VALUES_AT_ONCE // num_open)))
             yield last
 
     def groups(self, places: "CellPlaces", lattices: tuple[int, ...], *, has_all: bool) -> Iterator[PhaseGroup]:
-        """The phases of the lattices. `has_all`: with the neighbours along axes of one cell, which count as zeros."""
+        """The phases of the lattices.
+
+        Args:
+            places: The open cells.
+            lattices: Strides of the lattices, in coding order.
+            has_all: Whether neighbours along axes of length one are included, as zeros (version 3).
+        """
         single = [num == 1 and not has_all for num in self.shape[1:]]
         for stride in lattices:
             for phase in PHASES if stride == lattices[0] else PHASES[1:]:
@@ -292,7 +316,7 @@ class LevelCoder:
         return (self.levels.code(stream, contexts, shift, wanted * up - offset, by_trend == 0) + offset) * up
 
     def _shifts(self, stream: BitStream, expected: Integers) -> tuple[Integers | None, Integers | int]:
-        """Low bits of levels that are uniform, None where there are none, and by how much contexts are scaled."""
+        """Number of low bits of levels that are coded as uniform, None for none, and the scaling of contexts."""
         most = DIGITS_IN_3 if stream.version == 3 else DIGITS
         if int(expected.max()) >> 3 < 1 << most:
             return None, 0
@@ -302,7 +326,7 @@ class LevelCoder:
 
 
 class CellPlaces:
-    """Open cells (cell,) of an array (time, range, doppler), and how they are found from their neighbours."""
+    """Open cells (cell,) of an array (time, range, doppler), with access to their neighbours."""
 
     def __init__(self, factor: Integers, margins: Sequence[int]):
         self.cell = np.nonzero(factor)
@@ -314,7 +338,7 @@ class CellPlaces:
         self._index[self.at] = np.arange(len(self.at))
 
     def of(self, at: Integers, offset: Sequence[int]) -> Integers:
-        """Indices of the cells that are `offset` away; the number of cells where there is none."""
+        """Indices of the cells at an offset from flat places; the number of cells where there is none."""
         return self._index[at + self._flat(offset)]
 
     def phase_cells(self, phase: Phase, stride: int) -> Integers:
@@ -327,7 +351,7 @@ class CellPlaces:
 
 
 def _trend_of(plane: Integers, group: PhaseGroup) -> Integers | None:
-    """Level (cell, beam) predicted by the windows' correlation, in eighths of a fine step; None where nothing does."""
+    """Level (cell, beam) predicted by the windows' correlation, in eighths of a fine step; None without neighbours."""
     near = [plane[cells] for cells in (*group.rows, *group.columns)]
     if not near:
         return None
@@ -347,7 +371,7 @@ def _neighbour_axes(margins: Sequence[int]) -> list[tuple[int, ...]]:
 
 
 def _expected(known: KnownSizes, num: int) -> Integers:
-    """Weighted mean of what is known about the size, in eighths of a level."""
+    """Weighted mean of the known magnitudes, in eighths of a level."""
     total, weight = np.zeros(num, np.int64), 0
     wide = None if known.other is None else known.wide
     real = None if known.real is None else 8 * known.real

@@ -1,9 +1,9 @@
-"""Files of a checked header and checked records, which .mmw and .mmwl are.
+"""Files of a checked header and checked records, the common structure of .mmw and .mmwl.
 
-    magic number | version u8 | length of header u16 | header | CRC-32 of all before | record, record, ...
+    magic number | version u8 | length of header u16 | header | CRC-32 of everything before | record, record, ...
 
-All is little-endian. A record ends in the CRC-32 of all of it; a check of 16 bits behind its head tells a damaged
-length from a file that was cut short.
+All values are little-endian. A record ends with the CRC-32 of its contents; a 16-bit check after its head distinguishes
+a damaged length from a truncated file.
 """
 
 import struct
@@ -21,19 +21,19 @@ HEAD_CHECK = struct.Struct("<H")
 
 
 def checked(body: bytes) -> bytes:
-    """Bytes and their CRC-32."""
+    """Bytes followed by their CRC-32."""
     return body + CHECK.pack(zlib.crc32(body))
 
 
 def head_check(head: bytes) -> bytes:
-    """The check of 16 bits behind the head of a record."""
+    """The 16-bit check that follows the head of a record."""
     return HEAD_CHECK.pack(zlib.crc32(head) & 0xFFFF)
 
 
 class CheckedFile(ABC):
-    """A file whose header and places of records are read and checked at once, records on demand.
+    """A file whose header and record positions are read and checked on construction, records on demand.
 
-    `cut_short` is the number of bytes after the last whole record; 0 where the file is whole.
+    `cut_short` is the number of bytes after the last complete record; 0 for a complete file.
     """
 
     MAGIC: ClassVar[bytes]
@@ -42,7 +42,14 @@ class CheckedFile(ABC):
     MADE_BY: ClassVar[str]  # the command that makes one
 
     def __init__(self, path: Path | str):
-        """Raises InputError where the file is unreadable, of another kind, or damaged before its first record."""
+        """Reads the header and finds the records.
+
+        Args:
+            path: Path of the file.
+
+        Raises:
+            InputError: If the file is unreadable, of another kind, or damaged before its first record.
+        """
         self.path, self.cut_short = Path(path), 0
         self.num_bytes = check_regular(path)
         with open_regular(path) as stream:
@@ -68,14 +75,23 @@ class CheckedFile(ABC):
 
     @abstractmethod
     def _read_header(self, body: bytes) -> None:
-        """Reads the header; whatever it raises becomes one clear line."""
+        """Reads the header; any error it raises is reported as damage in one line."""
 
     @abstractmethod
     def _find_records(self, stream: BinaryIO) -> None:
-        """Finds the records, the first of which begins where the stream is."""
+        """Finds the records, the first of which begins at the position of the stream."""
 
     def read_checked(self, start: int, num_bytes: int, what: str) -> bytes:
-        """Bytes that their CRC-32 follows. Raises InputError where it does not match."""
+        """Reads bytes that are followed by their CRC-32.
+
+        Args:
+            start: Position of the first byte.
+            num_bytes: Number of bytes, without the CRC-32.
+            what: Name of the part in error messages.
+
+        Raises:
+            InputError: If the checksum does not match.
+        """
         with open_regular(self.path) as stream:
             stream.seek(start)
             data = stream.read(num_bytes + CHECK.size)
@@ -85,5 +101,5 @@ class CheckedFile(ABC):
         return body
 
     def damaged(self, why: str) -> InputError:
-        """The error for damage of this file."""
+        """The error that reports damage of this file."""
         return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")

@@ -1,7 +1,7 @@
-"""A chunk of frames as its decoder reads it: static layer, scatterers, noise and residual in one stream.
+"""A chunk of frames on the decoder side: static layer, scatterers, noise and residual in one stream.
 
 All are quantised with one step: an error of one step in any value leaves about the same energy in the cube. Files of
-older versions, and older files of version 5, may also hold a layer of low rank and an enhancement layer.
+older versions, and older files of version 5, may also contain a low-rank layer and an enhancement layer.
 """
 
 import functools
@@ -48,8 +48,8 @@ FINER_STEPS = (1, 2, 4, 8)  # the step over that of the enhancement layer
 FINER, IS_VERSION_5 = 8, 64  # in the byte of the steps: a factor and a flag
 NO_OFFSET = (128, 128)  # centroids
 PLAIN, DEFLATED = b"\0", b"\1"
-MIN_LOOPS = 3  # of a point response: below, a window has no Doppler spectrum to speak of
-# hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
+MIN_LOOPS = 3  # of a point response; a shorter window has no useful Doppler spectrum
+# limits against hostile headers: complex numbers in a chunk of several frames, and in one of a single frame
 MAX_VALUES, MAX_CELLS = 2**21, 2**26
 
 Working = Complex[np.ndarray, "_ range _ antenna"]
@@ -57,7 +57,7 @@ Working = Complex[np.ndarray, "_ range _ antenna"]
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkFrames:
-    """Frames `hop` loops apart, or separate frames where hop is 0.
+    """Frames that are `hop` loops apart, or separate frames where hop is 0.
 
     Separate frames work for any window; scatterers and overlapping frames require one with a `FitWindow`.
     """
@@ -68,7 +68,16 @@ class ChunkFrames:
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int, hop: int) -> "ChunkFrames":
-        """Raises ValueError for a hop that the window does not allow."""
+        """Frames of a chunk.
+
+        Args:
+            config: The radar.
+            num_frames: Number of frames.
+            hop: Loops from one frame to the next, 0 for separate frames.
+
+        Raises:
+            ValueError: For a hop that the window does not allow.
+        """
         frames = cls(config=config, num_frames=num_frames, hop=hop)
         if hop and not (hop < config.num_loops and frames.can_have_points):
             raise ValueError("impossible hop")
@@ -83,7 +92,7 @@ class ChunkFrames:
 
     @property
     def can_have_points(self) -> bool:
-        """Whether the window of the frames has a point response: it is symmetric about its middle."""
+        """Whether the window of the frames has a point response, which requires symmetry about its middle."""
         return self._window is not None
 
     @cached_property
@@ -109,20 +118,27 @@ class ChunkFrames:
         return (1 if self.hop else self.num_frames, config.num_range_bins, loops, config.num_antennas)
 
     def working(self, values: CubeValues) -> Working:
-        """Values of a cube -> working frames in centred phase."""
+        """Working frames of a cube.
+
+        Args:
+            values: Cube (frame, range, doppler, antenna).
+
+        Returns:
+            Working frames (frame, range, doppler, antenna) in centred phase, complex64.
+        """
         if self.hop:
             return self.fit_window().working(values).numpy()
         return (values * self.phasor.conj()).astype(np.complex64)
 
     def cube_values(self, working: Working) -> CubeValues:
-        """The inverse: working frames -> values of the cube, complex64."""
+        """The inverse of `working`: cube values (frame, range, doppler, antenna), complex64."""
         if self.hop:
             return self.fit_window().cube_values(torch.from_numpy(working.astype(np.complex64)))
         return (working * self.phasor).astype(np.complex64)
 
     @cached_property
     def phasor(self) -> np.ndarray:
-        """(range, doppler, antenna) from centred phase to that of the cube; as `PointResponse.phasor`."""
+        """Phase of the cube relative to centred phase (range, doppler, antenna), as `PointResponse.phasor`."""
         config = self.config
         range_bin = config.first_range_bin + np.arange(config.num_range_bins)
         doppler_bin = np.arange(config.num_loops) - config.num_loops // 2
@@ -133,7 +149,7 @@ class ChunkFrames:
 
 @dataclass(frozen=True, kw_only=True)
 class DecodedChunk:
-    """Content of a chunk. `residual`: working frames (frame, range, doppler, antenna) in centred phase.
+    """Contents of a chunk. `residual` are working frames (frame, range, doppler, antenna) in centred phase.
 
     `layers` are None where a chunk has neither scatterers nor a static layer.
     """
@@ -151,7 +167,7 @@ class DecodedChunk:
     transform: TransformChoice | None = None
 
     def mode_name(self) -> str:
-        """How the chunk is coded, for people."""
+        """Description of how the chunk is coded, for display."""
         if self.exact is not None:
             return "exact"
         parts = ["scatterers"] * (self.layers is not None) + ["low rank"] * bool(self.rank)
@@ -160,7 +176,11 @@ class DecodedChunk:
         return " + ".join(parts) or "nothing"
 
     def cube_values(self) -> CubeValues:
-        """The frames of the cube, complex64."""
+        """The frames of the cube (frame, range, doppler, antenna), complex64.
+
+        Raises:
+            InputError: If values are not finite.
+        """
         if self.exact is not None:
             return finite(self.exact)
         working = np.zeros(self.frames.working_shape, np.complex64)
@@ -174,7 +194,7 @@ class DecodedChunk:
 
 
 def one_line_errors(decode: Callable[..., DecodedChunk]) -> Callable[..., DecodedChunk]:
-    """Turns whatever a malformed chunk raises into InputError."""
+    """Decorator that reports any error of a malformed chunk as InputError."""
 
     @functools.wraps(decode)
     def decoded(*arguments, **options) -> DecodedChunk:
@@ -193,12 +213,12 @@ def decode_chunk(data: bytes, config: RadarConfig, *, with_residual: bool = True
     """Decodes a chunk of version 3, 4 or 5.
 
     Args:
-        data: the chunk.
-        config: radar of the file.
-        with_residual: False for its layers alone.
+        data: The chunk.
+        config: Radar of the file.
+        with_residual: Whether the residual is decoded; otherwise static layer and scatterers alone.
 
     Raises:
-        InputError: for a malformed chunk.
+        InputError: For a malformed chunk.
     """
     num_frames, hop, peak, step, one, more, noise_level, steps, rank, flags = PREFIX.unpack_from(data)
     coarser, finer, version = unpack_steps(steps, is_version_3=not flags & IS_NEW)
@@ -276,17 +296,17 @@ def decode_layers(
     """Decodes static layer and scatterers.
 
     Args:
-        stream: decoder.
-        frames: of the chunk.
-        step: of all values.
-        flags: which layers there are.
-        gains: of the antennas, None for 1.
-        noise_power: of a cell.
-        code_static: decodes the levels of a static layer.
-        point_coder: makes the coder of scatterers.
+        stream: The decoder.
+        frames: Frames of the chunk.
+        step: Quantisation step, relative to the peak.
+        flags: Flags of the layers that are present.
+        gains: Antenna gains (antenna,), None for 1.
+        noise_power: Noise power per cell.
+        code_static: Decodes the levels of a static layer.
+        point_coder: Creates the coder of the scatterers.
 
     Returns:
-        The layers, None where there are none, and the nearness of scatterers to each cell.
+        The layers, None where there are none, and the strength of the nearest scatterer to each cell.
     """
     near = np.zeros(frames.working_shape[:3], np.int64)
     if not flags & (HAS_STATIC | HAS_POINTS):
@@ -312,7 +332,11 @@ def decode_layers(
 
 
 def finite(values: np.ndarray) -> np.ndarray:
-    """The values of a chunk. Raises InputError where steps or peak were so large that some are not finite."""
+    """Checks the values of a chunk.
+
+    Raises:
+        InputError: If step or peak were so large that some values are not finite.
+    """
     if not np.isfinite(values).all():
         raise InputError("a chunk of the .mmw file holds values that are not finite; compress the recording again")
     return values
@@ -324,7 +348,18 @@ def pack_steps(coarser: int) -> int:
 
 
 def unpack_steps(byte: int, *, is_version_3: bool) -> tuple[int, int, int]:
-    """Coarse step, finer step and version. Raises ValueError for what no encoder writes."""
+    """The inverse of `pack_steps`.
+
+    Args:
+        byte: The byte of steps.
+        is_version_3: Whether the chunk is of version 3.
+
+    Returns:
+        Coarse step, finer step and version.
+
+    Raises:
+        ValueError: For values that no encoder writes.
+    """
     version, finer = 3 if is_version_3 else 4, 1
     if byte & IS_VERSION_5 and not is_version_3:
         version, finer, byte = 5, FINER_STEPS[byte // FINER % 4], byte & ~(IS_VERSION_5 + 3 * FINER)
@@ -336,7 +371,7 @@ def unpack_steps(byte: int, *, is_version_3: bool) -> tuple[int, int, int]:
 def _decode_enhancement(
     stream: BitStream, shape: tuple[int, ...], beams: Complex[np.ndarray, "beam antenna"], step: float
 ) -> Complex[np.ndarray, "frame range doppler antenna"]:
-    """Read-only: what is left in moving cells, coded again with a finer step; complex64."""
+    """Read-only: residual of moving cells, coded again with a finer step; complex64."""
     classes = np.zeros(shape[:3], np.int64)
     levels = code_cells(stream, None, classes, num_beams=shape[3])
     cells = QuantisedCells(levels=levels, classes=classes, centroids=NO_OFFSET)
@@ -345,7 +380,7 @@ def _decode_enhancement(
 
 
 def pack_exact(values: CubeValues) -> bytes:
-    """Complex64 values without loss: float32 words, bytes of equal weight together, deflated if that is shorter."""
+    """Lossless complex64 values: float32 words grouped by byte significance, deflated where that is shorter."""
     words = np.ascontiguousarray(values, np.complex64).view("<f4").ravel()
     planes = words.view(np.uint8).reshape(-1, 4).T.tobytes()
     smaller = zlib.compress(planes, 9)

@@ -129,11 +129,21 @@ class ChunkEncoder:
 
     @property
     def can_have_points(self) -> bool:
-        """Of one antenna, a scatterer has about as many numbers as the cells that it fills."""
+        """Whether scatterers may pay off.
+
+        With one antenna a scatterer has about as many numbers as the cells it covers.
+        """
         return self.frames.can_have_points and self.target.shape[3] > 1 and bool(self.target.any())
 
     def fit(self, num_bytes: float) -> bool:
-        """Fits the scatterers that a chunk of about so many bytes has room for; whether there are any."""
+        """Fits the scatterers that a chunk of a given size can afford.
+
+        Args:
+            num_bytes: Size of the chunk in bytes.
+
+        Returns:
+            Whether the fit is usable.
+        """
         layers = _fit(self, num_bytes)
         if not bool(layers.static.isfinite().all() & layers.points.amplitude.isfinite().all()):
             return False  # nearly empty cubes have no noise to compare scatterers with
@@ -147,9 +157,12 @@ class ChunkEncoder:
         """The chunk with an error of about step / sqrt(12) in each coded cell.
 
         Args:
-            step: relative to the peak.
-            mode: how it is coded.
-            coarser: the step of cells without signal over that of the others.
+            step: Quantisation step, relative to the peak.
+            mode: How the chunk is coded.
+            coarser: Step of cells without signal relative to that of the others.
+
+        Returns:
+            The bytes that `decode_chunk` reads.
         """
         step = float(np.float32(step))
         if mode.with_noise and self.is_active.all():
@@ -175,13 +188,13 @@ class ChunkEncoder:
         return front + pack_exact(self.values)
 
     def estimate(self, sample: CellSample, mode: ChunkMode, step: float, coarser: int) -> Estimate:
-        """What the chunk would cost, by a sample of its cells.
+        """Estimated size and error of the chunk, from a sample of its cells.
 
         Args:
-            sample: of the mode, from `sample`.
-            mode: how the chunk is coded.
-            step: relative to the peak.
-            coarser: the step of cells without signal over that of the others.
+            sample: Sample of the mode, from `sample`.
+            mode: How the chunk is coded.
+            step: Quantisation step, relative to the peak.
+            coarser: Step of cells without signal relative to that of the others.
         """
         if not mode.with_noise:
             return sample.estimate(step, coarser)
@@ -196,7 +209,12 @@ class ChunkEncoder:
         )
 
     def sample(self, mode: ChunkMode, step: float) -> CellSample:
-        """Some coefficients of a mode; where it has scatterers, after those of a step."""
+        """A sample of the coefficients of a mode, for `estimate`.
+
+        Args:
+            mode: How the chunk is coded.
+            step: Step at which scatterers are subtracted, where the mode has them.
+        """
         if not mode.with_points:
             if mode.with_noise:
                 self._noise_coefficients(self.target, step, with_points=False)
@@ -238,7 +256,7 @@ class ChunkEncoder:
         return self._noise_samples[with_points]
 
     def _noise_coefficients(self, target: np.ndarray, step: float, *, with_points: bool) -> np.ndarray:
-        """Coefficients of the noise layer, those of a step nearby where scatterers change with the step."""
+        """Coefficients of the noise layer, those of a nearby step where scatterers change with the step."""
         before = self._noise.get(with_points)
         if before is None or (with_points and abs(math.log(step / before[0])) > SAME_NOISE):
             quiet = target if self.is_active.all() else signal_filled(target, self.is_active)
@@ -255,7 +273,7 @@ class ChunkEncoder:
         return transform, self._coefficients[choice]
 
     def _transform(self, choice: TransformChoice) -> ChunkTransform:
-        """The transform of a choice that suits the frames; matrices are the same whatever the DCT."""
+        """The transform of a choice adapted to the frames; its matrices do not depend on the DCT."""
         key = choice.antenna_klt, choice.doppler_klt
         if key not in self._transforms:
             self._transforms[key] = ChunkTransform.of(choice, self.target, self.beams)
@@ -288,7 +306,7 @@ class ChunkEncoder:
         )
 
     def _kept_points(self, layers: Layers, steps: PointSteps) -> Points:
-        """The scatterers worth coding; where many are left out, the others are refined without them."""
+        """The scatterers worth coding; where many are dropped, the others are refined without them."""
         count = int((layers.points.amplitude.abs() / steps.amplitude >= MIN_SIZE).sum())
         kept = strongest(layers.points, count)
         if not count or count >= REFINED_BELOW * int((layers.points.amplitude != 0).sum()):
@@ -309,21 +327,21 @@ class ChunkEncoder:
 
 
 def noise_power(cube: RadarCube) -> float:
-    """Power of a cell of noise: the median over all cells, over the median of its distribution."""
+    """Noise power per cell: the median over all cells divided by the median of its distribution."""
     some = cube.values.ravel()[:: max(1, cube.values.size // 100_000)]
     power = np.square(some.real, dtype=np.float64) + np.square(some.imag, dtype=np.float64)
     return float(np.median(power)) / LN2
 
 
 def split(num_frames: int, length: int) -> list[range]:
-    """Parts of about equal length, of at most `length` frames."""
+    """Divides frames into parts of about equal length, of at most `length` frames."""
     parts = -(-num_frames // length)
     bounds = [round(part * num_frames / parts) for part in range(parts + 1)]
     return [range(first, last) for first, last in pairwise(bounds)]
 
 
 def some_frames(cube: RadarCube, part: Sequence[int]) -> RadarCube:
-    """A stretch of frames."""
+    """The part of a cube with consecutive frames."""
     chosen = slice(part[0], part[-1] + 1)
     grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[chosen])
     return replace(cube, values=cube.values[chosen], grid=grid)
@@ -368,7 +386,7 @@ def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
 
 
 def _box(moving: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[slice, slice]:
-    """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that hold signal, and some more."""
+    """Ranges and Doppler bins of a chunk (frame, range, doppler, antenna) that contain signal, with a margin."""
     power = np.square(moving.real).sum(axis=3) + np.square(moving.imag).sum(axis=3)
     antennas = moving.shape[3]
     strong = (power > (antennas + DEVIATIONS * math.sqrt(antennas) + POINT_GAIN) * noise_power).any(axis=0)
@@ -379,6 +397,6 @@ def _box(moving: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[
 
 
 def _around(mask: np.ndarray) -> slice:
-    """From the first to the last that is set, with a margin; all where none is."""
+    """Slice from the first to the last set element, with a margin; everything where none is set."""
     found = np.flatnonzero(mask)
     return slice(max(0, found[0] - MARGIN), found[-1] + 1 + MARGIN) if len(found) else slice(None)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-# called tens of thousands of times per cube: shapes are documented, not checked, here
+# called tens of thousands of times per cube, so shapes are documented but not checked
 Integers = np.ndarray  # (n,) int64
 Probability = np.ndarray  # (n,) float64
 
@@ -20,9 +20,9 @@ MAX_UNIFORM = 2**23
 
 
 class BitStream(ABC):
-    """Common interface of encoder and decoder: codes given values, or returns decoded ones.
+    """Common interface of encoder and decoder: encodes given values, or returns decoded ones.
 
-    A decoder uses only the length of the values. `version`: of the .mmw format whose models of levels and classes are
+    A decoder uses only the length of the values. `version` is the .mmw version whose models of levels and classes are
     used (`cell_coder`, `symbol_model`).
     """
 
@@ -37,25 +37,56 @@ class BitStream(ABC):
 
     @abstractmethod
     def _code(self, values: Integers, model: Any, *parameters: np.ndarray) -> Integers:
-        """Codes values by one model, or by a family of models with parameters for each value."""
+        """Codes values with one model, or with a family of models with parameters per value."""
 
     def bits(self, probability: Probability, values: Integers) -> Integers:
-        """Codes bits, each 1 with its probability."""
+        """Codes bits.
+
+        Args:
+            probability: Probability (n,) of a 1.
+            values: Bits (n,), int64; ignored when decoding.
+
+        Returns:
+            The bits.
+        """
         return self._code(values, self._bernoulli, probability)
 
     def symbols(self, probability: Probability, values: Integers) -> Integers:
-        """Codes symbols of one distribution (symbol,)."""
+        """Codes symbols of one distribution.
+
+        Args:
+            probability: Distribution (symbol,).
+            values: Symbols (n,), int64; ignored when decoding.
+
+        Returns:
+            The symbols.
+        """
         return self._code(values, self._one(probability, perfect=False))
 
     def rows(self, probability: Probability, values: Integers) -> Integers:
-        """Codes symbols, each of its own distribution (n, symbol)."""
+        """Codes symbols, each with its own distribution.
+
+        Args:
+            probability: Distributions (n, symbol).
+            values: Symbols (n,), int64; ignored when decoding.
+
+        Returns:
+            The symbols.
+        """
         return self._code(values, self._categorical, probability)
 
     def uniform(self, sizes: Integers, values: Integers) -> Integers:
-        """Codes integers uniform on 0 ... size - 1.
+        """Codes integers that are uniform on 0 ... size - 1.
 
-        Beyond 2^23, the limit of the coder's precision, sizes count as multiples of 2^16: the values of what is left
-        over cannot be coded.
+        Beyond 2^23, the limit of the coder's precision, sizes are truncated to multiples of 2^16; larger values cannot
+        be coded.
+
+        Args:
+            sizes: Number of values (n,) of each integer.
+            values: Integers (n,); ignored when decoding.
+
+        Returns:
+            The integers.
         """
         huge = sizes > MAX_UNIFORM
         if not huge.any():
@@ -72,7 +103,7 @@ class BitStream(ABC):
 
 
 class Encoder(BitStream):
-    """A BitStream that encodes; `to_bytes` returns the stream."""
+    """A BitStream that encodes; `to_bytes` returns the result."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -84,7 +115,7 @@ class Encoder(BitStream):
         return values
 
     def to_bytes(self) -> bytes:
-        """All that was encoded."""
+        """Everything encoded so far."""
         return self._coder.get_compressed().astype("<u4").tobytes()
 
 
@@ -106,16 +137,25 @@ class BitModel:
     """Adaptive probability of a 1 in each of several contexts."""
 
     def __init__(self, num_contexts: int, probability: float = 0.5, weight: float = 1.0, memory: float = 400.0):
+        """Initialises all contexts alike.
+
+        Args:
+            num_contexts: Number of contexts.
+            probability: Initial probability of a 1.
+            weight: Number of bits that the initial probability counts for.
+            memory: Number of bits beyond which counts are halved.
+        """
         self.ones = np.full(num_contexts, probability * weight)
         self.total = np.full(num_contexts, weight)
         self.memory = memory
 
     def probability(self, context: Integers) -> tuple[Probability, Probability]:
-        """Probability of a 1, and the number of bits it is estimated from."""
+        """Probability of a 1 in each context (n,), and the number of bits it is estimated from."""
         total = self.total[context]
         return self.ones[context] / total, total
 
     def learn(self, context: Integers, bits: Integers) -> None:
+        """Counts bits (n,) in their contexts (n,)."""
         num = len(self.total)
         self.ones += np.bincount(context, weights=bits, minlength=num)
         self.total += np.bincount(context, minlength=num)
@@ -125,13 +165,22 @@ class BitModel:
 
 
 class Mixture:
-    """Mixes BitModels of different contexts; the more confident model has more weight."""
+    """Mixes BitModels with different contexts; the more confident model has more weight."""
 
     def __init__(self, models: list[BitModel]):
         self.models = models
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers) -> Integers:
-        """Codes bits given one context per model and bit, then updates the models."""
+        """Codes bits, then updates the models.
+
+        Args:
+            stream: Encoder or decoder.
+            contexts: One context (n,) per model.
+            values: Bits (n,).
+
+        Returns:
+            The bits.
+        """
         above = np.zeros(len(values))
         below = np.full(len(values), 1e-9)
         for model, context in zip(self.models, contexts, strict=True):
@@ -148,7 +197,7 @@ class Mixture:
 
 
 class NumberModel:
-    """Non-negative integers: adaptive unary steps, then adaptive octaves of the rest, then uniform bits."""
+    """Non-negative integers: adaptive unary steps, then adaptive octaves of the remainder, then uniform bits."""
 
     def __init__(self, num_contexts: int, steps: int, probability: float = 0.4):
         self.steps = steps
@@ -156,6 +205,7 @@ class NumberModel:
         self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MAX_OCTAVES)]
 
     def code(self, stream: BitStream, context: Integers, values: Integers) -> Integers:
+        """Codes integers (n,) given a context (n,); returns them."""
         out = _unary(stream, self.models, context, values)
         rest = np.flatnonzero(out == self.steps)
         if len(rest):

@@ -1,4 +1,4 @@
-"""Compresses a recording of any length piece by piece, so that memory does not grow with its length."""
+"""Compresses a recording of any length piece by piece, with memory independent of its length."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,14 +20,14 @@ from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 
-PIECE_VALUES = 2**22  # complex numbers of a piece: with all that the encoder keeps of it, 600 to 750 MB
+PIECE_VALUES = 2**22  # complex numbers per piece, for which the encoder needs 600 to 750 MB
 CURVE_STEPS = np.geomspace(1e-7, 2, 36)  # relative to the peak of a piece
 BISECTIONS = 40
 
 
 @runtime_checkable
 class LongRecording(Protocol):
-    """What is compressed, as `recordings.recording_pieces.RecordingPieces`."""
+    """A recording that can be read piece by piece, such as `recordings.recording_pieces.RecordingPieces`."""
 
     @property
     def num_frames(self) -> int: ...
@@ -40,7 +40,7 @@ class LongRecording(Protocol):
 
 @dataclass(kw_only=True)
 class ErrorSums:
-    """Energies over all pieces, in the units of the cube; each piece has its own noise floor."""
+    """Energies over all pieces, in squared units of the cube; each piece has its own noise floor."""
 
     active_signal: float = 0.0
     active_error: float = 0.0
@@ -48,7 +48,7 @@ class ErrorSums:
     error: float = 0.0
 
     def add(self, truth: np.ndarray, decoded: np.ndarray) -> None:
-        """Adds a piece."""
+        """Adds a piece: original and decoded values (frame, range, doppler, antenna)."""
         is_active = active_mask(truth)
         signal = np.sum(np.square(np.abs(truth), dtype=np.float64), axis=-1)
         error = np.sum(np.square(np.abs(truth - decoded), dtype=np.float64), axis=-1)
@@ -58,7 +58,7 @@ class ErrorSums:
         self.error += float(error.sum())
 
     def in_db(self) -> dict[str, float]:
-        """As `mmw_codec.errors_db`."""
+        """Error-to-signal ratios as in `mmw_codec.errors_db`."""
         pairs = {"signal_error_db": (self.active_error, self.active_signal), "all_error_db": (self.error, self.signal)}
         return {name: round(ratio_db(*pair), 2) for name, pair in pairs.items()}
 
@@ -73,24 +73,24 @@ def compress_recording(
     progress: Progress = lambda _: None,
     **how: Any,
 ) -> dict[str, float]:
-    """Writes a recording piece by piece.
+    """Compresses a recording piece by piece.
 
-    A first pass shares the bytes among the pieces as one step for all of them would.
+    A first pass distributes the bytes among the pieces as one step for all of them would.
 
     Args:
-        recording: what is stored.
-        out: the file.
-        num_bytes: at most; either this or `quality_db`.
-        quality_db: signal-to-error ratio in active cells.
-        append: frames follow those of the file; where appending fails, the file is as it was.
-        progress: called with the name of each step.
-        how: further arguments of `MmwWriter.append`.
+        recording: The recording.
+        out: Path of the .mmw file.
+        num_bytes: Maximum size of the file; give either this or `quality_db`.
+        quality_db: Signal-to-error ratio in active cells.
+        append: Whether frames are appended to an existing file; if that fails, the file remains as it was.
+        progress: Called with the name of each step.
+        how: Further arguments of `MmwWriter.append`.
 
     Returns:
         Errors in dB in active and in all cells.
 
     Raises:
-        InputError: where a piece cannot be stored.
+        InputError: If a piece cannot be stored.
     """
     check_request(num_bytes, quality_db)
     parts = split(recording.num_frames, max(1, PIECE_VALUES // recording.num_values_a_frame))
@@ -130,7 +130,7 @@ def _write(writer: MmwWriter, recording: LongRecording, parts, shares, progress:
 
 @single_precision()
 def _shares(recording: LongRecording, parts: list[range], num_bytes: int, progress: Progress) -> list[int]:
-    """Bytes of each piece at the step at which all together have `num_bytes`, by estimates of their sizes."""
+    """Bytes per piece at the step at which all together have `num_bytes`, by estimates of their sizes."""
     if len(parts) == 1:
         return [num_bytes]
     curves = []
@@ -147,7 +147,7 @@ def _shares(recording: LongRecording, parts: list[range], num_bytes: int, progre
 
 
 def _size_curve(cube: RadarCube) -> Callable[[float], float]:
-    """Estimated bytes over the logarithm of the step in the units of the cube."""
+    """Estimated bytes as a function of the logarithm of the step in the units of the cube."""
     check_writable(cube)
     scale = Scale.of(cube)
     samples = []

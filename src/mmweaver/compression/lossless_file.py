@@ -1,12 +1,12 @@
-"""A DCA1000 recording without loss, or with a bounded error, in blocks of frames: the .mmwl file.
+"""Lossless or bounded-error compression of a DCA1000 recording in blocks of frames: the .mmwl file.
 
     "MMWL" and the rest of a `checked_file`
-    header: JSON (UTF-8), deflated: radar, frames in a block, largest error in counts
-    block:  length of payload u32 | frames u16 | check u16 | payload | CRC-32 of all of it
+    header: JSON (UTF-8), deflated: radar, frames per block, largest error in counts
+    block:  length of payload u32 | frames u16 | check u16 | payload | CRC-32 of everything before
 
-Blocks are independent, so frames can be read without the others, and a file that was cut short holds the frames
-before. The last block may hold fewer frames, and after the last one follow the bytes of an unfinished frame as a block
-of 0 frames. Reference: docs/mmw_format.md.
+Blocks are independent, so frames can be read without the others, and a truncated file contains all frames before the
+cut. The last block may contain fewer frames; the bytes of an unfinished frame follow as a block of 0 frames.
+Reference: docs/mmw_format.md.
 """
 
 import contextlib
@@ -51,7 +51,7 @@ class LosslessHeader:
 
     @property
     def frame_bytes(self) -> int:
-        """Bytes of a frame of the recording."""
+        """Bytes per frame of the recording."""
         return bytes_of_frame(self.config)
 
     def shape(self, num_frames: int) -> BlockShape:
@@ -70,23 +70,23 @@ def compress_bin(
     max_error: int = 0,
     progress: Progress = lambda _: None,
 ) -> int:
-    """Writes adc_data.bin as a .mmwl file, block by block.
+    """Compresses adc_data.bin to a .mmwl file, block by block.
 
-    Of a recording of packets (.pcap, .pcapng) the samples are kept, in order and with zeros for lost packets: those of
-    the adc_data.bin that decompressing gives.
+    Of a packet capture (.pcap, .pcapng) the samples are stored, in order and with zeros for lost packets, as
+    in the adc_data.bin that decompression writes.
 
     Args:
-        path: of the recording.
-        out: the file.
-        config: the radar, for the order of the words; a wrong one costs bytes, not correctness.
-        max_error: counts by which every word may change.
-        progress: called with what is done.
+        path: The recording.
+        out: Path of the .mmwl file.
+        config: The radar, for the order of the words; a wrong one costs bytes, not correctness.
+        max_error: Maximum error of every word in counts; 0 is lossless.
+        progress: Called with the amount that is done.
 
     Returns:
         Size of the file in bytes.
 
     Raises:
-        InputError: where a file cannot be read or written.
+        InputError: If a file cannot be read or written.
     """
     if not 0 <= max_error <= MAX_ERROR:
         raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MAX_ERROR}")
@@ -111,7 +111,7 @@ def compress_bin(
 
 @contextlib.contextmanager
 def _samples_of(path: Path) -> Iterator[tuple[BinaryIO | SampleBytes, int]]:
-    """The words of a recording as something to read from, and the number of their bytes."""
+    """A readable source of the words of a recording, and their size in bytes."""
     size = check_regular(path)
     if not size:
         raise InputError(f"{path} is empty; record again")
@@ -124,29 +124,29 @@ def _samples_of(path: Path) -> Iterator[tuple[BinaryIO | SampleBytes, int]]:
 
 
 class LosslessFile(CheckedFile):
-    """A .mmwl file: header and places of the blocks are read and checked at once, blocks on demand."""
+    """A .mmwl file: header and block positions are read and checked on construction, blocks on demand."""
 
     MAGIC, SUFFIX, READABLE = MAGIC, ".mmwl", (VERSION,)
     MADE_BY = "mmweaver compress ADC_DATA.bin --radar RADAR --quality lossless -o OUT.mmwl"
 
     @property
     def num_frames(self) -> int:
-        """Number of whole frames."""
+        """Number of complete frames."""
         return sum(self.block_frames)
 
     def decompress(self, out: Path | str, frames: slice = slice(None), progress: Progress = lambda _: None) -> int:
-        """Writes the recording, or a stretch of its frames, as a .bin.
+        """Writes the recording, or a range of its frames, as a .bin.
 
         Args:
-            out: the file.
-            frames: which, by default all and the bytes of an unfinished one.
-            progress: called with what is done.
+            out: Path of the .bin file.
+            frames: Frames to write; by default all, and the bytes of an unfinished one.
+            progress: Called with the amount that is done.
 
         Returns:
             Size of the file in bytes.
 
         Raises:
-            InputError: where the file was cut before its first whole block, or is damaged.
+            InputError: If the file was truncated before its first complete block, or is damaged.
         """
         if self.cut_short and not self.num_frames:
             raise self.damaged("it was cut short before its first whole block")
@@ -168,14 +168,25 @@ class LosslessFile(CheckedFile):
             return target.tell()
 
     def check(self) -> None:
-        """Raises InputError where a block fails its checksum, or the last one is not whole."""
+        """Checks every block.
+
+        Raises:
+            InputError: If a block fails its checksum, or the last one is incomplete.
+        """
         for index in range(len(self.block_frames)):
             self._payload(index)
         if self.cut_short:
             raise self.damaged(f"{self.cut_short} bytes at its end are no whole block")
 
     def block(self, index: int) -> bytes:
-        """The bytes of a block of frames, as the recording had them. Raises InputError where it is damaged."""
+        """The bytes of a block of frames as in the recording.
+
+        Args:
+            index: Index of the block.
+
+        Raises:
+            InputError: If the block is damaged.
+        """
         count = self.block_frames[index]
         try:
             samples = decode_block(self._payload(index), self.header.shape(count))
@@ -230,13 +241,20 @@ class LosslessFile(CheckedFile):
 
 
 def is_lossless_file(path: Path | str) -> bool:
-    """Whether a file begins as a .mmwl file does."""
+    """Whether a file begins like a .mmwl file."""
     with open_regular(path) as stream:
         return stream.read(len(MAGIC)) == MAGIC
 
 
 def describe_lossless(path: Path | str) -> dict[str, Any]:
-    """Describes a file by plain values. Raises InputError where it is damaged."""
+    """Describes a .mmwl file by plain values: sizes, frames, blocks, error bound and radar.
+
+    Args:
+        path: Path of the file.
+
+    Raises:
+        InputError: If the file is damaged.
+    """
     file = LosslessFile(path)
     raw = file.num_frames * file.header.frame_bytes
     return {
@@ -254,7 +272,7 @@ def describe_lossless(path: Path | str) -> dict[str, Any]:
 
 
 def _encoded(data: bytes, header: LosslessHeader, num_frames: int) -> bytes:
-    """A block of frames: groups of I0 I1 Q0 Q1 become samples of two parts (the order of I and Q does not matter)."""
+    """A block of frames: groups of I0 I1 Q0 Q1 become samples of two parts; the order of I and Q does not matter."""
     config = header.config
     words = np.frombuffer(data, "<i2")
     lines = words.reshape(num_frames * config.num_loops, config.num_antennas, config.num_samples // 2, 2, 2)

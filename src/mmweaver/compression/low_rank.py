@@ -1,4 +1,4 @@
-"""Read-only: a layer of low rank, as files of versions 3 to 5 may have it. Encoders no longer write it."""
+"""Read-only: the low-rank layer that files of versions 3 to 5 may contain. Encoders no longer write it."""
 
 import numpy as np
 from jaxtyping import Complex
@@ -12,10 +12,22 @@ CORRELATED = True, False  # neighbouring rows of a factor predict each other's s
 def decode_low_rank(
     stream: BitStream, rank: int, shape: tuple[int, ...], step: float
 ) -> Complex[np.ndarray, "frame range doppler antenna"]:
-    """Decodes a matrix (frame and range, Doppler and antenna) of a rank as values of a chunk of this shape, complex64.
+    """Decodes a low-rank matrix (frame and range, Doppler and antenna) as values of a chunk.
 
     Columns of the left factor have the strength of their component and the step of the chunk; rows of the right one
-    have unit norm and that step over the strength of the decoded column. Raises ValueError for an impossible rank.
+    have unit norm, and that step divided by the strength of the decoded column.
+
+    Args:
+        stream: The decoder.
+        rank: Number of components.
+        shape: Shape (frame, range, doppler, antenna) of the chunk.
+        step: Quantisation step.
+
+    Returns:
+        Values of that shape, complex64.
+
+    Raises:
+        ValueError: For an impossible rank.
     """
     frames, num_range, doppler, antennas = shape
     if rank > min(frames * num_range, doppler * antennas):

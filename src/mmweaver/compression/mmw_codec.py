@@ -1,4 +1,4 @@
-"""Compresses a radar cube into a .mmw file and back; one step for all chunks meets a given size or error."""
+"""Compresses a radar cube to a .mmw file and decompresses it; one step for all chunks meets a given size or error."""
 
 import math
 import tempfile
@@ -22,7 +22,7 @@ from mmweaver.core.shapes import CubeValues
 
 EFFORTS = "full", "fast"
 MIN_BYTES = 256
-FLOAT32_DB = -115.0  # where the finest step is reached: what is left is the last digits of float32
+FLOAT32_DB = -115.0  # error at the finest step, the rounding of float32
 MAX_PEAK = 1e37  # sums over a window of values close to the largest float32 would not be finite
 
 
@@ -36,22 +36,22 @@ def compress_cube(
     effort: str = "full",
     progress: Progress = lambda _: None,
 ) -> bytes:
-    """Compresses a cube; where everything fits into the bytes, without loss.
+    """Compresses a cube; without loss where that fits into the bytes.
 
     Args:
-        cube: what is stored.
-        num_bytes: of the file at most.
-        quality_db: signal-to-error ratio in active cells; either this or `num_bytes`.
-        keep_noise: the same error in all cells; by default, cells without signal (less than 12 dB above the median
-            power) may have 12 dB more, and stay empty where they hold less than that.
+        cube: The cube.
+        num_bytes: Maximum size of the file; give either this or `quality_db`.
+        quality_db: Signal-to-error ratio in active cells.
+        keep_noise: Whether all cells have the same error; by default cells without signal (less than 12 dB above the
+            median power) may have 12 dB more, and are dropped where they contain less than that.
         effort: "full", or "fast" without a fit of scatterers.
-        progress: called with the name of each step.
+        progress: Called with the name of each step.
 
     Returns:
         The bytes of a .mmw file.
 
     Raises:
-        InputError: where the cube cannot be stored (values that are not finite, other axes than its radar's) or the
+        InputError: If the cube cannot be stored (values that are not finite, axes other than those of its radar) or the
             request cannot be met.
     """
     check_encodable(cube, num_bytes, quality_db)
@@ -76,7 +76,15 @@ def compress_cube(
 
 
 def check_request(num_bytes: int | None, quality_db: float | None) -> None:
-    """Raises InputError for a size or quality that cannot be met by any file."""
+    """Checks that a size or quality can be met by some file.
+
+    Args:
+        num_bytes: Size in bytes, or None.
+        quality_db: Signal-to-error ratio in active cells, or None.
+
+    Raises:
+        InputError: If both or neither are given, or the value is out of range.
+    """
     if (num_bytes is None) == (quality_db is None):
         raise InputError("give either a number of bytes or a quality, not both")
     if num_bytes is not None and num_bytes < MIN_BYTES:
@@ -95,16 +103,16 @@ def encoded(
     effort: str = "full",
     progress: Progress = lambda _: None,
 ) -> tuple[list[range], list[bytes]]:
-    """The chunks of a cube; see `compress_cube`.
+    """The chunks of a cube, as in `compress_cube`.
 
     Args:
-        cube: what is stored.
-        framing: bytes of a file in addition to its chunks, of the frames of each.
-        num_bytes: of the file at most.
-        quality_db: signal-to-error ratio in active cells; either this or `num_bytes`.
-        keep_noise: the same error in all cells.
+        cube: The cube.
+        framing: Bytes of the file in addition to its chunks, as a function of the frames of each.
+        num_bytes: Maximum size of the file; give either this or `quality_db`.
+        quality_db: Signal-to-error ratio in active cells.
+        keep_noise: Whether all cells have the same error.
         effort: "full" or "fast".
-        progress: called with the name of each step.
+        progress: Called with the name of each step.
 
     Returns:
         Frames and bytes of each chunk.
@@ -123,12 +131,12 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
     """Reads a .mmw file, or some of its frames, as a cube; only the required chunks are decoded.
 
     Args:
-        path: of the file; of one that was cut short, the frames of its whole chunks are read.
-        frames: which, by default all.
-        with_residual: False for scatterers and static layer alone.
+        path: Path of the file; of a truncated one, the frames of its complete chunks are read.
+        frames: Frames to read; by default all.
+        with_residual: Whether the residual is included; otherwise scatterers and static layer alone.
 
     Raises:
-        InputError: where the file is damaged or `frames` selects none of its frames.
+        InputError: If the file is damaged or `frames` selects none of its frames.
     """
     file = MmwFile(path)
     wanted = range(file.num_frames)[frames]
@@ -150,7 +158,15 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
 
 
 def errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
-    """Error-to-signal ratio in dB of values that were read again: in active cells, and in all cells."""
+    """Error-to-signal ratios in dB of decoded values.
+
+    Args:
+        again: Decoded values (frame, range, doppler, antenna).
+        cube: The original cube.
+
+    Returns:
+        `signal_error_db` in active cells, `all_error_db` in all cells.
+    """
     is_active = active_mask(cube.values)
     return {
         "signal_error_db": round(error_db(cube.values, again, is_active), 2),
@@ -159,7 +175,11 @@ def errors_db(again: CubeValues, cube: RadarCube) -> dict[str, float]:
 
 
 def values_of_bytes(data: bytes) -> CubeValues:
-    """The values of the bytes of a .mmw file. Raises InputError where they are damaged."""
+    """Values of the cube in the bytes of a .mmw file.
+
+    Raises:
+        InputError: If they are damaged.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.mmw"
         try:
@@ -170,7 +190,16 @@ def values_of_bytes(data: bytes) -> CubeValues:
 
 
 def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> DecodedChunk:
-    """Decodes one chunk of a file. Raises InputError where it is damaged."""
+    """Decodes one chunk of a file.
+
+    Args:
+        file: The file.
+        index: Index of the chunk.
+        with_residual: Whether the residual is decoded.
+
+    Raises:
+        InputError: If the chunk is damaged.
+    """
     decode = decode_legacy_chunk if file.version in LISTED else decode_chunk
     chunk = decode(file.chunk(index), file.header.config, with_residual=with_residual)
     if chunk.frames.num_frames != file.records[index].num_frames:
@@ -179,7 +208,14 @@ def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> Deco
 
 
 def describe_mmw(path: Path | str) -> dict[str, Any]:
-    """Describes a file by plain values; every chunk is decoded and checked. Raises InputError where it is damaged."""
+    """Describes a .mmw file by plain values; every chunk is decoded and checked.
+
+    Args:
+        path: Path of the file.
+
+    Raises:
+        InputError: If the file is damaged.
+    """
     file = MmwFile(path)
     header, config = file.header, file.header.config
     chunks = []
@@ -228,7 +264,11 @@ def grid_of_file(file: MmwFile) -> CubeGrid:
 
 
 def check_encodable(cube: RadarCube, num_bytes: int | None, quality_db: float | None) -> None:
-    """Raises InputError for a request that no file meets or readers would distrust, and for an unsuitable cube."""
+    """Checks cube and request of a compression.
+
+    Raises:
+        InputError: For a request that no file meets or that readers would reject, and for an unsuitable cube.
+    """
     check_request(num_bytes, quality_db)
     check_writable(cube)
     if num_bytes is not None and num_bytes * MAX_RATIO < cube.values.nbytes:
@@ -237,7 +277,11 @@ def check_encodable(cube: RadarCube, num_bytes: int | None, quality_db: float | 
 
 
 def check_writable(cube: RadarCube) -> None:
-    """Raises InputError for a cube that a .mmw file cannot hold."""
+    """Checks that a .mmw file can store a cube.
+
+    Raises:
+        InputError: If its shape or axes are not those of its radar, or values are not finite or too large.
+    """
     own = CubeGrid.of(cube.config, max(1, len(cube.values)))
     shape = (len(cube.values), *own.shape[1:])
     if cube.values.shape != shape or not len(cube.values):

@@ -30,7 +30,7 @@ from mmweaver.core.safe_files.safe_text import parse_json
 MAGIC = b"MMWV"
 MAX_CHUNK_BYTES = 64 * 2**20  # of a decoded chunk, unless a single frame is larger
 MAX_CHUNKS, MAX_FRAMES = 100_000, 1_000_000
-MAX_RATIO = 20_000  # decoded bytes a byte of a file: 256 bytes of 20 frames of an AWR1843 are 15,000
+MAX_RATIO = 20_000  # decoded bytes per byte of a file: 256 bytes for 20 frames of an AWR1843 are 15,000
 MAX_TIME_S = 1e15
 # 2 may hold residuals with a map of open cells; 3 has records, 4 and 5 other models
 READABLE = tuple(range(1, VERSION + 1))
@@ -54,7 +54,7 @@ WORDS = (
 
 @dataclass(frozen=True, kw_only=True)
 class MmwHeader:
-    """Header of a .mmw file. `scale` as in RadarCube; the first frame is at `start_s`, the others `period_s` apart."""
+    """Header of a .mmw file. `scale` as in RadarCube; frames begin at `start_s`, `period_s` apart."""
 
     config: RadarConfig
     scale: float
@@ -64,7 +64,7 @@ class MmwHeader:
 
 @dataclass(frozen=True, kw_only=True)
 class MmwRecord:
-    """Where a chunk lies in its file, and the times of its frames, counted from the start of the recording."""
+    """Position of a chunk in its file, and the times of its frames since the start of the recording."""
 
     offset: int  # of the payload
     num_bytes: int
@@ -77,7 +77,11 @@ class MmwRecord:
 
 
 def pack_header(header: MmwHeader) -> bytes:
-    """The beginning of a file."""
+    """The beginning of a file with this header.
+
+    Raises:
+        InputError: If the description of the radar is too long.
+    """
     values: dict[str, Any] = {"radar": _packed_radar(header.config)}
     if header.scale == header.scale:  # JSON has no nan: left out
         values["scale"] = header.scale
@@ -94,10 +98,10 @@ def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_
     """A record of a file.
 
     Args:
-        chunk: its payload.
-        frame_time_s: of its frames.
-        header: of the file.
-        last_s: time of the last frame before it, None for the first record.
+        chunk: The payload.
+        frame_time_s: Times (frame,) of its frames.
+        header: Header of the file.
+        last_s: Time of the last frame before it, None for the first record.
     """
     num = len(frame_time_s)
     first_s = header.start_s if last_s is None else last_s + header.period_s
@@ -112,7 +116,13 @@ def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_
 
 
 def pack_mmw(header: MmwHeader, chunks: list[bytes], frame_time_s: list[np.ndarray]) -> bytes:
-    """The bytes of a whole file, of its chunks and the times of their frames."""
+    """The bytes of a whole file.
+
+    Args:
+        header: The header.
+        chunks: Payload of each record.
+        frame_time_s: Times (frame,) of the frames of each record.
+    """
     parts, last_s = [pack_header(header)], None
     for chunk, time_s in zip(chunks, frame_time_s, strict=True):
         parts.append(pack_record(chunk, time_s, header, last_s))
@@ -121,7 +131,13 @@ def pack_mmw(header: MmwHeader, chunks: list[bytes], frame_time_s: list[np.ndarr
 
 
 def header_for(config: RadarConfig, scale: float, frame_time_s: np.ndarray) -> MmwHeader:
-    """A header with the start and the mean period of the frames."""
+    """A header with start time and mean period of the frames.
+
+    Args:
+        config: The radar.
+        scale: Scale of the cube.
+        frame_time_s: Times (frame,) of all frames.
+    """
     num = len(frame_time_s)
     start_s = float(frame_time_s[0])
     period_s = (float(frame_time_s[-1]) - start_s) / (num - 1) if num > 1 else config.frame_period_s
@@ -129,13 +145,20 @@ def header_for(config: RadarConfig, scale: float, frame_time_s: np.ndarray) -> M
 
 
 class MmwFile(CheckedFile):
-    """A .mmw file: header and places of the records are read and checked at once, chunks on demand."""
+    """A .mmw file: header and record positions are read and checked on construction, chunks on demand."""
 
     MAGIC, SUFFIX, READABLE = MAGIC, ".mmw", READABLE
     MADE_BY = "mmweaver compress CAPTURE.npz --quality 30 -o OUT.mmw"
 
     def __init__(self, path: Path | str):
-        """Raises InputError where the file is unreadable, not a .mmw file, or damaged before its first chunk."""
+        """Reads the header and finds the records.
+
+        Args:
+            path: Path of the file.
+
+        Raises:
+            InputError: If the file is unreadable, not a .mmw file, or damaged before its first chunk.
+        """
         super().__init__(path)
         if not self.records:
             raise InputError(f"{path} holds no whole chunk: it is damaged or was cut short; compress it again")
@@ -251,7 +274,7 @@ def _is_regular(time_s: np.ndarray, first_s: float, period_s: float) -> bool:
 
 
 def _packed_radar(config: RadarConfig) -> dict[str, Any]:
-    """The preset, with what differs from it, or the whole radar, whichever is shorter."""
+    """The preset with differences to it, or the whole radar, whichever is shorter."""
     whole = config.to_values()
     best: dict[str, Any] = whole
     for name, usual in _preset_values().items():

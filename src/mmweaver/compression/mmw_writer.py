@@ -1,4 +1,4 @@
-"""Writes a long recording as a .mmw file piece by piece, at constant memory, and appends to one."""
+"""Writes a long recording to a .mmw file piece by piece with constant memory, or appends to one."""
 
 import os
 from collections.abc import Iterator
@@ -15,18 +15,25 @@ from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
 from mmweaver.core.staging import sync
 
-HEADER_MARGIN = 24  # a period of many digits takes more bytes than that of one frame
+HEADER_MARGIN = 24  # a period with many digits takes more bytes than that of a single frame
 
 
 class MmwWriter:
-    """Appends pieces of a recording to a file; every record is on the disk before the next one is encoded.
+    """Appends pieces of a recording to a file; every record is on disk before the next one is encoded.
 
-    The file is readable up to its last whole record at any time, whatever ends the program. With `append` an existing
-    file is continued; a record that was cut short is cut off first.
+    The file is readable up to its last complete record at any time, however the program ends.
     """
 
     def __init__(self, path: Path | str, *, append: bool = False):
-        """Raises InputError where the file exists and `append` is not set, or cannot be continued."""
+        """Opens the file.
+
+        Args:
+            path: Path of the file.
+            append: Whether an existing file is continued; an incomplete last record is removed first.
+
+        Raises:
+            InputError: If the file exists and `append` is not set, or it cannot be continued.
+        """
         self.path = Path(path)
         self.last_chunks: list[bytes] = []  # of the piece written last
         self._header: MmwHeader | None = None
@@ -42,7 +49,7 @@ class MmwWriter:
             self._last_s = float(file.records[-1].frame_time_s[-1])
         self._first_end, self._joined_s = self._end, self._last_s
         try:
-            # without a buffer: one that could not be written would be tried again by truncate() and close()
+            # without a buffer, which after a failed write truncate() and close() would try to flush again
             self._stream = self.path.open("r+b" if self._header else "xb", buffering=0)
             self._stream.truncate(self._end)
             self._stream.seek(self._end)
@@ -60,20 +67,20 @@ class MmwWriter:
         keep_noise: bool = False,
         effort: str = "full",
     ) -> int:
-        """Encodes and writes a piece whose frame times continue the recording's.
+        """Encodes and writes a piece whose frame times continue those of the recording.
 
         Args:
-            cube: the piece.
-            num_bytes: of its records at most; either this or `quality_db`.
-            quality_db: signal-to-error ratio in active cells.
-            keep_noise: the same error in all cells.
+            cube: The piece.
+            num_bytes: Maximum size of its records; give either this or `quality_db`.
+            quality_db: Signal-to-error ratio in active cells.
+            keep_noise: Whether all cells have the same error.
             effort: "full" or "fast".
 
         Returns:
             Bytes written, without the header of a new file.
 
         Raises:
-            InputError: where the piece has another radar or scale, or cannot be stored.
+            InputError: If the piece has another radar or scale, or cannot be stored.
         """
         check_encodable(cube, num_bytes, quality_db)
         if self._header is None:
@@ -100,7 +107,12 @@ class MmwWriter:
         return self._end - before
 
     def following(self, cube: RadarCube, frames_before: int) -> RadarCube:
-        """A piece of a recording that follows the frames that the file held; `frames_before` of it are written."""
+        """A piece of a recording, with times that follow the frames the file had when it was opened.
+
+        Args:
+            cube: The piece.
+            frames_before: Frames of the recording that precede the piece.
+        """
         if self._joined_s is None or self._header is None:
             return cube
         first_s = self._joined_s + self._header.period_s * (1 + frames_before)
@@ -108,17 +120,17 @@ class MmwWriter:
         return replace(cube, grid=replace(cube.grid, frame_time_s=first_s + time_s - time_s[0]))
 
     def num_bytes_of_header(self, cube: RadarCube) -> int:
-        """Bytes of the header that the first piece brings; 0 where there is one."""
+        """Upper bound of the bytes of the header that the first piece adds; 0 if the file has one."""
         if self._header is not None:
             return 0
         return len(pack_header(header_for(cube.config, cube.scale, cube.grid.frame_time_s))) + HEADER_MARGIN
 
     def undo(self) -> None:
-        """Takes back all that was written; a new file is empty then."""
+        """Removes everything written since the file was opened; a new file is then empty."""
         self._stream.truncate(self._first_end)
 
     def _records(self, chunks: list[bytes], parts: list[range], time_s: np.ndarray) -> Iterator[bytes]:
-        """The records of chunks of a piece with these frame times."""
+        """The records of the chunks of a piece with these frame times."""
         assert self._header is not None
         last_s = self._last_s
         for chunk, part in zip(chunks, parts, strict=True):

@@ -1,7 +1,7 @@
-"""Cells without signal after a DCT along frames, range and Doppler, where few coefficients hold most of their noise.
+"""Cells without signal, coded after a DCT along frames, range and Doppler, which concentrates their noise.
 
-An FFT window correlates the noise of neighbouring cells: its spectrum along them is the squared window. Signals would
-be spread by a DCT, so that cells with signal are filled with what continues their neighbourhood.
+An FFT window correlates the noise of neighbouring cells: its spectrum along them is the squared window. A DCT would
+spread signals, so cells with signal are filled with a continuation of their neighbourhood.
 """
 
 import struct
@@ -17,13 +17,13 @@ from mmweaver.compression.transforms import dct_matrix
 
 Array = np.ndarray
 MAX_FILLED = 0.25  # share of active cells up to which they are filled
-FLOORS = (0.3, 0.06, 0.015, 0.004)  # of the smoothing, relative to the largest power
+FLOORS = (0.3, 0.06, 0.015, 0.004)  # regularisation of each smoothing, relative to the largest power
 HEADER = struct.Struct("<IfBB")  # bytes of the stream, step, centroids
 
 
 @dataclass(frozen=True, kw_only=True)
 class NoiseLayer:
-    """`packed` bytes, and the `values` (frame, range, doppler, antenna) that a decoder has."""
+    """`packed` bytes, and the `values` (frame, range, doppler, antenna) that they decode to."""
 
     packed: bytes
     values: Complex[Array, "frame range doppler antenna"]
@@ -35,7 +35,13 @@ class NoiseLayer:
         step: float,
         beams: Complex[Array, "beam antenna"],
     ) -> "NoiseLayer":
-        """Encodes what `to_noise` makes of values."""
+        """Encodes coefficients.
+
+        Args:
+            coefficients: As given by `to_noise`, (beam, frame, range, doppler).
+            step: Quantisation step.
+            beams: Unitary matrix (beam, antenna).
+        """
         step = float(np.float32(step))
         cells = quantise(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
         stream = Encoder()
@@ -48,7 +54,17 @@ class NoiseLayer:
     def unpack(
         cls, data: bytes, shape: tuple[int, ...], beams: Complex[Array, "beam antenna"], version: int
     ) -> "NoiseLayer":
-        """Decodes bytes that begin with `packed`. Raises ValueError for what no encoder writes."""
+        """Decodes bytes that begin with `packed`.
+
+        Args:
+            data: The bytes.
+            shape: Shape (frame, range, doppler, antenna).
+            beams: Unitary matrix (beam, antenna).
+            version: Version of the .mmw format.
+
+        Raises:
+            ValueError: For bytes that no encoder writes.
+        """
         size, step, one, more = HEADER.unpack_from(data)
         last = HEADER.size + size
         if last > len(data) or not 0 < step < np.inf:
@@ -63,14 +79,21 @@ class NoiseLayer:
 def signal_filled(
     values: Complex[Array, "frame range doppler antenna"], is_active: Bool[Array, "frame range doppler"]
 ) -> Complex[Array, "frame range doppler antenna"]:
-    """Replaces active cells by a continuation of the noise around them, by alternate smoothing and restoring."""
+    """Replaces active cells by a continuation of the noise around them.
+
+    Alternates between smoothing and restoring the other cells (Papoulis-Gerchberg).
+
+    Args:
+        values: Working frames (frame, range, doppler, antenna).
+        is_active: Mask (frame, range, doppler) of the cells to replace; above MAX_FILLED they are set to zero.
+    """
     quiet = np.where(is_active[..., None], 0, values).astype(np.complex64)
     if is_active.mean() > MAX_FILLED:
         return quiet
     by_range, by_doppler = (dct_matrix(num).astype(np.float32) for num in values.shape[1:3])
     profiles = [np.cos(np.pi * np.arange(num) / (2 * num)) ** 4 for num in values.shape[1:3]]
     power = (profiles[0][:, None, None] * profiles[1][:, None]).astype(np.float32)
-    for frame, is_hole in zip(quiet, is_active, strict=True):  # one at a time stays in the cache
+    for frame, is_hole in zip(quiet, is_active, strict=True):  # one at a time fits into the cache
         for floor in FLOORS if is_hole.any() else ():
             smooth = _product(by_range, by_doppler, frame) * (power / (power + np.float32(floor)))
             frame[is_hole] = _product(by_range.T, by_doppler.T, smooth)[is_hole]
@@ -78,7 +101,7 @@ def signal_filled(
 
 
 def _product(by_range: Array, by_doppler: Array, values: Complex[Array, "range doppler antenna"]) -> Array:
-    """Values times a matrix along range and one along Doppler."""
+    """Values multiplied by a matrix along range and one along Doppler."""
     flat = by_range @ values.view(np.float32).reshape(len(values), -1)
     return (by_doppler @ flat.reshape(*values.shape[:2], -1)).view(np.complex64)
 
@@ -86,7 +109,15 @@ def _product(by_range: Array, by_doppler: Array, values: Complex[Array, "range d
 def to_noise(
     values: Complex[Array, "frame range doppler antenna"], beams: Complex[Array, "beam antenna"]
 ) -> Complex[Array, "beam frame range doppler"]:
-    """Coefficients of a DCT along frames, range and Doppler of each beam."""
+    """DCT coefficients along frames, range and Doppler of each beam.
+
+    Args:
+        values: Working frames (frame, range, doppler, antenna).
+        beams: Unitary matrix (beam, antenna).
+
+    Returns:
+        Coefficients (beam, frame, range, doppler).
+    """
     return _transformed(np.tensordot(beams.astype(values.dtype), values, axes=(1, 3)), fft.dctn)
 
 

@@ -1,9 +1,9 @@
-"""Rate-distortion optimiser: one step for all chunks of a file, and for each chunk the mode that costs least there.
+"""Rate-distortion optimiser: one step for all chunks of a file, and per chunk the mode of least cost at that step.
 
-A quantiser of some step has a slope of distortion over rate that is proportional to the step squared, so that the step
-stands for the Lagrange multiplier: at a given one every chunk takes the mode of least D + PRICE step² R, by estimates
-(`rate_model`), and a bisection finds the step at which the estimates meet the size or the quality asked for. The file
-is then coded at that step; what the estimates were wrong by corrects them, until size or quality is met.
+The slope of distortion over rate of a quantiser is proportional to its squared step, so the step represents the
+Lagrange multiplier: at a given step every chunk uses the mode of least D + PRICE step² R, by estimates (`rate_model`),
+and a bisection finds the step at which the estimates meet the requested size or quality. The file is then coded at
+that step; the error of the estimates corrects them, until size or quality is met.
 
     plain modes -> step -> fit of scatterers -> modes, step again -> code, correct the step -> file
 """
@@ -26,25 +26,25 @@ from mmweaver.core.shapes import CubeValues
 COARSER = 4  # step of cells without signal in steps of those with signal
 EVEN_OPTIONS = ((1, True), (1, False))
 OPTIONS = ((32, True), (16, True), (8, True), (4, True), (COARSER, False), (2, False), (1, False))
-EVEN = 1.26  # 1 dB above the error over all cells of a coder that treats them alike: what an option may have
+EVEN = 1.26  # 1 dB: limit of an option's error over all cells, relative to a coder that treats all cells alike
 SHORT_CHUNK = 20  # frames
 MAX_VALUES, MAX_FRAMES = 2**20, 2048  # of a chunk: complex numbers, frames
-FINEST = 2.0**-27  # of the coarsest step: below, levels cannot be coded
+FINEST = 2.0**-27  # relative to the coarsest step; finer levels cannot be coded
 BISECTIONS = 30
-DECISIONS, SAME_MODES = 2, 1.0  # rounds of choosing modes; difference of log(step) within which they are kept
-NOISE_CODED = 1.05  # bytes over those without cells without signal, from which on it matters how these are coded
-CLOSEST = 1.0001  # ratio of steps that make no difference
-TRIALS, HALVED_FROM = 12, 4  # codings of a file; the one from which on the range of steps is halved
+DECISIONS, SAME_MODES = 2, 1.0  # rounds of mode decision; difference of log(step) within which modes are kept
+NOISE_CODED = 1.05  # ratio of bytes with and without quiet cells, above which their coding is optimised
+CLOSEST = 1.0001  # ratio of steps that are considered equal
+TRIALS, HALVED_FROM = 12, 4  # codings of a file; the trial from which on the range of steps is bisected
 BYTES_AIM, BYTES_ENOUGH = 0.994, 0.98  # of the bytes allowed
-QUALITY_AIM_DB, QUALITY_WITHIN_DB = 0.08, 0.2  # above the quality asked for
+QUALITY_AIM_DB, QUALITY_WITHIN_DB = 0.08, 0.2  # above the requested quality
 EXACT_SHARE, EXACT_BELOW = 0.7, 0.97  # of the cube's bytes, and of those allowed: see `within_bytes`
-SAMPLED, REPEATED = 4096, 0.05  # numbers that are looked at; share that differs in a cube that repeats itself
-MIN_SIGNAL = 1e-150  # squared, so that a cube of zeros has a ratio
+SAMPLED, REPEATED = 4096, 0.05  # sample size, and share of distinct values below which a cube repeats itself
+MIN_SIGNAL = 1e-150  # energy, so that a cube of zeros has a ratio
 EXACT_DB = -300.0  # reported for a cube without any error
 
 Progress = Callable[[str], None]
 Option = tuple[int, bool]  # step of cells without signal over that of the others, whether in a layer of their own
-Excess = Callable[[Estimate], float]  # falls with the step, and is zero at the one sought
+Excess = Callable[[Estimate], float]  # decreases with the step, and is zero at the one sought
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +65,7 @@ class _Plan:
     bounds: tuple[float, float]  # the finest step, and the coarsest
 
     def estimate(self, step: float, coarser: int | None = None) -> Estimate:
-        """All chunks together at a step."""
+        """Estimate of all chunks together at a step."""
         coarser = self.coarser if coarser is None else coarser
         each = [chunk.encoder.estimate(chunk.sample, chunk.mode, step, coarser) for chunk in self.chunks]
         return Estimate(
@@ -75,7 +75,7 @@ class _Plan:
         )
 
     def step_where(self, excess: Excess, low: float = 0.0, high: float = math.inf) -> float:
-        """The step between two at which an excess of the estimate is zero, by bisection of its logarithm."""
+        """The step within bounds at which an excess of the estimate is zero, by bisection of its logarithm."""
         low, high = max(low, self.bounds[0]), min(high, self.bounds[1])
         for _ in range(BISECTIONS):
             middle = math.sqrt(low * high)
@@ -83,7 +83,7 @@ class _Plan:
         return high
 
     def codes_noise(self, step: float) -> bool:
-        """Whether cells without signal take many bytes at a step, or are all there is."""
+        """Whether cells without signal take many bytes at a step, or there are no others."""
         if any(chunk.encoder.is_active.all() for chunk in self.chunks):
             return True
         return self.estimate(step).num_bytes > NOISE_CODED * self.estimate(step, 0).num_bytes
@@ -94,15 +94,15 @@ class _Plan:
 
 
 class Optimiser:
-    """Codes the frames of a cube in as few bytes as a quality needs, or as well as a number of bytes allows."""
+    """Encodes the frames of a cube at a given quality in the fewest bytes, or in given bytes at the best quality."""
 
     def __init__(self, cube: RadarCube, *, keep_noise: bool = False, with_points: bool = True):
-        """Divides the cube into chunks.
+        """Prepares the optimisation.
 
         Args:
-            cube: what is coded.
-            keep_noise: the same error in all cells; by default, cells without signal may have 12 dB more.
-            with_points: whether scatterers are fitted.
+            cube: The cube.
+            keep_noise: Whether all cells have the same error; by default cells without signal may have 12 dB more.
+            with_points: Whether scatterers are fitted.
         """
         self.cube, self.scale, self.with_points = cube, Scale.of(cube), with_points
         self.coarser = 1 if keep_noise else COARSER
@@ -114,7 +114,15 @@ class Optimiser:
         self._encoders: list[ChunkEncoder] = []
 
     def divide(self, *, num_bytes: int | None = None, quality_db: float | None = None) -> list[range]:
-        """Decides how long chunks are: short, or as long as memory allows, whichever cost less at the step needed."""
+        """Divides the frames into chunks: short ones, or as long as memory allows, whichever costs less.
+
+        Args:
+            num_bytes: Requested size; give either this or `quality_db`.
+            quality_db: Requested signal-to-error ratio in active cells.
+
+        Returns:
+            Frames of each chunk.
+        """
         num = len(self.cube.values)
         longest = max(1, min(MAX_FRAMES, MAX_VALUES // math.prod(self.cube.values.shape[1:])))
         short, long = split(num, min(SHORT_CHUNK, longest)), split(num, longest)
@@ -135,7 +143,18 @@ class Optimiser:
         self._encoders = [ChunkEncoder(some_frames(self.cube, part), self.scale) for part in parts]
 
     def within_bytes(self, num_bytes: int, progress: Progress) -> list[bytes]:
-        """The chunks with the finest step whose bytes fit; without loss where that fits. Raises InputError."""
+        """Encodes with the finest step that fits into the bytes, or without loss where that fits.
+
+        Args:
+            num_bytes: Bytes available for the chunks.
+            progress: Called with the name of each step.
+
+        Returns:
+            The chunks.
+
+        Raises:
+            InputError: If the bytes are too few.
+        """
         if num_bytes < 1:
             raise InputError(f"the bytes are too few for so many frames; give at least {1 - num_bytes} more")
         may_be_exact = num_bytes >= EXACT_SHARE * self.cube.values.nbytes or self._repeats()
@@ -161,10 +180,19 @@ class Optimiser:
         return best
 
     def within_error(self, quality_db: float, progress: Progress) -> list[bytes]:
-        """The smallest chunks found whose error-to-signal ratio in active cells is at most -quality_db.
+        """Encodes in the fewest bytes found with an error-to-signal ratio in active cells of at most -quality_db.
 
-        Where a few levels hold the signal they may be better than asked for. Raises InputError where the quality cannot
-        be reached.
+        Where a few levels represent the signal the result may be better than requested.
+
+        Args:
+            quality_db: Signal-to-error ratio in active cells.
+            progress: Called with the name of each step.
+
+        Returns:
+            The chunks.
+
+        Raises:
+            InputError: If the quality cannot be reached.
         """
         values = self.cube.values
         if not np.any(values):
@@ -190,7 +218,7 @@ class Optimiser:
     def _trials(
         self, plan: _Plan, step: float, excess: Excess, progress: Progress
     ) -> Iterator[tuple[list[bytes], list[float]]]:
-        """Codes the file at ever better steps. The caller appends to the list the excess of each."""
+        """Encodes the file at successively better steps. The caller appends the excess of each to the list."""
         low, high = plan.bounds
         for trial in range(TRIALS):
             progress(f"trial {trial + 1}")
@@ -205,10 +233,10 @@ class Optimiser:
             step = guess if is_inside and trial < HALVED_FROM else math.sqrt(low * high)
 
     def _decided(self, excess: Excess, options: Sequence[Option]) -> tuple[_Plan, float]:
-        """The modes that cost least at the step at which they meet what is asked for, and that step, by estimates.
+        """The modes of least cost at the step at which they meet the request, and that step, by estimates.
 
-        Of the options for cells without signal, the one with the least error in active cells whose error over all cells
-        is no more than 1 dB above that of a plain coder, which treats all cells alike and has no scatterers.
+        Among the options for cells without signal, the one of least error in active cells whose error over all cells
+        is at most 1 dB above that of a plain coder, which treats all cells alike and has no scatterers.
         """
         plan = self._first_plan()
         step = plan.step_where(excess)
@@ -233,7 +261,7 @@ class Optimiser:
         return plan, step
 
     def _first_plan(self) -> _Plan:
-        """All chunks in the usual transform."""
+        """All chunks with the default transform."""
         modes = [ChunkMode(transform=transform_choices(one.target.shape)[0]) for one in self._encoders]
         chunks = [
             _Chunk(encoder=one, mode=mode, sample=one.sample(mode, 1.0))
@@ -257,7 +285,7 @@ class Optimiser:
         return _Plan(chunks=chunks, coarser=coarser, bounds=self.bounds)
 
     def _excess(self, num_bytes: int | None = None, quality_db: float | None = None) -> Excess:
-        """How far estimates are from a size, in the logarithm of the bytes, or from a quality in dB."""
+        """Difference of an estimate from a size, as a log ratio of bytes, or from a quality in dB."""
         if num_bytes is not None:
             return lambda one: math.log(one.num_bytes / max(num_bytes, 1))
         values = self.cube.values[active_mask(self.cube.values)] / np.float32(self.scale.peak)
@@ -269,13 +297,19 @@ class Optimiser:
         return [encoder.exact() for encoder in self._encoders]
 
     def _repeats(self) -> bool:
-        """Whether a few numbers make up the cube, so that a file without loss may be the smallest."""
+        """Whether a few distinct numbers make up the cube, so that a lossless file may be the smallest."""
         some = self.cube.values.ravel()[:: max(1, self.cube.values.size // SAMPLED)]
         return len(np.unique(some)) < REPEATED * len(some)
 
 
 def error_db(truth: CubeValues, ours: CubeValues, is_active: np.ndarray) -> float:
-    """Error-to-signal ratio in dB in some cells (frame, range, doppler)."""
+    """Error-to-signal ratio in dB.
+
+    Args:
+        truth: Original values (frame, range, doppler, antenna).
+        ours: Decoded values.
+        is_active: Mask (frame, range, doppler) of the cells that count.
+    """
     error, signal = (
         float(np.sum(np.square(np.abs(values[is_active]), dtype=np.float64))) for values in (truth - ours, truth)
     )
@@ -283,7 +317,7 @@ def error_db(truth: CubeValues, ours: CubeValues, is_active: np.ndarray) -> floa
 
 
 def ratio_db(error: float, signal: float) -> float:
-    """Error-to-signal ratio in dB of two energies; EXACT_DB where there is no error."""
+    """Error-to-signal ratio in dB of two energies; EXACT_DB without any error."""
     return 10 * math.log10(error / max(signal, MIN_SIGNAL)) if error else EXACT_DB
 
 

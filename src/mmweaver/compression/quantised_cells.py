@@ -1,4 +1,4 @@
-"""Coefficients of a chunk as bits: which cells are open, how finely each is quantised, and their levels."""
+"""Quantisation of a chunk's coefficients: which cells are open, how finely each is quantised, and their levels."""
 
 from dataclasses import dataclass
 
@@ -10,8 +10,8 @@ from mmweaver.compression.entropy import BitStream
 
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion
-# Lagrange multiplier: squared steps that a bit must save. A uniform quantiser has D = step² / 12 and D falls by a
-# factor of four per bit, so that -dD/dR = 2 ln 2 / 12.
+# Lagrange multiplier: squared steps of distortion that a bit must save. A uniform quantiser has D = step² / 12, and D
+# falls by a factor of four per bit, so -dD/dR = 2 ln 2 / 12.
 PRICE = 0.11
 FLOAT32_MARGIN = 0.999
 ZERO_BITS, SIGN_AND_SIZE_BITS, OPEN_BITS = 0.35, 3.0, 3.0
@@ -27,7 +27,15 @@ class QuantisedCells:
     centroids: tuple[int, int]  # mean offset of values from level 1, and from higher ones, in 1/256, plus 128
 
     def values(self, step: float, coarser: int) -> Complex[Array, "beam time range index"]:
-        """The coefficients that a decoder has, complex64."""
+        """The coefficients that these levels decode to.
+
+        Args:
+            step: Quantisation step of fine cells.
+            coarser: Step of coarse cells relative to that.
+
+        Returns:
+            Coefficients (beam, time, range, index), complex64.
+        """
         size = np.abs(self.levels)
         one, more = ((offset - 128) / 256 for offset in self.centroids)
         magnitude = size + np.where(size == 1, one, more)
@@ -41,17 +49,17 @@ class QuantisedCells:
 def quantise(
     coefficients: Complex[Array, "beam time range index"], step: float, coarser: int, is_active: Array
 ) -> QuantisedCells:
-    """Rate-distortion choice of the cells that are coded.
+    """Quantises coefficients, and opens the cells that are worth their bits.
 
     Args:
-        coefficients: to code.
-        step: of the active cells.
-        coarser: the step of the other cells over that; 0 leaves them closed.
-        is_active: mask (time, range, index).
+        coefficients: Coefficients (beam, time, range, index).
+        step: Step of the active cells.
+        coarser: Step of the other cells relative to that; 0 leaves them closed.
+        is_active: Mask (time, range, index).
     """
     energy = cell_energy(coefficients)
     own_step = np.where(is_active, step, step * (coarser or 1))
-    # most cells have less energy than their least level
+    # most cells have less energy than their lowest level
     is_open = (energy >= FLOAT32_MARGIN * ((1 - ROUNDING) * own_step) ** 2) & (is_active | (coarser > 0))
     cells = np.flatnonzero(is_open)
     # (beam, cell, part), as in memory
@@ -86,13 +94,13 @@ def code_cells(
     """Encodes classes and levels, or decodes them.
 
     Args:
-        stream: encoder or decoder.
-        levels: (part, beam, cell) of the open cells; None when decoding.
-        classes: (time, range, index), filled in when decoding.
-        near: (time, range, index) strength of the nearest scatterer; None for no scatterers.
-        correlated: whether neighbours along range and along Doppler predict each other's sign.
-        coarser: step of coarse cells in fine steps.
-        num_beams: of the levels, when decoding.
+        stream: Encoder or decoder.
+        levels: Levels (part, beam, cell) of the open cells; None when decoding.
+        classes: Classes (time, range, index), filled in when decoding.
+        near: Strength of the nearest scatterer (time, range, index); None without scatterers.
+        correlated: Whether neighbours along range and along Doppler predict each other's sign.
+        coarser: Step of coarse cells in fine steps.
+        num_beams: Number of beams of the levels, when decoding.
 
     Returns:
         The levels.
@@ -107,7 +115,7 @@ def code_cells(
 
 
 def cell_energy(values: Complex[Array, "beam *cells"]) -> Float[Array, "*cells"]:
-    """Energy of each cell in all beams."""
+    """Energy of each cell, summed over all beams."""
     return sum(np.square(beam.real) + np.square(beam.imag) for beam in values)
 
 
@@ -132,7 +140,7 @@ BITS_OF_LEVEL = _bits_of(np.arange(256)).astype(np.float32)
 
 
 def _is_worthwhile(magnitude: Array, levels: Array) -> Array:
-    """Whether cells (cell,) of levels (beam, cell, part) save as much error as their bits are worth; not empty ones."""
+    """Whether cells (cell,) of levels (beam, cell, part) reduce the error enough for their bits; empty ones do not."""
     saved = levels * (2 * magnitude - levels)
     saved, bits = (values.sum(axis=0).sum(axis=1) for values in (saved, approximate_bits(levels)))
     return (saved > PRICE * (bits + OPEN_BITS)) & (saved > 0)

@@ -1,4 +1,4 @@
-"""Rate and distortion of quantised cells at any step, estimated from a sample of them and without coding."""
+"""Rate and distortion of quantised cells at any step, estimated from a sample of cells without coding."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -10,36 +10,36 @@ from mmweaver.compression.quantised_cells import OPEN_BITS, PRICE, ROUNDING, app
 
 Array = np.ndarray
 NUM_STRONG, NUM_WEAK = 1536, 2560  # sampled cells: the strongest, and some of the others
-NODES_PER_OCTAVE = 4  # steps for which estimates are made; others are interpolated
-CONTEXT_GAIN = 0.8  # coded bits over those of `approximate_bits`: contexts predict
+NODES_PER_OCTAVE = 4  # steps per octave for which estimates are computed; others are interpolated
+CONTEXT_GAIN = 0.8  # coded bits relative to `approximate_bits`, thanks to context modelling
 TINY = 1e-30
 COARSEST = 2.0**60  # step at which nothing is coded
 
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """Bytes, and energies of the error in active cells and in all cells, in squared units of the coefficients."""
+    """Bytes, and error energies in active cells and in all cells, in squared units of the coefficients."""
 
     num_bytes: float
     active_error: float
     all_error: float
 
     def cost(self, step: float, coarser: int) -> float:
-        """Lagrangian cost: distortion, in which cells without signal count 1 / coarser², plus the rate's price."""
+        """Lagrangian cost: distortion, weighted by 1 / coarser² in cells without signal, plus the price of the rate."""
         weighted = self.active_error + (self.all_error - self.active_error) / max(coarser, 1) ** 2
         return weighted + PRICE * step**2 * 8 * self.num_bytes
 
 
 @dataclass(frozen=True, kw_only=True)
 class CellSample:
-    """Coefficients of some cells, and the bytes of all else that is coded.
+    """Coefficients of some cells, and the bytes of everything else that is coded.
 
-    `front_bytes` hold at `front_step`; `front_values` of the numbers in them cost a bit more where the step is halved.
+    `front_bytes` hold at `front_step`; halving the step costs one more bit for each of `front_values`.
     """
 
     coefficients: Array  # (beam, cell)
     is_active: Array  # (cell,)
-    weight: Array  # (cell,): how many cells each stands for
+    weight: Array  # (cell,): number of cells that each represents
     front_bytes: int | float = 0
     front_values: int = 0
     front_step: float = 1.0
@@ -60,7 +60,7 @@ class CellSample:
             order = np.argpartition(-power, NUM_STRONG)
             strong, rest = order[:NUM_STRONG], np.sort(order[NUM_STRONG:])
             stride = max(1, len(rest) // NUM_WEAK)
-            # shifted by one from stretch to stretch, so that the choice follows no axis
+            # shifted by one from stride to stride, so that the choice is not aligned with an axis
             places = np.arange(0, len(rest), stride) + np.arange(-(-len(rest) // stride)) % stride
             weak = rest[places[places < len(rest)]]
             chosen = np.concatenate([strong, weak])
@@ -74,11 +74,11 @@ class CellSample:
         return replace(self, coefficients=some, front_bytes=front_bytes, _known={})
 
     def estimate(self, step: float, coarser: int) -> Estimate:
-        """The estimate for a step, in the units of the coefficients.
+        """Bytes and errors at a step.
 
         Args:
-            step: of active cells.
-            coarser: the step of the other cells over that; 0 leaves them uncoded.
+            step: Step of active cells, in units of the coefficients.
+            coarser: Step of the other cells relative to that; 0 leaves them uncoded.
         """
         active_bytes, active_error = self._part(step, is_active=True)
         other_bytes, other_error = self._part(step * coarser or math.inf, is_active=False)
@@ -109,7 +109,7 @@ class CellSample:
 
 
 def _estimated(magnitude: Array, weight: Array, step: float) -> tuple[float, float]:
-    """Bytes and error of cells of magnitudes (cell, number), quantised as `quantised_cells.quantise` does."""
+    """Bytes and error of cells of magnitudes (cell, number), quantised as in `quantised_cells.quantise`."""
     error = np.square(magnitude).sum(axis=1, dtype=np.float64) * weight
     cells = np.flatnonzero(magnitude.max(axis=1, initial=0) >= (1 - ROUNDING) * step)
     magnitude, weight = magnitude[cells] / np.float32(step), weight[cells]

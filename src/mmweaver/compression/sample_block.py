@@ -1,9 +1,9 @@
-"""Raw ADC samples of some frames without loss, or with a bounded error.
+"""Raw ADC samples of some frames, coded without loss or with a bounded error.
 
-Each sample is predicted from the loops before it, the antenna before it, and the samples before it, by weights fitted
-to the block; what remains is entropy-coded in contexts of its usual size. Samples are visited along diagonals of
-(loop, antenna, sample), so that all samples of a diagonal are predicted at once. Weights and predictions are integers:
-a block decodes to the same samples on every machine.
+Each sample is predicted from preceding loops, the preceding antenna and preceding samples, with weights fitted
+to the block; the residual is entropy-coded in contexts of its typical size. Samples are visited along diagonals of
+(loop, antenna, sample), so that all samples of a diagonal are predicted at once. Weights and predictions are integers,
+so a block decodes to the same samples on every machine.
 """
 
 import struct
@@ -36,10 +36,10 @@ INPUTS = (
     (1, 1, 1),
 )
 BEFORE, AFTER = 4, 1  # margins around loops and samples
-SKEW = 2  # diagonals: a loop is so many samples behind the loop before it
-FRACTION = 14  # bits of a weight after the point
+SKEW = 2  # diagonals: delay of a loop behind the preceding one, in samples
+FRACTION = 14  # fractional bits of a weight
 MAX_WEIGHT = 2**15 - 1
-OWN_WEIGHTS = 16384  # samples of an antenna from which on it has weights of its own
+OWN_WEIGHTS = 16384  # samples per antenna from which on each antenna has its own weights
 FITTED_ROWS = 6000
 RIDGE = 1e-4
 HEADER = struct.Struct("<IHHBHH")
@@ -49,10 +49,10 @@ CLASSES_AN_OCTAVE = 4
 CLASS_BOUNDS = 2.0 ** (np.arange(-3 * CLASSES_AN_OCTAVE, 16 * CLASSES_AN_OCTAVE) / CLASSES_AN_OCTAVE)
 SCALED = 256  # sizes are integers in this fraction of a count
 FORGET = 8  # groups over which sizes are averaged
-SUDDEN = 4  # a size that falls by this factor is believed at once
+SUDDEN = 4  # a size that drops by this factor is adopted immediately
 LARGEST = 2**15
 MAX_SAMPLES = 2**27
-SMALL_SAMPLES, MAX_SAMPLES_A_BYTE = 2**23, 10_000  # what a block may unpack to, whatever it says
+SMALL_SAMPLES, MAX_SAMPLES_A_BYTE = 2**23, 10_000  # limits of what a block may unpack to, against hostile headers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +71,15 @@ class BlockShape:
 
 
 def encode_block(samples: Samples, max_error: int = 0) -> bytes:
-    """Bytes of int16 samples; decoded ones differ by at most `max_error` counts."""
+    """Encodes samples.
+
+    Args:
+        samples: Samples (loop, antenna, sample, part) in the range of int16.
+        max_error: Maximum error of decoded samples in counts; 0 is lossless.
+
+    Returns:
+        The bytes that `decode_block` reads.
+    """
     shape = BlockShape(**dict(zip(("loops", "antennas", "samples", "parts"), samples.shape, strict=True)))
     weights = _fitted(samples.astype(np.int64), shape)
     residual = np.zeros(samples.shape, np.int64)
@@ -83,7 +91,18 @@ def encode_block(samples: Samples, max_error: int = 0) -> bytes:
 
 
 def decode_block(data: bytes, expected: BlockShape) -> Samples:
-    """The samples of a block of the expected shape, int16. Raises ValueError for what no encoder writes."""
+    """Decodes samples.
+
+    Args:
+        data: Bytes of `encode_block`.
+        expected: Shape of the block.
+
+    Returns:
+        Samples (loop, antenna, sample, part), int16.
+
+    Raises:
+        ValueError: For bytes that no encoder writes.
+    """
     loops, antennas, samples, parts, max_error, sets = HEADER.unpack_from(data)
     shape = BlockShape(loops=loops, antennas=antennas, samples=samples, parts=parts)
     if shape != expected or shape.size > MAX_SAMPLES:
@@ -107,9 +126,9 @@ def _padded(shape: tuple[int, ...]) -> Array:
 
 
 def _walk(samples: Array, residual: Array, weights: Array, max_error: int, *, encodes: bool) -> None:
-    """Fills in the residual of samples, or samples of a residual, diagonal by diagonal.
+    """Computes the residual of samples, or the samples of a residual, diagonal by diagonal.
 
-    With `max_error` both are in steps of 2 max_error + 1 around the prediction, which is made of decoded samples.
+    With `max_error` the residual is in steps of 2 max_error + 1 around the prediction, which uses decoded samples.
     """
     loops, antennas, num, parts = samples.shape
     known = _padded(samples.shape)
@@ -147,7 +166,7 @@ def _walk(samples: Array, residual: Array, weights: Array, max_error: int, *, en
                 rest = residual[(*index, part)]
             value = np.clip(predicted + rest * step, -LARGEST, LARGEST - 1)
             flat[place, part] = value
-            # the loops before the first one are taken to be like it
+            # the loops before the first one are assumed equal to it
             start = place[loop[line] == 0]
             for back in range(1, BEFORE + 1):
                 flat[start - back * strides[0], part] = flat[start, part]
@@ -158,7 +177,7 @@ def _walk(samples: Array, residual: Array, weights: Array, max_error: int, *, en
 def _fitted(samples: Array, shape: BlockShape) -> Array:
     """Least-squares weights (set, part, input) in fractions of 2^FRACTION, fitted to some loops of the block.
 
-    One set for each antenna, or one for all where an antenna has few samples.
+    One set per antenna, or one for all where an antenna has few samples.
     """
     known = _padded(samples.shape)
     known[BEFORE:, 1:, BEFORE : BEFORE + shape.samples] = samples
@@ -176,7 +195,7 @@ def _fitted(samples: Array, shape: BlockShape) -> Array:
 
 
 def _least_squares(table: Array, parts: int) -> Array:
-    """Weights (part, input) that predict the last columns of a table from the others, part after part."""
+    """Weights (part, input) that predict the last columns of a table from the others, one part after the other."""
     width = len(INPUTS) * parts
     out = np.zeros((parts, width + parts - 1), np.int64)
     for part in range(parts):
@@ -197,7 +216,7 @@ def _code_residual(stream: BitStream, residual: Array) -> None:
     size = np.full(residual.shape[1:], 8 * SCALED, np.int64)
     first = count = 0
     while first < loops:
-        # the first loops are alone, for their residual is larger
+        # the first loops are coded separately, since their residual is larger
         part = residual[first : first + min(together, max(1, first // 4))]
         by_class = np.searchsorted(CLASS_BOUNDS * SCALED, _smoothed(size), side="right")
         by_class = np.broadcast_to(by_class, part.shape).ravel()
@@ -218,7 +237,7 @@ def _smoothed(size: Array) -> Array:
 
 
 def _symbol_models() -> Array:
-    """Counts (class, symbol): a Gaussian's, roughly, of the scale of the class."""
+    """Counts (class, symbol): roughly a Gaussian of the scale of the class."""
     classes = np.arange(len(CLASS_BOUNDS) + 1)
     scale = np.append(CLASS_BOUNDS, 2 * CLASS_BOUNDS[-1]) / (1 << _shifts(classes))
     distance = np.abs(np.arange(2 * HALF + 2) - HALF) / np.maximum(scale, 0.2)[:, None]
@@ -229,7 +248,7 @@ def _symbol_models() -> Array:
 
 
 def _shifts(classes: Array) -> Array:
-    """Bits of a residual that are coded as uniform, so that the rest has few symbols."""
+    """Low bits of a residual that are coded as uniform, so that the remainder has few symbols."""
     octave = classes // CLASSES_AN_OCTAVE - 3
     return np.maximum(octave - 2, 0)
 

@@ -1,8 +1,8 @@
 """Quantisation and entropy coding of a chunk's layers: antenna gains, static layer and scatterers.
 
-Stronger scatterers get finer parameters: an error of one step of any parameter leaves about the same energy in the cube
-as an error of one step of a residual cell, so one step serves all. A scatterer of amplitude k steps gets 2 pi k phases
-and about k positions per bin.
+Stronger scatterers have finer parameters: an error of one step in any parameter leaves about the same energy in the
+cube as an error of one step of a residual cell, so one step serves all. A scatterer of amplitude k steps has 2 pi k
+phases and about k positions per bin.
 """
 
 import math
@@ -33,7 +33,7 @@ SEVERAL, COUNT_PRIOR, MAX_POINTS = 2, (0.96, 0.03, 0.01), 2**20
 class PointSteps:
     """Quantisation steps: the amplitude of one step, and the positions per bin of a scatterer of one step.
 
-    The last three are integers in sixteenths, so that every machine computes the same.
+    The last three are integers in sixteenths, so that every machine computes the same values.
     """
 
     amplitude: float
@@ -43,7 +43,13 @@ class PointSteps:
 
     @classmethod
     def of(cls, step: float, response: PointResponse, axes: Axes) -> "PointSteps":
-        """Steps that leave as much error as a step of `step` in every cell of the cube."""
+        """Steps that leave as much error as a step of `step` in every cell of the cube.
+
+        Args:
+            step: Quantisation step of cells.
+            response: Point response of the radar.
+            axes: Cells of the working frames.
+        """
         energy = len(axes.place)
         sharpness = []
         for kernel in (response.range_kernel, response.doppler_kernel):
@@ -77,7 +83,15 @@ class CodedPoints:
 
 
 def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int, least_size: int) -> CodedPoints:
-    """Quantises scatterers (frame, point); those smaller than `least_size` steps are dropped."""
+    """Quantises scatterers.
+
+    Args:
+        points: Scatterers (frame, point).
+        steps: Quantisation steps.
+        axes: Cells of the working frames.
+        num_directions: Number of direction cosines that the array resolves.
+        least_size: Amplitude in steps below which scatterers are dropped.
+    """
     amplitude = points.amplitude.numpy()
     size = np.rint(np.abs(amplitude) / steps.amplitude).astype(np.int64)
     frame, slot = np.nonzero(size >= max(1, least_size))
@@ -116,11 +130,11 @@ def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axe
     """Scatterers from their quantised form.
 
     Args:
-        coded: one row each.
-        num_frames: of the result.
-        steps: of quantisation.
-        axes: of the working frames.
-        num_directions: that the array resolves.
+        coded: Quantised scatterers.
+        num_frames: Number of frames of the result.
+        steps: Quantisation steps.
+        axes: Cells of the working frames.
+        num_directions: Number of direction cosines that the array resolves.
 
     Returns:
         Points (frame, point), padded with amplitude zero.
@@ -153,7 +167,12 @@ def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axe
 
 
 def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
-    """Strength of the strongest scatterer near each cell: 0 none, then one level per two octaves, at most 5."""
+    """Strength of the strongest scatterer near each cell: 0 for none, then one level per two octaves, at most 5.
+
+    Args:
+        coded: Quantised scatterers.
+        shape: Shape (frame, range, doppler).
+    """
     out = np.zeros(shape, np.int64)
     level = 1 + _octave(coded.size) // 2
     for off_range in (-1, 0, 1):
@@ -165,16 +184,23 @@ def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
 
 
 class PointCoder:
-    """Adaptive models of the scatterers of working frames of a `shape` (frame, range, doppler)."""
+    """Adaptive models of the scatterers of working frames."""
 
     def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int):
+        """Initialises the models.
+
+        Args:
+            shape: Shape (frame, range, doppler) of the working frames.
+            steps: Quantisation steps.
+            num_directions: Number of direction cosines that the array resolves.
+        """
         self.shape, self.steps, self.num_directions = shape, steps, num_directions
         self.many = NumberModel(1, 4)
         self.octave = NumberModel(OCTAVES, OCTAVES, 0.7)
         self.coarse = [[BitModel(COARSE, 0.5, 2.0) for _ in range(4)] for _ in range(2)]
 
     def code(self, stream: BitStream, coded: CodedPoints | None) -> CodedPoints:
-        """Encodes `coded`, or decodes where it is None."""
+        """Encodes scatterers, or decodes them where `coded` is None; returns them."""
         wanted = np.zeros(self.shape, np.int64)
         if coded is not None:
             np.add.at(wanted, (coded.frame, coded.range_cell, coded.doppler_cell), 1)
@@ -183,7 +209,7 @@ class PointCoder:
         return self._details(stream, cells, coded)
 
     def _counts(self, stream: BitStream, wanted: np.ndarray) -> np.ndarray:
-        """Number of scatterers in each cell: none, one, or several, and then how many."""
+        """Number of scatterers per cell: none, one, or several, and then how many."""
         counts = np.minimum(wanted, SEVERAL)
         ClassMapCoder(self.shape[2], COUNT_PRIOR).code(stream, counts, np.zeros_like(counts))
         several = np.nonzero(counts == SEVERAL)
@@ -238,7 +264,7 @@ class PointCoder:
         return within + stream.uniform(within, wanted - within)
 
     def _strongest(self, r: np.ndarray, d: np.ndarray, octave: np.ndarray, before: np.ndarray) -> np.ndarray:
-        """Octave expected in the next frame: the strongest of a block of cells, kept where there was none."""
+        """Octave expected in the next frame: the strongest of a block of cells, unchanged where there is none."""
         block = 4
         shape = (-(-self.shape[1] // block), -(-self.shape[2] // block))
         coarse = np.full(shape, -1, np.int64)
@@ -275,7 +301,7 @@ def _parts(size: Integers, sixteenths: int) -> Integers:
 
 
 def _largest(parts: Integers) -> Integers:
-    """The largest value that `BitStream.uniform` codes of so many: beyond 2^23 they count as multiples of 2^16."""
+    """Largest value that `BitStream.uniform` codes for a number of parts: beyond 2^23 multiples of 2^16 count."""
     return np.where(parts > MAX_UNIFORM, parts >> 16 << 16, parts) - 1
 
 
@@ -284,7 +310,17 @@ def _direction_parts(size: Integers, sixteenths: int) -> Integers:
 
 
 def static_levels(static: torch.Tensor, window: FitWindow, beams: np.ndarray, step: float) -> np.ndarray:
-    """Levels (part, beam, 1, range, 1) of a static layer (range, antenna)."""
+    """Quantises a static layer.
+
+    Args:
+        static: Static layer (range, antenna).
+        window: Fit window of the frames.
+        beams: Unitary matrix (beam, antenna).
+        step: Quantisation step of cells.
+
+    Returns:
+        Levels (part, beam, 1, range, 1), int64.
+    """
     values = np.einsum("ra,ba->br", static.numpy(), beams) / _static_step(window, step)
     parts = np.stack([values.real, values.imag])
     levels = np.sign(parts) * np.floor(np.abs(parts) + STATIC_ROUNDING)
@@ -292,13 +328,13 @@ def static_levels(static: torch.Tensor, window: FitWindow, beams: np.ndarray, st
 
 
 def code_static(stream: BitStream, levels: np.ndarray) -> None:
-    """Encodes levels, or fills them in when decoding."""
+    """Encodes levels of a static layer, or fills them in when decoding."""
     every = np.ones(levels.shape[2:], np.int64)
     LevelCoder(levels.shape[1:]).code(stream, levels.reshape(2, len(levels[0]), -1), every)
 
 
 def static_of(levels: np.ndarray, window: FitWindow, beams: np.ndarray, step: float) -> torch.Tensor:
-    """The static layer (range, antenna) of levels, as a decoder has it."""
+    """The inverse of `static_levels`: static layer (range, antenna), complex64."""
     values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(window, step)
     return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mmweaver.compression.entropy import BitStream
 
-Integers = np.ndarray  # (n,) int64; called thousands of times a cube
+Integers = np.ndarray  # (n,) int64; called thousands of times per cube
 
 MEMORY = 4000.0  # counts of a context are halved beyond
 CONFIDENT = 150.0  # counts beyond which a context gains no more weight
@@ -23,16 +23,16 @@ ALWAYS = np.ones(1, bool)  # all numbers of a batch are as likely as their negat
 
 
 class Batches:
-    """Stretches of symbols after which models learn: a batch is coded by what was learned before it.
+    """Batches of symbols after which models are updated: a batch is coded with what was learned before it.
 
-    In version 3 they were not divided, and a first phase of large levels cost eight bits each too many.
+    Version 3 had no batches, and a first phase of large levels cost eight bits too many each.
     """
 
     def __init__(self, stream: BitStream):
         self.is_endless, self.num_coded = stream.version == 3, 0
 
     def of(self, num: int) -> Iterator[slice]:
-        """The batches of the next `num` symbols; each is as long as all before it together."""
+        """The batches of the next `num` symbols; each is as long as all previous ones together."""
         first = 0
         while first < num:
             last = num if self.is_endless else min(num, first + max(FIRST_BATCH, self.num_coded))
@@ -42,14 +42,18 @@ class Batches:
 
 
 class MixedModel:
-    """Distributions of symbols 0 ... size - 1, one table of contexts for each entry of `num_contexts`.
+    """Distributions of symbols 0 ... size - 1, averaged over several tables of contexts.
 
-    The tables are averaged; contexts with many counts and narrow distributions have more weight. They lie one after
-    the other in one array, so that all learn at once: batches are small, and calls cost more than numbers.
+    Contexts with many counts and narrow distributions have more weight. The tables are stored one after the other in
+    one array, so that all are updated at once: batches are small, so the number of calls dominates the cost.
     """
 
     def __init__(self, priors: list[np.ndarray]):
-        """Initial distributions (context, symbol) of each table; they need not be normalised."""
+        """Initialises the tables.
+
+        Args:
+            priors: Initial distributions (context, symbol) of each table; they need not be normalised.
+        """
         self.size = priors[0].shape[1]
         self.counts = np.concatenate([PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors])
         self.totals = np.full(len(self.counts), PRIOR)
@@ -59,13 +63,16 @@ class MixedModel:
         self._weigh(np.arange(len(self.counts)))
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
-        """Codes symbols, then learns them.
+        """Codes symbols, then updates the distributions.
 
         Args:
-            stream: encoder or decoder.
-            contexts: one (n,) for each table.
-            values: symbols (n,).
-            mirrored: (n,) bool or ALWAYS; where it is set, a number and its negative are learned alike.
+            stream: Encoder or decoder.
+            contexts: One context (n,) per table.
+            values: Symbols (n,).
+            mirrored: Mask (n,) or ALWAYS: where set, a number and its negative are learned alike.
+
+        Returns:
+            The symbols.
         """
         places = np.concatenate(contexts).reshape(len(contexts), -1) + self._first
         rows = self._weighted.take(places[0], axis=0)
@@ -87,7 +94,7 @@ class MixedModel:
         if mirrored is None:
             some += self._counted(learned, len(seen))
         else:
-            # one half for the symbol, one for its mirror image; of what is not mirrored, all for the symbol
+            # half for the symbol, half for its mirror image; symbols that are not mirrored count fully
             halves = 0.5 * self._counted(learned if mirrored is ALWAYS else learned[:, mirrored], len(seen))
             some += halves if mirrored is ALWAYS else self._counted(learned, len(seen)) - halves
             some[:, :ESCAPE] += halves[:, ESCAPE - 1 :: -1]
@@ -101,12 +108,12 @@ class MixedModel:
         self._weigh(seen)
 
     def _counted(self, places: Integers, num_contexts: int) -> np.ndarray:
-        """How often each symbol (context, symbol) occurs."""
+        """Frequency of each symbol (context, symbol)."""
         size = num_contexts * self.size
         return np.bincount(places.ravel(), minlength=size).reshape(num_contexts, self.size)
 
     def _weigh(self, rows: Integers) -> None:
-        """Distributions of some contexts times their weight in the average."""
+        """Distributions of some contexts multiplied by their weight in the average."""
         total = self.totals.take(rows)
         share = self.counts.take(rows, axis=0)
         share /= total[:, None]

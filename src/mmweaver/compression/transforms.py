@@ -1,9 +1,9 @@
 """Unitary transforms of a chunk that compact its energy, and the choice among them.
 
-Antennas: beams of the array, or the principal directions (KLT) of this chunk. Time: nothing, a DCT over the frames in
-the static Doppler bins, or in all. Doppler, where there are few bins: nothing, or their KLT, for short windows make
-them linearly dependent (two loops under a Hann window are one). Range: nothing, or a DCT, which collects what FFT
-windows spread over neighbouring cells, noise too, and pays where most cells have levels.
+Antennas: beams of the array, or the principal directions (KLT) of the chunk. Time: none, or a DCT over the frames in
+the static Doppler bins or in all. Doppler, where there are few bins: none, or their KLT, since short windows make
+them linearly dependent (two loops under a Hann window are one). Range: none, or a DCT, which collects what FFT
+windows spread over neighbouring cells, including noise, and pays off where most cells have levels.
 """
 
 import math
@@ -14,13 +14,13 @@ import numpy as np
 from jaxtyping import Complex
 
 Array = np.ndarray
-STATIC_BINS = 1  # Doppler bins on either side of zero that static clutter fills
+STATIC_BINS = 1  # Doppler bins on either side of zero that static clutter covers
 NO_DCT, STATIC_DCT, FULL_DCT = 0, 1, 2
 MAX_DOPPLER = 16  # bins up to which their KLT is worth its bytes
 WORD = 2**15 - 1
 ANTENNA_WORD = 127
-CORRELATED = 0.3  # correlation of neighbouring cells from which they predict each other's sign
-MAX_MATRIX = 64  # numbers up to which a product with a matrix is faster than a fast transform
+CORRELATED = 0.3  # minimum correlation at which neighbouring cells predict each other's sign
+MAX_MATRIX = 64  # length up to which a matrix product is faster than a fast transform
 HEADER = struct.Struct("<B")
 
 
@@ -34,7 +34,7 @@ class TransformChoice:
     range_dct: bool = False
 
     def name(self) -> str:
-        """For people: "beams, DCT of static bins"."""
+        """Name for display, such as "beams, DCT of static bins"."""
         parts = ["KLT of antennas" if self.antenna_klt else "beams"]
         parts += [("", "DCT of static bins", "DCT of all bins")[self.time]] if self.time else []
         parts += ["KLT of Doppler bins"] * self.doppler_klt + ["DCT of ranges"] * self.range_dct
@@ -43,9 +43,9 @@ class TransformChoice:
 
 @dataclass(frozen=True, kw_only=True)
 class ChunkTransform:
-    """Matrices of a choice, as the decoder has them.
+    """Matrices of a choice, as the decoder knows them.
 
-    `signs`: whether neighbouring values along range and along Doppler have like ones.
+    `signs` tells whether neighbouring values along range and along Doppler have the same sign.
     """
 
     choice: TransformChoice
@@ -61,7 +61,13 @@ class ChunkTransform:
         values: Complex[Array, "frame range doppler antenna"],
         beams: Complex[Array, "beam antenna"],
     ) -> "ChunkTransform":
-        """The transform of a choice that suits these values."""
+        """The transform of a choice, adapted to the values of a chunk.
+
+        Args:
+            choice: Which transforms are used.
+            values: Working frames (frame, range, doppler, antenna).
+            beams: Unitary matrix (beam, antenna).
+        """
         antennas, words, doppler = beams, b"", None
         if choice.antenna_klt:
             flat = values.reshape(-1, values.shape[3])
@@ -80,14 +86,23 @@ class ChunkTransform:
 
     @property
     def packed(self) -> bytes:
-        """Header and the words of the KLTs."""
+        """Header byte and the words of the KLTs."""
         choice, (rows, columns) = self.choice, self.correlated
         header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * rows + 32 * columns
         return bytes([header + 64 * choice.range_dct]) + self.words
 
     @classmethod
     def unpack(cls, data: bytes, beams: Complex[Array, "beam antenna"], num_doppler: int) -> "ChunkTransform":
-        """The transform of a stream that begins with `packed`. Raises ValueError for what no encoder writes."""
+        """The transform of a stream that begins with `packed`.
+
+        Args:
+            data: The bytes.
+            beams: Unitary matrix (beam, antenna).
+            num_doppler: Number of Doppler bins.
+
+        Raises:
+            ValueError: For bytes that no encoder writes.
+        """
         (header,) = HEADER.unpack_from(data)
         choice = TransformChoice(
             time=header & 3, antenna_klt=bool(header & 4), doppler_klt=bool(header & 8), range_dct=bool(header & 64)
@@ -108,7 +123,7 @@ class ChunkTransform:
         )
 
     def forward(self, values: Complex[Array, "frame range doppler antenna"]) -> Complex[Array, "beam time range index"]:
-        """Coefficients of values."""
+        """Coefficients (beam, time, range, index) of values (frame, range, doppler, antenna)."""
         out = np.tensordot(self.antennas.astype(values.dtype), values, axes=(1, 3))
         if self.doppler is not None:
             out = out @ self.doppler.T.astype(values.dtype)
@@ -116,7 +131,7 @@ class ChunkTransform:
         return _dct(out, 2, inverse=False) if self.choice.range_dct else out
 
     def inverse(self, values: Complex[Array, "beam time range index"]) -> Complex[Array, "frame range doppler antenna"]:
-        """Values of coefficients."""
+        """Values (frame, range, doppler, antenna) of coefficients (beam, time, range, index)."""
         out = _dct(values, 2, inverse=True) if self.choice.range_dct else values
         out = self._time_transform(out, inverse=True)
         if self.doppler is not None:
@@ -136,7 +151,7 @@ class ChunkTransform:
         return self.choice.time == FULL_DCT or self.doppler is not None
 
     def spread(self, mask: Array) -> Array:
-        """Mask of cells (frame, range, doppler) -> mask of coefficients that hold some of them."""
+        """Mask of the coefficients that depend on masked cells (frame, range, doppler)."""
         out = mask.copy()
         if self.doppler is not None:
             out[...] = mask.any(axis=2, keepdims=True)
@@ -149,7 +164,7 @@ class ChunkTransform:
 
 
 def transform_choices(shape: tuple[int, ...]) -> list[TransformChoice]:
-    """The transforms that can pay for a chunk (frame, range, doppler, antenna), the usual one first."""
+    """The transforms that may pay off for a chunk (frame, range, doppler, antenna), the default one first."""
     frames, _, doppler, antennas = shape
     times = [NO_DCT] if frames == 1 else [STATIC_DCT, FULL_DCT] if doppler > 3 else [FULL_DCT]
     found = [TransformChoice(time=time) for time in times]
@@ -173,13 +188,13 @@ def dct_matrix(num: int) -> Array:
 
 
 def static_bins(num_doppler: int) -> slice:
-    """Doppler cells that static clutter fills."""
+    """Doppler bins that static clutter covers."""
     middle = num_doppler // 2
     return slice(max(0, middle - STATIC_BINS), middle + STATIC_BINS + 1)
 
 
 def _dct(values: Array, axis: int, *, inverse: bool) -> Array:
-    """Orthonormal DCT over an axis; complex64 stays complex64."""
+    """Orthonormal DCT along an axis; complex64 stays complex64."""
     from scipy import fft
 
     num, after = values.shape[axis], math.prod(values.shape[axis + 1 :])
@@ -194,7 +209,7 @@ def _dct(values: Array, axis: int, *, inverse: bool) -> Array:
 
 
 def _klt(covariance: Array, word: int) -> tuple[Array, bytes]:
-    """Principal directions, strongest first, as the decoder gets them, and their bytes."""
+    """Principal directions, strongest first, as decoded, and their bytes."""
     _, vectors = np.linalg.eigh(covariance.astype(np.complex128))
     rows = vectors[:, ::-1].T.conj()
     words = np.rint(np.stack([np.real(rows), np.imag(rows)]) * word).astype(_word_type(word))
@@ -217,7 +232,7 @@ def _orthonormal(words: Array, word: int) -> Array:
 
 
 def _is_correlated(values: Array, axis: int) -> bool:
-    """Whether neighbours along an axis have the same sign, as the FFT windows make them in centred phase."""
+    """Whether neighbours along an axis have the same sign, an effect of the FFT windows in centred phase."""
     if values.shape[axis] < 2:
         return False
     before, num = math.prod(values.shape[:axis]), values.shape[axis]

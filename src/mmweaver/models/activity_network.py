@@ -1,12 +1,12 @@
-"""Which activity a cube shows, of twelve or of one's own set: a small convolutional network on its log maps.
+"""Recognition of the activity in a cube: a small convolutional network on its log maps.
 
     range-Doppler  (frame, 1, 64, 32) --convolutions--> (frame, 64, 8, 8) --over range--> (frame, 512)--+
     range-azimuth  (frame, 2, 64, 32) --convolutions--> (frame, 64, 8, 8) --over both---> (frame, 64)---+
                                                                                                         |
         activity (12) <--linear-- mean, largest <--convolutions over frames (20, 128) <-----------------+
 
-The convolutional maps are also the features of the paper recipe's perceptual loss ("custom convolution-based mmWave
-feature extractor").
+The convolutional maps also serve as features of the perceptual loss of the paper's recipe ("custom convolution-based
+mmWave feature extractor").
 """
 
 import math
@@ -40,9 +40,15 @@ DROPPED = 0.4
 
 
 class ActivityNetwork(nn.Module):
-    """Log maps (sequence, frame, 1, range, doppler) and (sequence, frame, 2, range, azimuth) -> (sequence, label)."""
+    """From log maps of a sequence to the scores of its activities."""
 
     def __init__(self, config: RadarConfig, num_labels: int = len(ACTIVITY_NAMES)):
+        """Builds the network.
+
+        Args:
+            config: The radar.
+            num_labels: Number of activities.
+        """
         super().__init__()
         self.config, self.maps = config, LogMaps(config)
         self.doppler = MapFeatures(1)
@@ -52,10 +58,19 @@ class ActivityNetwork(nn.Module):
         self.head = TimeHead(per_frame, num_labels)
 
     def forward(self, doppler: Tensor, angle: Tensor) -> Tensor:
+        """Scores of the activities.
+
+        Args:
+            doppler: Range-Doppler maps (sequence, frame, 1, range, doppler) of `LogMaps`.
+            angle: Range-azimuth maps (sequence, frame, 2, range, azimuth) of `LogMaps`.
+
+        Returns:
+            Logits (sequence, label).
+        """
         return self.head(self.frames(doppler, angle))
 
     def frames(self, doppler: Tensor, angle: Tensor) -> Tensor:
-        """What is seen in each frame, (sequence, frame, feature)."""
+        """Features of each frame, (sequence, frame, feature)."""
         shape = doppler.shape[:2]
         speeds = self.doppler(doppler.flatten(0, 1))[-1]
         places = self.angle(angle.flatten(0, 1))[-1]
@@ -64,7 +79,7 @@ class ActivityNetwork(nn.Module):
 
 
 class MapFeatures(nn.Module):
-    """Three convolutions over (map, channel, range, other); each map also gets the coordinates of its axes."""
+    """Three convolutions over maps (map, channel, range, other), with the coordinate along the last axis as input."""
 
     def __init__(self, channels: int):
         super().__init__()
@@ -77,7 +92,7 @@ class MapFeatures(nn.Module):
         self.blocks = nn.ModuleList(blocks)
 
     def forward(self, maps: Tensor) -> list[Tensor]:
-        """Features after each convolution."""
+        """Feature maps after each convolution."""
         along = torch.linspace(-1, 1, maps.shape[-1], device=maps.device).expand(len(maps), 1, maps.shape[-2], -1)
         features, x = [], torch.cat([maps, along], dim=1)
         for block in self.blocks:
@@ -87,7 +102,7 @@ class MapFeatures(nn.Module):
 
 
 class TimeHead(nn.Module):
-    """(sequence, frame, feature) -> (sequence, label): convolutions over frames, their mean and largest."""
+    """Convolutions over frames (sequence, frame, feature), their mean and maximum, and scores (sequence, label)."""
 
     def __init__(self, features: int, num_labels: int = len(ACTIVITY_NAMES)):
         super().__init__()
@@ -103,28 +118,44 @@ class TimeHead(nn.Module):
         self.last = nn.Sequential(nn.Dropout(DROPPED), nn.Linear(2 * FRAME_WIDTH, num_labels))
 
     def forward(self, frames: Tensor) -> Tensor:
+        """Logits (sequence, label) of features (sequence, frame, feature)."""
         return self.last(self.summary(frames))
 
     def summary(self, frames: Tensor) -> Tensor:
-        """(sequence, 256), what the decision is made from."""
+        """Features of the whole sequence, (sequence, 256), from which labels are scored."""
         x = self.over_time(self.first(frames).transpose(1, 2))
         return torch.cat([x.mean(dim=2), x.amax(dim=2)], dim=1)
 
 
 def _pooled(maps: Tensor, axes: tuple[int, ...]) -> Tensor:
-    """Mean and largest over axes, the rest in a row."""
+    """Mean and maximum over axes, flattened."""
     return torch.cat([maps.mean(dim=axes).flatten(1), maps.amax(dim=axes).flatten(1)], dim=1)
 
 
 def load_activity(file: Path, config: RadarConfig) -> ActivityNetwork:
-    """Reads weights of recipe `activity`. Raises InputError for any other file, or one of a radar of other maps."""
+    """Loads weights of recipe `activity`.
+
+    Args:
+        file: The weight file.
+        config: The radar.
+
+    Raises:
+        InputError: For any other file, or one for a radar with maps of other shape.
+    """
     network = ActivityNetwork(config, len(label_names_of(file)))
     load_into(network, file, recipe="activity")
     return network
 
 
 def label_names_of(file: Path) -> tuple[str, ...]:
-    """The words of the labels that weights of recipe `activity` tell apart, by number. Raises InputError."""
+    """Names of the labels of weights of recipe `activity`, by number.
+
+    Args:
+        file: The weight file.
+
+    Raises:
+        InputError: If the file cannot be read.
+    """
     names = read_card(file).settings.get("label_names", ACTIVITY_NAMES)
     if not isinstance(names, list | tuple) or not names or not all(isinstance(name, str) for name in names):
         raise InputError(f"{file} has a header that cannot be read; fetch or write it again")

@@ -1,7 +1,7 @@
-"""Where on a body, and over which reflecting faces, moving echoes are anchored, and the features of each.
+"""Anchors of moving echoes on a body and over reflecting faces, with the features of each.
 
-An anchor is a place between two joints. Its direct echo hangs there; its ghosts hang between it and its images in the
-room's faces: a path that departs directly and arrives over a face has the mean of both lengths.
+An anchor is a place between two joints, where its direct echo originates. Ghosts lie between an anchor and its images
+in the room's faces: a path that departs directly and arrives over a face has the mean of both lengths.
 """
 
 from dataclasses import dataclass
@@ -41,27 +41,27 @@ ANCHORS: tuple[tuple[int, int, float], ...] = (
     *((joint(a), joint(b), part) for a, b, part in _TORSO),
 )
 NUM_ANCHORS = len(ANCHORS)
-# the few anchors that stand for the body in reflections, each for the anchors nearest to it
+# the few anchors that represent the body in reflections, each for the anchors nearest to it
 MIRRORED = tuple(joint(name) for name in ("pelvis", "spine3", "head", "left_knee", "right_knee"))
 NUM_REFLECTORS = 5  # the floor and the next largest faces
 NUM_GHOSTS = len(MIRRORED) * NUM_REFLECTORS
 BODY_FEATURES, GHOST_FEATURES = 21, 16
-_EDGE_M = 0.1  # about a Fresnel zone: how softly a face ends
+_EDGE_M = 0.1  # about a Fresnel zone: width of the transition at the edge of a face
 
 
 @dataclass(frozen=True, kw_only=True)
 class Anchors(TensorRecord):
-    """Where echoes are expected (..., echo): range, velocity and direction cosines, and features of each."""
+    """Expected echoes (..., echo): range, velocity, direction cosines, and features."""
 
     range_m: Tensor
     velocity_mps: Tensor
     direction: Tensor  # (..., echo, 2) x and z
     features: Tensor  # (..., echo, feature)
-    share: Tensor  # (..., echo) of the power that gets there and back: 1 for the body, what a face leaves for ghosts
+    share: Tensor  # (..., echo) two-way power share: 1 for the body, that of the face for ghosts
 
 
 def anchor_places(joints: Tensor) -> Tensor:
-    """(..., 22, value) of the joints -> (..., anchor, value): places from places, velocities from velocities."""
+    """Values at anchors (..., anchor, value), interpolated from those at joints (..., 22, value)."""
     first = torch.tensor([a for a, _, _ in ANCHORS], device=joints.device)
     second = torch.tensor([b for _, b, _ in ANCHORS], device=joints.device)
     share = torch.tensor([part for _, _, part in ANCHORS], device=joints.device)[:, None]
@@ -70,7 +70,16 @@ def anchor_places(joints: Tensor) -> Tensor:
 
 @full_precision
 def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
-    """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
+    """Anchors of direct echoes.
+
+    Args:
+        joints_m: Joints (room, frame, 22, 3) in metres, in the radar's coordinates.
+        velocity_mps: Velocities of the joints, of the same shape.
+        room: Tensors of the rooms, with a leading axis.
+
+    Returns:
+        Anchors (room, frame, anchor).
+    """
     place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
     bone = _bones(joints_m)
     distance = place.norm(dim=-1).clamp(min=0.2)
@@ -111,7 +120,16 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> 
 
 @full_precision
 def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
-    """Echoes over one face of the room: (room, frame, ghost)."""
+    """Anchors of echoes over one face of the room.
+
+    Args:
+        joints_m: Joints (room, frame, 22, 3) in metres, in the radar's coordinates.
+        velocity_mps: Velocities of the joints, of the same shape.
+        room: Tensors of the rooms, with a leading axis.
+
+    Returns:
+        Anchors (room, frame, ghost); `share` is 0 where a face does not exist or is not usable.
+    """
     place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)
     speed = velocity_mps[..., MIRRORED, :][..., None, :, :]
     centre = room.plane_centre_m[:, None, :NUM_REFLECTORS, None]
@@ -133,7 +151,7 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) ->
     radial = 0.5 * ((moving * to_image).sum(-1) + (speed * to_place).sum(-1))
     cos = (to_image * normal).sum(-1).abs()
     inside = (0.5 * (1 + torch.erf(margin / _EDGE_M))).prod(dim=-1)
-    # what faces both the radar and the face is the less, the more the wave is turned
+    # the larger the bistatic angle, the less skin faces both the radar and the face
     both = (0.5 * (1 + turn)).clamp(0, 1).square()
     left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_REFLECTORS, None], cos)
     material = room.plane_features[:, None, :NUM_REFLECTORS, None, :5].expand(*cos.shape, 5)
@@ -161,7 +179,7 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) ->
 
 
 def _reflected(table: Tensor, cos: Tensor) -> Tensor:
-    """What of the power a face throws back at cosines (...), of its table (..., angle)."""
+    """Reflected power share at cosines (...), interpolated from a table (..., angle)."""
     place = cos.clamp(0, 1) * (table.shape[-1] - 1)
     low = place.floor().clamp(max=table.shape[-1] - 2)
     wide = table.expand(*cos.shape, table.shape[-1])
@@ -170,20 +188,27 @@ def _reflected(table: Tensor, cos: Tensor) -> Tensor:
 
 
 def _bones(joints_m: Tensor) -> Tensor:
-    """(..., anchor, 3): the bone each anchor lies on; a joint's own is the one that ends there."""
+    """Bone (..., anchor, 3) that each anchor lies on; for a joint, the bone that ends there."""
     starts = [first if first != second else max(PARENTS[first], 0) for first, second, _ in ANCHORS]
     return joints_m[..., [second for _, second, _ in ANCHORS], :] - joints_m[..., starts, :]
 
 
 def facing(joints_m: Tensor) -> Tensor:
-    """Where the chest looks, (..., 3): right shoulder to left shoulder, turned to the front."""
+    """Direction of the chest.
+
+    Args:
+        joints_m: Joints (..., 22, 3).
+
+    Returns:
+        Unit vectors (..., 3) towards the front.
+    """
     across = joints_m[..., joint("left_shoulder"), :] - joints_m[..., joint("right_shoulder"), :]
     up = joints_m[..., joint("neck"), :] - joints_m[..., joint("pelvis"), :]
     return torch.nn.functional.normalize(torch.linalg.cross(across, up), dim=-1)
 
 
 def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Tensor, Tensor]:
-    """How much farther than the anchor the photo's surface lies (at it, above, next to it), and whether in view."""
+    """Distance of the photo's surface behind the anchor (at it, above, to both sides), and whether it is in view."""
     seen, inside = [], torch.zeros_like(distance)
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
         shifted = place + place.new_tensor([x, 0.0, z]) - room.camera_m[:, None, None]
@@ -202,7 +227,7 @@ def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Ten
 
 
 def _depth_behind(distance: Tensor, towards: Tensor) -> Tensor:
-    """How much of the body lies nearer in the same direction: 0 for the foremost anchor."""
+    """Amount of the body in front of an anchor in the same direction: 0 for the foremost one."""
     near = (distance[..., :, None] - distance[..., None, :]).clamp(min=0)
     angle = torch.cdist(towards, towards)
     return (torch.exp(-((angle / 0.05) ** 2)) * torch.tanh(5 * near)).sum(-1) / 4

@@ -1,7 +1,7 @@
-"""What physics says of a body's parts before the network does: how strongly each returns, and where its skin lies.
+"""Physical prior of a body's echoes for the network: strength of each part, and the position of its skin.
 
-The simulator's skin on a person of average height, without rays: whatever faces the radar counts, nothing occludes it.
-The network scales this, as it does with what physics says of the room's surfaces.
+Computed from the simulator's skin on a person of average height, without rays: everything that faces the radar counts,
+nothing is occluded. The network scales it, as it does with the physical prior of the room's surfaces.
 Reference: docs/decisions/skin.md, docs/decisions/network-predicts-echoes.md.
 """
 
@@ -18,14 +18,21 @@ from mmweaver.propagation.body_model import average_body
 
 @dataclass(frozen=True, kw_only=True)
 class BodyPrior(TensorRecord):
-    """Of each anchor (..., frame, anchor): cross section in square metres, and how far its skin lies behind it in m."""
+    """Cross section in m2 of each anchor (..., frame, anchor), and range offset of its skin in m."""
 
     cross_section_m2: Tensor
-    offset_m: Tensor  # negative: before the anchor, as skin is
+    offset_m: Tensor  # negative in front of the anchor, where skin is
 
 
 def body_prior(joints_m: Tensor) -> BodyPrior:
-    """The prior of motions, joints (sequence, frame, 22, 3) in the radar's frame."""
+    """The prior of motions.
+
+    Args:
+        joints_m: Joints (sequence, frame, 22, 3) in metres, in the radar's coordinates.
+
+    Returns:
+        Cross sections and offsets (sequence, frame, anchor), on the device of the joints.
+    """
     if joints_m.is_meta:  # shapes alone, no numbers
         nothing = joints_m.new_zeros((*joints_m.shape[:2], NUM_ANCHORS))
         return BodyPrior(cross_section_m2=nothing, offset_m=nothing)
@@ -37,13 +44,20 @@ def body_prior(joints_m: Tensor) -> BodyPrior:
     return BodyPrior(cross_section_m2=section, offset_m=offset)
 
 
-BOTH_WAYS = 1.0  # out directly and back over the face and the reverse, of which half is blocked by what stands about
+BOTH_WAYS = 1.0  # two directions of travel, half of which is blocked by furniture
 
 
 def ghost_section(joints_m: Tensor, prior: BodyPrior) -> Tensor:
-    """Cross section (..., frame, ghost) of the body's images before a face takes its share, in square metres.
+    """Cross section of the body's images, before the reflection by the face.
 
-    Each of the few anchors that stand for the body in reflections has that of all anchors nearest to it.
+    Each of the few anchors that represent the body in reflections has the sum of all anchors nearest to it.
+
+    Args:
+        joints_m: Joints (..., frame, 22, 3) in metres.
+        prior: Prior of the same motions.
+
+    Returns:
+        Cross section (..., frame, ghost) in m2.
     """
     places = anchor_places(joints_m)
     nearest = torch.cdist(places, places[..., MIRRORED, :]).argmin(dim=-1)

@@ -1,8 +1,8 @@
-"""Room -> z_env: the front of an EfficientNet-B0 over colour, depth and class mask.
+"""Room to z_env: the front of an EfficientNet-B0 over colour, depth and class mask.
 
-Batch norms become group norms: a step sees two to four rooms, whose statistics differ from those of others. Blocks are
-our own, as importing transformers' takes longer than a signal; tensors have transformers' names, so that weights of
-either load into the other, and a test compares their outputs.
+Batch norms become group norms: a step sees two to four rooms, whose statistics are not representative. Blocks are
+implemented here, since importing those of transformers takes longer than generating a signal; tensors have the names
+of transformers, so that weights of either load into the other, and a test compares their outputs.
 
 References: Tan and Le, EfficientNet, ICML 2019, table 1; Sandler et al., MobileNetV2, 2018; paper, "Generalization
 via Hypernetworks", Environment Encoder (2.1 M parameters).
@@ -22,7 +22,7 @@ STEM_CHANNELS = 32
 SQUEEZE = 4  # of a block's input channels, for squeeze and excitation
 MAX_DROPOUT = 0.2  # of the last block
 make_norm = partial(nn.BatchNorm2d, eps=1e-3, momentum=0.99)
-# of each stage: expansion, channels, blocks, stride of the first, kernel
+# per stage: expansion, channels, blocks, stride of the first, kernel
 STAGES = (
     (1, 16, 1, 1, 3),
     (6, 24, 2, 2, 3),
@@ -35,7 +35,7 @@ STAGES = (
 
 
 def make_blocks(count: int) -> list["Block"]:
-    """The first of B0's sixteen blocks."""
+    """The first `count` of B0's sixteen blocks."""
     total = sum(stage[2] for stage in STAGES)
     rows = [(*stage, number) for stage in STAGES for number in range(stage[2])]
     blocks: list[Block] = []
@@ -48,7 +48,7 @@ def make_blocks(count: int) -> list["Block"]:
 
 
 class Stem(nn.Module):
-    """Pictures (room, channel, row, column) -> 32 channels at half the rows and columns."""
+    """Pictures (room, channel, row, column) to 32 channels at half the resolution."""
 
     def __init__(self, channels_in: int) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ class Block(nn.Module):
                 expand_bn=make_norm(wide),
                 act=nn.SiLU(),
             )
-        # an even number of rows is halved exactly: at stride 2 there is less padding above and to the left
+        # at stride 2 there is less padding above and to the left, so an even number of rows is halved exactly
         before = half - 1 if stride == 2 else half
         self.depthwise_conv = _layers(
             padding=nn.ZeroPad2d((before, half, before, half)),
@@ -107,14 +107,19 @@ def _layers(**layers: nn.Module) -> nn.Sequential:
 
 
 Z_ENV = 512
-BLOCKS, ENCODED_CHANNELS = 13, 192  # of EfficientNet-B0's 16: with the projection 2.1 M parameters, as the paper counts
+BLOCKS, ENCODED_CHANNELS = 13, 192  # of EfficientNet-B0's 16: with the projection 2.1 M parameters, as in the paper
 MAP_BLOCK, MAP_CHANNELS = 5, 40  # after it the map has an eighth of the picture's rows and columns
 
 
 class EnvironmentEncoder(nn.Module):
-    """Pictures (room, 5, row, column) -> z_env (room, 512), and a map (room, 40, row / 8, column / 8) of the places."""
+    """Encodes rooms by their pictures."""
 
     def __init__(self, *, batch_norm: bool = False) -> None:
+        """Builds the encoder.
+
+        Args:
+            batch_norm: Whether batch norms are kept, as in transformers.
+        """
         super().__init__()
         self.stem = Stem(IMAGE_CHANNELS)
         self.blocks = nn.ModuleList(make_blocks(BLOCKS))
@@ -123,6 +128,14 @@ class EnvironmentEncoder(nn.Module):
         self.project = nn.Sequential(nn.Linear(ENCODED_CHANNELS, Z_ENV), nn.SiLU(), nn.Linear(Z_ENV, Z_ENV))
 
     def forward(self, image: Tensor) -> tuple[Tensor, Tensor]:
+        """Encodes pictures.
+
+        Args:
+            image: Pictures (room, 5, row, column).
+
+        Returns:
+            z_env (room, 512), and a map (room, 40, row / 8, column / 8) of local features.
+        """
         x = self.stem(image)
         places = x
         for index, block in enumerate(self.blocks):

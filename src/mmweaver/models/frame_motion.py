@@ -1,4 +1,4 @@
-"""One person at the middle of each radar frame: what the network is given of a motion."""
+"""One person at the middle of each radar frame: the motion input of the network."""
 
 from dataclasses import dataclass
 
@@ -12,15 +12,15 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.propagation.frame_clock import FrameClock
 
-HISTORY_FRAMES = 10  # before part of a longer signal, which the pose encoder sees, too
+HISTORY_FRAMES = 10  # before a part of a longer signal, as context of the pose encoder
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrameMotion:
-    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3).
+    """Joints and velocities (frame, 22, 3) of one person at the middle of each radar frame.
 
-    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3). The first
-    `num_before` frames are only there for the pose encoder, which looks at motion before and after a frame.
+    With long chirp sequences, at the middle of each time segment: (frame * segment, 22, 3). The first `num_before`
+    frames are context for the pose encoder, which looks at motion before and after a frame.
     """
 
     joints_m: np.ndarray
@@ -33,7 +33,14 @@ class FrameMotion:
 
     @classmethod
     def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "FrameMotion":
-        """A dense motion at so many radar frames from a first one, and before it as far as the motion is known."""
+        """Samples a dense motion at radar frames, with preceding frames as context where the motion is known.
+
+        Args:
+            pose: The motion.
+            config: The radar.
+            num_frames: Number of frames.
+            first_frame: Number of the first one, in the time of the motion.
+        """
         middle_s = FrameClock(config).middle_s
         if len(middle_s) == 1:
             middle_s = np.array([config.active_time_s / 2])
@@ -53,7 +60,7 @@ class FrameMotion:
         )
 
     def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
-        """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
+        """Joints and velocities (frame, segment, 22, 3), extrapolated if known at the middle of the frame only."""
         joints, velocity = (
             torch.from_numpy(part).float().unflatten(0, (-1, self.num_segments))
             for part in (self.joints_m, self.velocity_mps)
@@ -65,12 +72,12 @@ class FrameMotion:
 
     @property
     def middle_joints_m(self) -> Tensor:
-        """Joints at the middle of each frame whose signal is wanted, float32 (frame, 22, 3)."""
+        """Joints at the middle of each frame, without context frames, float32 (frame, 22, 3)."""
         middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
         return torch.from_numpy(middle_m[self.num_before :]).float()
 
     def node_joints_m(self, clock: FrameClock) -> np.ndarray:
-        """Joints of the frames whose signal is wanted at the clock's nodes, (frame, node, 22, 3)."""
+        """Joints at the clock's nodes, without context frames, (frame, node, 22, 3)."""
         joints_m, velocity_mps = (part[self.num_before :].double().numpy() for part in self.segments(clock))
         late_s = np.stack([segment.node_s for segment in clock.segments])[..., None, None]
         nodes_m = joints_m[:, :, None] + velocity_mps[:, :, None] * late_s

@@ -1,4 +1,4 @@
-"""Where weights come from, a file, a folder of `mmweaver train` or a repository on the Hub, and how they get there."""
+"""Sources of weights: a file, a folder of `mmweaver train` or a repository on the Hub; and publishing them."""
 
 import re
 import shutil
@@ -17,9 +17,17 @@ ALL_WEIGHTS = "weights*.safetensors"  # pose networks are several
 
 
 def find_weights(source: str | Path, *, revision: str | None = None) -> Path:
-    """The weight file that is meant; a Hub name is fetched once and kept in the Hub's own cache.
+    """Finds a weight file; one on the Hub is downloaded once and kept in the Hub's own cache.
 
-    `revision`: a branch, tag or commit on the Hub. Raises InputError where nothing is there, or the Hub has it not.
+    Args:
+        source: Weight file, folder of `mmweaver train`, or name on the Hub.
+        revision: Branch, tag or commit on the Hub.
+
+    Returns:
+        Path of the weight file.
+
+    Raises:
+        InputError: If it is not found.
     """
     path = Path(source)
     if path.is_dir():
@@ -56,23 +64,23 @@ def push_to_hub(
     private: bool = False,
     revision: str | None = None,
 ) -> str:
-    """Uploads weights with their model card, and nothing else, to a model repository, which is made if it is not there.
+    """Uploads weights with their model card, and nothing else, to a model repository, which is created if necessary.
 
-    Who uploads is who logged in with `hf auth login`, or the owner of the token in HF_TOKEN.
+    Uses the account logged in by `hf auth login`, or the token in HF_TOKEN.
 
     Args:
-        source: a folder of `mmweaver train`, or one weight file, which is called weights.safetensors there.
-        repo_id: name of the repository, such as "me/my-room".
-        card: the model card (default: README.md next to the weights).
-        private: whether a repository that is made now is private.
-        revision: branch to upload to (default: main).
+        source: Folder of `mmweaver train`, or one weight file, which is uploaded as weights.safetensors.
+        repo_id: Name of the repository, such as "me/my-room".
+        card: Model card (default: README.md next to the weights).
+        private: Whether a newly created repository is private.
+        revision: Branch to upload to (default: main).
 
     Returns:
-        The address of the commit.
+        Address of the commit.
 
     Raises:
-        InputError: for weights that are damaged or not of mmWeaver, for a card that is missing, cannot be read or names
-            another licence than the weights, and where the Hub refuses.
+        InputError: For weights that are damaged or not of mmWeaver, for a card that is missing, unreadable or states
+            another licence than the weights, and if the Hub refuses.
     """
     need("weaver", "publishing on the Hub", "huggingface_hub")
     from huggingface_hub import HfApi
@@ -98,7 +106,7 @@ def push_to_hub(
 
 
 def _check_card(page: Path, licences: set[str]) -> None:
-    """Raises InputError for a model card that is missing, cannot be read, or contradicts the weights."""
+    """Checks a model card; InputError if it is missing, unreadable, or contradicts the weights."""
     from huggingface_hub import ModelCard
 
     if not page.is_file():

@@ -1,7 +1,7 @@
-"""Paths of second order next to the network's: over people and rough surfaces of the room, and over two people.
+"""Second-order paths in addition to those of the network: over people and rough surfaces, and over two people.
 
-The network has learned paths of first order; these follow from joints and room by physics, as in `paths`, of fewer
-points of skin, which the room and other people may occlude, but not the body itself.
+The network has learned first-order paths. These follow by physics from joints and room, as in `propagation`, with
+fewer skin points, which the room and other people may occlude, but not the body itself.
 Reference: docs/decisions/network-by-default.md.
 """
 
@@ -23,11 +23,20 @@ from mmweaver.propagation.static_paths import RayTracedRoom
 from mmweaver.propagation.visible_body import BodyAtFrames, VisibleBody
 
 SKIN_POINTS = 200
-SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # a stream's parts begin at fifth frames
+SAMPLING = PairSampling(most_pairs=16, most_patches=100, every=5)  # parts of a stream begin at multiples of 5 frames
 
 
 def second_order_paths(room: RayTracedRoom, motions: Sequence[FrameMotion], clock: FrameClock) -> Paths:
-    """Paths (frame * segment, path) of all people."""
+    """Second-order paths of all people.
+
+    Args:
+        room: The traced room.
+        motions: Motion of each person.
+        clock: Clock of the radar's frame.
+
+    Returns:
+        Paths (frame * segment, path).
+    """
     seen = [_seen(room, motion, [one for one in motions if one is not motion], clock) for motion in motions]
     people = [BodyRoomPaths(one, SAMPLING) for one in seen]
     between = [BodyBodyPaths(*pair) for pair in combinations(people, 2)]

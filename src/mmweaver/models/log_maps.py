@@ -1,7 +1,7 @@
-"""A cube's pictures for networks: range-Doppler and range-azimuth in decibels above the receiver's noise.
+"""Input maps of networks: range-Doppler and range-azimuth power in decibels above the receiver's noise.
 
-Everything is scaled by constants of the radar, never by the sequence itself, so that how strong a signal is stays
-visible. Differentiable in the cube.
+Everything is scaled by constants of the radar, not of the sequence, so the absolute strength of a signal is
+preserved. Differentiable with respect to the cube.
 """
 
 import math
@@ -15,13 +15,12 @@ from mmweaver.signal.windows import noise_share
 
 NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
 NUM_ANGLE_MAPS = 2  # all echoes, and the moving ones
-MIDDLE_DB, SPREAD_DB = 20.0, 15.0  # above the noise; these two turn decibels to numbers around 0
-STATIC_BINS = 1  # to either side of zero Doppler a Hann window spreads static clutter
+MIDDLE_DB, SPREAD_DB = 20.0, 15.0  # offset and scale that normalise decibels above the noise
+STATIC_BINS = 1  # on either side of zero Doppler, to which a Hann window spreads static clutter
 
 
 class LogMaps(nn.Module):
-    """Complex cubes in sqrt(mW) (..., range, doppler, antenna) -> range-Doppler (..., 1, range, doppler) and
-    range-azimuth (..., 2, range, azimuth), in units of 15 dB about 20 dB above the noise."""
+    """Normalised log power maps of cubes, in units of 15 dB about 20 dB above the noise."""
 
     def __init__(self, config: RadarConfig):
         super().__init__()
@@ -39,6 +38,15 @@ class LogMaps(nn.Module):
         self.register_buffer("is_moving", moving.float(), persistent=False)
 
     def forward(self, values: Tensor) -> tuple[Tensor, Tensor]:
+        """Computes the maps.
+
+        Args:
+            values: Cubes (..., range, doppler, antenna), complex, in sqrt(mW).
+
+        Returns:
+            Range-Doppler maps (..., 1, range, doppler), and range-azimuth maps (..., 2, range, azimuth) of all echoes
+            and of moving ones.
+        """
         power = values.abs().square().mean(dim=-1)
         beams = (values[..., self.row] @ self.steering).abs().square()
         count = float(len(self.is_moving))

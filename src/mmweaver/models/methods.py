@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mmweaver.propagation.background import BackgroundRecording
 
 
-# what meta.json says
+# entries of meta.json
 LEARNED_NOTE = UsualAssumption(
     "echoes of first order were written by a network trained on simulated rooms, others by physics; phases of surfaces"
     " and skin are sampled"
@@ -42,9 +42,9 @@ RECORDED = "static clutter is that of the background recording"
 
 @dataclass(frozen=True, kw_only=True)
 class Signal:
-    """What a method gives: the cube, the ADC samples if asked for, and what it assumed.
+    """Result of a method: the cube, ADC samples if requested, and assumptions.
 
-    `method` is the name for meta.json where it is not that by which the method was chosen.
+    `method` is the name for meta.json where it differs from the one the method was chosen by.
     """
 
     cube: RadarCube
@@ -55,14 +55,23 @@ class Signal:
 
 @runtime_checkable
 class Method(Protocol):
-    """A scene and the people moving in it -> the signal.
+    """From a scene and the people moving in it to the radar signal.
 
-    ADC samples are given where `keep_adc` asks for them. `background` is a recording by the same radar in the same
-    place with nobody present, whose static clutter replaces that of the scene. `board`, whose errors the signal has, is
-    only given where it has some; a method without this argument makes signals of an ideal one. `first_frame` is only
-    given for part of a longer signal (`Weaver.stream`): the number of the part's first frame, in the time of the poses,
-    which may begin earlier. Noise must then be another in each part, and phases the same; a method without this
-    argument makes no streams.
+    Args:
+        scene: The room in the radar's coordinates.
+        poses: Motion of each person, in the same coordinates.
+        config: The radar.
+        num_frames: Number of frames.
+        seed: Seed of everything that is sampled.
+        keep_adc: Whether ADC samples are returned.
+        stages: Timers of the stages.
+        background: Recording of the empty room by the same radar in the same place, whose static clutter replaces that
+            of the scene.
+        board: Board whose errors the signal has; passed only if there are any. A method without this argument makes
+            signals of an ideal board.
+        first_frame: Number of the first frame, in the time of the poses, which may begin earlier; passed only for a
+            part of a longer signal (`Weaver.stream`). Noise must differ between parts, phases must not. A method
+            without this argument makes no streams.
     """
 
     def __call__(
@@ -82,12 +91,15 @@ class Method(Protocol):
 
 
 class Physics:
-    """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
+    """Ray-traced ADC samples, processed as the radar does. The room is prepared once and kept for the next call."""
 
     def __init__(self, propagation: Propagation = ALL_PATHS) -> None:
+        """Args:
+        propagation: Which paths are traced.
+        """
         self.propagation = propagation
         self._prepared = _Latest(self._prepare)
-        # rays are the same for every board with the same places of antennas, and boards differ by seed
+        # rays are the same for every board with the same antenna positions, and boards differ by seed
         self._traced = _Latest(
             lambda scene, config, background, board: RayTracedRoom(scene, config, 0, self.propagation)
         )
@@ -106,6 +118,7 @@ class Physics:
         board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal:
+        """Makes the signal, see `Method`."""
         with stages("prepare the room"):
             simulator = self._prepared.get(scene, config, background, board)
         grid = CubeGrid.of(config, num_frames, first_frame)
@@ -146,16 +159,16 @@ def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int
 
 
 class Learned:
-    """The network's paths, rendered. The room is encoded once and kept for the next call.
-
-    `weights` is a file that `mmweaver train` wrote; without one, those that come with mmweaver. Raises InputError for
-    files that are no such weights.
-    """
+    """Renders the network's paths. The room is encoded once and kept for the next call."""
 
     def __init__(self, weights: Path | None = None, propagation: Propagation = ALL_PATHS) -> None:
+        """Args:
+        weights: File of `mmweaver train`; by default the weights that come with mmweaver.
+        propagation: Which paths are traced in addition to the network's.
+        """
         self.weights, self.propagation = weights, propagation
         self._encoded = _Latest(self._encode)
-        # what the network is given of a room is the same for every board with the same places of antennas
+        # the network's input of a room is the same for every board with the same antenna positions
         self._given = _Latest(lambda scene, config, background, board: _given_room(scene, config, propagation))
 
     def __call__(
@@ -172,6 +185,11 @@ class Learned:
         board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal:
+        """Makes the signal, see `Method`.
+
+        Raises:
+            InputError: If the weights are not a network of mmweaver.
+        """
         from mmweaver.models.frame_motion import FrameMotion
 
         with stages("encode the room"):
@@ -213,7 +231,7 @@ def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> 
 
 
 def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
-    """The radar with antennas where a board has them: all that rays depend on."""
+    """The radar with the antenna positions of a board, on which rays depend."""
     return config if board is None else replace(built_radar(board, config), noise_figure_db=config.noise_figure_db)
 
 
@@ -221,11 +239,11 @@ RoomT = TypeVar("RoomT")
 
 
 class _Latest(Generic[RoomT]):
-    """The latest room that was prepared, for as long as scene, radar, background and board stay the same."""
+    """The room prepared last, kept for as long as scene, radar, background and board stay the same."""
 
     def __init__(self, prepare: Callable[[Scene, RadarConfig, RadarCube | None, Board | None], RoomT]):
         self._prepare = prepare
-        # compared by identity, so scene and background must live on; one tuple, for threads may share a method
+        # compared by identity, so scene and background are kept alive; one tuple, since threads may share a method
         self._kept: tuple[Scene, RadarCube | None, tuple[RadarConfig, str | None], RoomT] | None = None
 
     def get(self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None) -> RoomT:

@@ -1,4 +1,4 @@
-"""The network as a path solver: room and motion -> paths, and their signal. What `method="weaver"` runs."""
+"""The network as a path solver: from room and motion to paths and their signal. Implements `method="weaver"`."""
 
 import math
 from collections.abc import Sequence
@@ -42,24 +42,24 @@ from mmweaver.propagation.speckle import (
 from mmweaver.signal.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
 from mmweaver.signal.windows import doppler_window_middle
 
-NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
+NOTICED = 4e-3  # amplitude relative to the strongest static path; occlusion of fainter ones is negligible
 ADC_FRAMES_AT_ONCE = 20
 
 
 class LearnedRoom:
-    """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
+    """A room encoded by the network for one radar; `paths`, `cube` and `signal` serve any number of motions.
 
     Args:
         network: Moved to `device`; phases are sampled and paths rendered on the CPU.
-        room: A scene, or one made ready for this radar with its antennas where the board has them.
+        room: A scene, or one prepared for this radar with the antenna positions of the board.
         config: The radar.
-        room_seed: Of the phases of surfaces and of clutter.
+        room_seed: Seed of the phases of surfaces and of clutter.
         device: Where the network runs.
-        background: A recording of the empty room by this radar, whose static clutter is used.
-        board: The board whose errors the signal has; default: an ideal one.
+        background: Recording of the empty room by this radar, whose static clutter is used.
+        board: Board whose errors the signal has; by default an ideal one.
 
     Raises:
-        InputError: For a background recording of another radar.
+        InputError: If the background recording is from another radar.
     """
 
     def __init__(
@@ -112,13 +112,17 @@ class LearnedRoom:
                     self._layer_rate = self._layer_rate + self.renderer.leakage(*self.board.leakage_rate)
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
 
-    has_others = True  # paths that the network has not learned follow from physics: second order and clutter
+    has_others = True  # whether second-order paths and clutter, which the network has not learned, are added by physics
 
     def _encoded(self, view: SceneTensors) -> Any:
         return self.network.encode_room(view)
 
     def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
-        """Paths of the room and of everybody, who occlude the room and each other."""
+        """Paths of the room and of all people, who occlude the room and each other.
+
+        Args:
+            motions: Motion of each person; at least one.
+        """
         with torch.inference_mode(), one_thread():
             return self._paths(motions)
 
@@ -142,7 +146,7 @@ class LearnedRoom:
         return ScenePaths(static=self.static, moving=Paths.padded([Paths.none()] * rows), occluded=hidden)
 
     def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
-        """One person's paths (frame * segment, path), without those that others occlude."""
+        """Paths (frame * segment, path) of one person, without those that others occlude."""
         clock = self.renderer.clock
         joints, velocity = motion.segments(clock)
         count = joints.shape[1]
@@ -150,7 +154,7 @@ class LearnedRoom:
         if motion.num_before:
             wanted = torch.arange(motion.num_before, len(joints), device=self.device)[None]
         each = []
-        for index in range(count):  # each segment's frames are a sequence of the frame rate the network knows
+        for index in range(count):  # the frames of one segment form a sequence at the frame rate of training
             at = joints[None, :, index], velocity[None, :, index]
             on_device = (part.to(self.device) for part in at)
             each.append(self.network.moving(self.code, *on_device, frames=wanted)[0].to("cpu"))
@@ -165,7 +169,7 @@ class LearnedRoom:
         return self._sampled(echoes, joints, motion.subject, first_frame)
 
     def _sampled(self, echoes: MeanEchoes, joints_m: Tensor, subject: int, first_frame: int) -> Paths:
-        """Echoes (frame, segment, echo) of a person with phases, as paths (frame * segment, path)."""
+        """Paths (frame * segment, path) of a person's echoes (frame, segment, echo), with sampled phases."""
         count = joints_m.shape[1]
         sight = aspect(joints_m.flatten(0, 1)).unflatten(0, (-1, count))
         if count == 1:
@@ -174,9 +178,9 @@ class LearnedRoom:
         return sample_moving_segments(echoes, sight, middle_s, self.config, subject)
 
     def _shown(self, echoes: MeanEchoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
-        """1 where no other person occludes an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
+        """1 where no other person occludes an echo (frame, echo), 0 elsewhere; others' joints are (frame, 22, 3) each.
 
-        A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
+        A ghost is lost where its joint is occluded, since its departure or its arrival leads straight there.
         """
         ends_m = self._ends_m(echoes, joints_m)
         hidden = torch.zeros(ends_m.shape[:2], dtype=torch.bool)
@@ -185,12 +189,12 @@ class LearnedRoom:
         return (~hidden).float()
 
     def _ends_m(self, echoes: MeanEchoes, joints_m: Tensor) -> Tensor:
-        """Places (frame, echo, 3) that others must leave in view for an echo to be there."""
+        """Places (frame, echo, 3) to which the line of sight must be clear for an echo to exist."""
         reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
         return torch.cat([place_of(echoes).float()[:, :NUM_ANCHORS], reflected_m], dim=1)
 
     def _retimed(self, paths: Paths) -> Paths:
-        """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""
+        """Moves paths from the first chirp of the middle loop to the middle of all chirps."""
         clock = self.renderer.clock
         middle_loop = doppler_window_middle(self.config.num_loops)
         late_s = clock.middle_s[0] - (clock.chirp_s.min() + middle_loop * self.config.loop_period_s)
@@ -201,9 +205,14 @@ class LearnedRoom:
         return replace(paths, departure=moved(paths.departure), arrival=moved(paths.arrival))
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
-        """The signal of everybody, what they occlude of the room taken away, and the receiver's noise.
+        """The cube of all people and the room, with occlusion and receiver noise.
 
-        In sqrt(mW), or in the units of the background recording.
+        Args:
+            motions: Motion of each person; at least one.
+            seed: Seed of noise and drift.
+
+        Returns:
+            Cube in sqrt(mW), or in the units of the background recording.
         """
         return self.signal(motions, seed=seed, keep_adc=False)[0]
 
@@ -216,10 +225,17 @@ class LearnedRoom:
         first_frame: int = 0,
         num_frames: int | None = None,
     ) -> tuple[RadarCube, AdcCube | None]:
-        """The cube, and with `keep_adc`, on which it does not depend, ADC samples of the same paths and noise.
+        """The cube, and optionally ADC samples of the same paths and noise.
 
-        `first_frame`: where in a longer signal this part begins; each part has noise of its own. `num_frames` is asked
-        for where there are no motions, and decides nothing else.
+        Args:
+            motions: Motion of each person; may be empty.
+            seed: Seed of noise and drift.
+            keep_adc: Whether ADC samples are computed; the cube does not depend on it.
+            first_frame: Number of the first frame within a longer signal; each part has its own noise.
+            num_frames: Number of frames; needed without motions only.
+
+        Returns:
+            The cube, and the samples or None.
         """
         with torch.inference_mode(), one_thread():
             paths = self._paths(motions, first_frame) if motions else self._empty_room_paths(num_frames or 1)
@@ -245,7 +261,7 @@ class LearnedRoom:
         return cube, None if adc is None else replace(adc, samples=adc.samples / np.float32(unit), scale=unit)
 
     def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int) -> AdcCube:
-        """Samples of the paths with noise whose own cube is `noise`, and white in what no cell holds."""
+        """ADC samples of the paths, with noise whose cube is `noise` and which is white outside the cube's cells."""
         config = self.config
         if self._synthesis is None:
             synthesis = AdcSynthesis(config, board=self.board, is_faded=True)
@@ -273,7 +289,7 @@ class LearnedRoom:
         return AdcCube(samples=samples, config=self.nominal, scale=1.0)
 
     def _static_adc(self, synthesis: AdcSynthesis) -> Tensor:
-        """Samples (tx, rx, sample) of the room without people."""
+        """Samples (tx, rx, sample) of the empty room."""
         if self.board is not None:
             carrier_over_slope_s = self.config.centre_frequency_hz / self.config.chirp_slope_hz_per_s
             self._drift_rate = carrier_over_slope_s * synthesis.static_rate(self.static)
@@ -307,7 +323,14 @@ class LearnedRoom:
 
 
 def aspect(joints_m: Tensor) -> Tensor:
-    """Twice the line of sight as the body sees it (front, side, up), (frame, 3): what turns the phase of its skin."""
+    """Twice the line of sight in the body's frame of reference, which determines the phase of its skin.
+
+    Args:
+        joints_m: Joints (frame, 22, 3).
+
+    Returns:
+        Components to the front, to the side and up, (frame, 3).
+    """
     front = facing(joints_m)
     up = torch.tensor([0.0, 0.0, 1.0], device=joints_m.device).expand_as(front)
     side = torch.linalg.cross(up, front)

@@ -1,4 +1,4 @@
-"""Point clouds as tables of equal size: what the pose network reads, generated or recorded."""
+"""Point clouds as tables of fixed size, the input of the pose network."""
 
 from dataclasses import dataclass
 
@@ -9,27 +9,32 @@ from mmweaver.core.records import PointCloud
 
 MAX_POINTS = 40  # per frame; the strongest are kept
 COLUMNS = 5  # x right, y ahead, z up in metres, radial velocity in m/s, strength over the recording's median in dB
-REACH_M = 1.2  # of a body about the middle of its points; what is farther off is the room
-MIN_MOVING = 5  # points, for the middle of those that move to stand for the person
+REACH_M = 1.2  # of a body around the median of its points; points farther away belong to the room
+MIN_MOVING = 5  # moving points from which on their median is the person's position
 MOVING_MPS = 0.05
 DEFAULT_PLACE_M = (0.0, 2.0, 0.0)  # of a person in a window without points
 
 
 @dataclass(frozen=True, kw_only=True)
 class PointFrames:
-    """Points of consecutive frames, each with room for the same number of them."""
+    """Points of consecutive frames, padded to the same number per frame."""
 
     values: Float[np.ndarray, "frame point 5"]
     is_there: Bool[np.ndarray, "frame point"]
 
     def part(self, first: int, num_frames: int) -> "PointFrames":
-        """Frames from `first` on."""
+        """`num_frames` frames from `first` on."""
         own = slice(first, first + num_frames)
         return PointFrames(values=self.values[own], is_there=self.is_there[own])
 
 
 def point_frames(cloud: PointCloud, num_frames: int) -> PointFrames:
-    """The table of a cloud of frames 0 to num_frames - 1. Strength is 0 where the cloud has none."""
+    """The table of a point cloud.
+
+    Args:
+        cloud: Points of all frames; without SNR and intensity their strength is 0.
+        num_frames: Number of frames, from 0.
+    """
     strength_db = strength_over_median_db(cloud)
     order = np.lexsort((-strength_db, cloud.frame))
     frame = cloud.frame[order]
@@ -44,7 +49,14 @@ def point_frames(cloud: PointCloud, num_frames: int) -> PointFrames:
 
 
 def strength_over_median_db(cloud: PointCloud) -> Float[np.ndarray, " point"]:
-    """SNR of points, or else what they have of intensity (an amplitude), over the median of all, in dB."""
+    """Strength of points relative to the median of all: SNR, or intensity (an amplitude) where there is no SNR.
+
+    Args:
+        cloud: The points.
+
+    Returns:
+        Strength (point,) in dB; 0 where unknown.
+    """
     strength_db = np.asarray(cloud.snr_db, float)
     intensity = getattr(cloud, "intensity", None)
     if intensity is not None and not np.isfinite(strength_db).any():
@@ -56,7 +68,14 @@ def strength_over_median_db(cloud: PointCloud) -> Float[np.ndarray, " point"]:
 
 
 def middle_m(frames: PointFrames) -> Float[np.ndarray, "3"]:
-    """Where the person of a window is: the median of its points, of those that move if there are a few."""
+    """Position of the person in a window: the median of its points, of moving ones if there are enough.
+
+    Args:
+        frames: Points of the window.
+
+    Returns:
+        Position (3,) in metres.
+    """
     points = frames.values[frames.is_there]
     moving = points[np.abs(points[:, 3]) > MOVING_MPS]
     chosen = moving if len(moving) >= MIN_MOVING else points
@@ -66,6 +85,6 @@ def middle_m(frames: PointFrames) -> Float[np.ndarray, "3"]:
 
 
 def near(frames: PointFrames, middle: Float[np.ndarray, "3"]) -> PointFrames:
-    """The points that may belong to a person at this place."""
+    """The points that may belong to a person at a position."""
     close = (np.abs(frames.values[..., :3] - middle) <= REACH_M).all(axis=-1)
     return PointFrames(values=frames.values, is_there=frames.is_there & close)

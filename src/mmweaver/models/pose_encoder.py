@@ -1,4 +1,4 @@
-"""Poses -> z_pose: attention among the joints of a frame, then among the frames.
+"""Poses to z_pose: attention among the joints of a frame, then among frames.
 
 Reference: paper, section "Generalization via Hypernetworks", Pose Encoder (4.9 M parameters).
 """
@@ -17,7 +17,7 @@ JOINT_VALUES = 6  # place and velocity
 
 
 class PoseEncoder(nn.Module):
-    """Joints and their velocities (sequence, frame, 22, 6) -> z_pose (sequence, frame, 512).
+    """Encodes motions.
 
     (frame, 22, 6) -> FC -> + joint -> attention over joints -> mean | pelvis -> FC -> + time
                    -> attention over frames -> z_pose
@@ -32,6 +32,14 @@ class PoseEncoder(nn.Module):
         self.temporal = _attention(Z_POSE, FRAME_HIDDEN, FRAME_LAYERS)
 
     def forward(self, motion: Tensor) -> Tensor:
+        """Encodes motions.
+
+        Args:
+            motion: Joints and their velocities (sequence, frame, 22, 6).
+
+        Returns:
+            z_pose (sequence, frame, 512).
+        """
         sequences, frames = motion.shape[:2]
         joints = self.spatial(self.embed(motion.flatten(0, 1)) + self.joint)
         each = self.merge(torch.cat([joints.mean(dim=1), joints[:, 0]], dim=-1)).unflatten(0, (sequences, frames))
@@ -46,7 +54,7 @@ def _attention(width: int, hidden: int, layers: int) -> nn.TransformerEncoder:
 
 
 def _time_code(frames: int, width: int, device: torch.device) -> Tensor:
-    """Sines and cosines of the frame's number (Vaswani et al.)."""
+    """Sinusoidal position encoding of the frame number (Vaswani et al.)."""
     rate = torch.exp(torch.arange(0, width, 2, device=device) * (-math.log(1e4) / width))
     angle = torch.arange(frames, device=device)[:, None] * rate
     return torch.cat([angle.sin(), angle.cos()], dim=-1)

@@ -1,4 +1,4 @@
-"""Joints of a person from the points of a radar, frame by frame.
+"""Estimates a person's joints from radar points, frame by frame.
 
     points (frame, 40, 5) --the same layers for each--> --largest, mean over points--> (frame, 320)--+
                                                                                                      |
@@ -19,12 +19,12 @@ from mmweaver.models.weights import WeightsCard, load_into
 
 POINT_WIDTHS = (48, 96, 160)
 MEMORY, HEAD = 112, 192
-USUAL_POINTS, USUAL_DB, USUAL_M, USUAL_MPS = 30.0, 10.0, 0.4, 0.4  # so that what is read is about 1
+USUAL_POINTS, USUAL_DB, USUAL_M, USUAL_MPS = 30.0, 10.0, 0.4, 0.4  # typical values, which normalise the inputs
 RECIPE = "pose"
 
 
 class PoseNetwork(nn.Module):
-    """Windows of points -> joints relative to the pelvis, and the pelvis relative to the middle of the points."""
+    """From windows of points to joints relative to the pelvis, and the position of the pelvis."""
 
     mean_m: Tensor
 
@@ -33,7 +33,7 @@ class PoseNetwork(nn.Module):
         widths = (COLUMNS, *POINT_WIDTHS)
         layers = [(nn.Linear(a, b), nn.ReLU()) for a, b in pairwise(widths)]
         self.points = nn.Sequential(*(layer for pair in layers for layer in pair))
-        # Frames differ by little of what they show: without this, learning begins after hundreds of steps.
+        # Features of frames differ little; without normalisation, training stalls for hundreds of steps.
         self.evened = nn.BatchNorm1d(2 * POINT_WIDTHS[-1])
         self.over_time = nn.GRU(2 * POINT_WIDTHS[-1] + 4, MEMORY, batch_first=True, bidirectional=True)
         self.head = nn.Sequential(
@@ -42,11 +42,19 @@ class PoseNetwork(nn.Module):
         self.register_buffer("mean_m", torch.zeros(NUM_JOINTS, 3))
 
     def forward(self, values: Tensor, is_there: Tensor, middle_m: Tensor) -> tuple[Tensor, Tensor]:
-        """Points (window, frame, point, 5), which of them are there (window, frame, point), and the middle (window, 3)
-        -> joints relative to the pelvis (window, frame, 22, 3) and the pelvis (window, frame, 3), in metres."""
+        """Estimates joints.
+
+        Args:
+            values: Points (window, frame, point, 5) with the columns of `point_frames`.
+            is_there: Mask (window, frame, point) of actual points.
+            middle_m: Position of the person in each window, (window, 3), in metres.
+
+        Returns:
+            Joints relative to the pelvis (window, frame, 22, 3), and the pelvis (window, frame, 3), in metres.
+        """
         place = (values[..., :3] - middle_m[:, None, None]) / USUAL_M
         read = torch.cat([place, values[..., 3:4] / USUAL_MPS, values[..., 4:] / USUAL_DB], dim=-1)
-        each = self.points(read[is_there])  # of all that are there, frame after frame; never negative
+        each = self.points(read[is_there])  # of actual points, frame by frame; never negative
         frame = is_there.flatten(0, 1).nonzero()[:, :1].expand(-1, each.shape[-1])
         nothing = each.new_zeros(values.shape[0] * values.shape[1], each.shape[-1])
         count = is_there.sum(dim=2, keepdim=True)
@@ -61,6 +69,16 @@ class PoseNetwork(nn.Module):
 
 
 def load_pose(file: Path) -> tuple[PoseNetwork, WeightsCard]:
-    """Reads weights of recipe `pose`. Raises InputError for any other file."""
+    """Loads weights of recipe `pose`.
+
+    Args:
+        file: The weight file.
+
+    Returns:
+        The network and its card.
+
+    Raises:
+        InputError: For any other file.
+    """
     network = PoseNetwork()
     return network, load_into(network, file, recipe=RECIPE)

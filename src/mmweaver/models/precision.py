@@ -1,6 +1,6 @@
-"""Geometry inside a network stays in float32, whatever the precision of the rest.
+"""Keeps geometry inside a network in float32, whatever the precision of the rest.
 
-bf16 has three digits: it would move a wall by centimetres.
+bf16 has three significant digits, which would move a wall by centimetres.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def full_precision(function: Function) -> Function:
-    """The function with mixed precision turned off, and what comes to it in bf16 made float32."""
+    """Decorator that turns mixed precision off, and converts bf16 arguments to float32."""
 
     @wraps(function)
     def exact(*arguments: Any) -> Any:
@@ -26,7 +26,7 @@ def full_precision(function: Function) -> Function:
 
 
 def exactly(values: Tensor) -> AbstractContextManager[Any]:
-    """Mixed precision turned off on the device of some values."""
+    """Context with mixed precision turned off on the device of `values`."""
     device = values.device.type
     return torch.autocast(device, enabled=False) if torch.amp.is_autocast_available(device) else nullcontext()
 

@@ -1,4 +1,4 @@
-"""What the network and the paths of second order start from: a photographed room, traced once for one radar."""
+"""Inputs of the network and of second-order paths: a photographed room, traced once for one radar."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from mmweaver.propagation.static_paths import ALL_PATHS, Propagation, RayTracedR
 
 @dataclass(frozen=True, kw_only=True)
 class GivenRoom:
-    """The network corrects what `view` holds, paths of first order; the others stay as physics has them."""
+    """The network corrects the first-order paths in `view`; all other paths are those of physics."""
 
     view: SceneTensors
     traced: RayTracedRoom
@@ -22,7 +22,14 @@ class GivenRoom:
     def of(
         cls, scene: Scene, config: RadarConfig, *, seed: int = 0, propagation: Propagation = ALL_PATHS
     ) -> "GivenRoom":
-        """Of a scene. `seed`: another one has other phases and other clutter."""
+        """Traces a scene.
+
+        Args:
+            scene: The room.
+            config: The radar.
+            seed: Seed of phases and clutter.
+            propagation: Which paths are traced.
+        """
         traced = RayTracedRoom(scene, config, seed, propagation)
         others = [traced.paths.select(Interaction.ROOM_ROOM)]
         if propagation.clutter:

@@ -1,4 +1,4 @@
-"""The weaver: a network that writes the scatterer field of a person moving in a room.
+"""The weaver: a network that predicts the scatterer field of a person moving in a room.
 
     picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 static points and faces
                                                            |
@@ -6,7 +6,7 @@
                                                                 (anchored to the body and its images)
 
 The network predicts the mean strength and the position of each echo; phases are unpredictable and are sampled when a
-signal is made. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
+signal is made. Geometry (positions of joints, decay with distance by the radar equation) is not learned.
 Reference: paper, section "Generalization via Hypernetworks".
 """
 
@@ -36,29 +36,46 @@ from mmweaver.propagation.mean_scatterers import MeanEchoes
 
 
 class ScattererNetwork(nn.Module):
-    """`encode_room` once a room, then `moving` for each motion. The room's code is the network's own record.
+    """Interface of the networks: `encode_room` once per room, then `moving` for each motion.
 
-    Its `view` (SceneTensors) and `static` (MeanEchoes) are for everybody.
+    The code of a room is the network's own record; its `view` (SceneTensors) and `static` (MeanEchoes) are public.
     """
 
     def encode_room(self, view: SceneTensors) -> Any:
-        """Rooms (room, ...) -> their code, with static echoes (room, echo)."""
+        """Encodes rooms.
+
+        Args:
+            view: Tensors of the rooms, (room, ...).
+
+        Returns:
+            Their code, with static echoes (room, echo).
+        """
         raise NotImplementedError
 
     def moving(self, code: Any, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None) -> MeanEchoes:
-        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo)."""
+        """Moving echoes of one motion per room.
+
+        Args:
+            code: Code of the rooms.
+            joints_m: Joints (room, frame, 22, 3) in metres, in the radar's coordinates.
+            velocity_mps: Velocities of the joints, of the same shape.
+            frames: Frames (room, chosen) whose echoes are wanted; by default all.
+
+        Returns:
+            Echoes (room, frame, echo).
+        """
         raise NotImplementedError
 
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
-MAX_STEP = 12.0  # of a logarithm of power
-FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
-MAX_CORRECTION = 2.0  # the same, of the strength that physics predicts for the photographed room
+MAX_STEP = 12.0  # limit of the correction of a body echo, as a natural logarithm of power
+FAINTEST_M2 = 1e-4  # lower bound of the prior cross section of a part of the body
+MAX_CORRECTION = 2.0  # limit of the correction of the photographed room, as a natural logarithm of power
 
 
 @dataclass(frozen=True, kw_only=True)
 class SceneEncoding(TensorRecord):
-    """What is known of a room once its photo has been encoded; kept and used for any number of motions."""
+    """Code of a room, computed once from its photo and used for any number of motions."""
 
     view: SceneTensors
     z_env: Tensor
@@ -66,10 +83,10 @@ class SceneEncoding(TensorRecord):
 
 
 class WeaverNetwork(ScattererNetwork):
-    """Rooms and motions -> mean echoes. `encode_room` once per room, then `moving` for each motion.
+    """From rooms and motions to mean echoes.
 
     Args:
-        corrects_surfaces: Whether the network changes the strength that physics predicts for photographed surfaces.
+        corrects_surfaces: Whether the network corrects the strength that physics predicts for photographed surfaces.
         encoder: Name of the environment encoder.
     """
 
@@ -97,7 +114,7 @@ class WeaverNetwork(ScattererNetwork):
             nn.init.zeros_(head.bias)
 
     def encode_room(self, view: SceneTensors) -> SceneEncoding:
-        """Rooms (room, ...) -> their code; static echoes (room, echo)."""
+        """Encodes rooms, see `ScattererNetwork.encode_room`."""
         z_env, places = self.environment(view.image)
         parts = [self._points(view, places), self._faces(view)]
         return SceneEncoding(view=view, z_env=z_env, static=MeanEchoes.cat(parts, 1))
@@ -105,9 +122,9 @@ class WeaverNetwork(ScattererNetwork):
     def moving(
         self, code: SceneEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None
     ) -> MeanEchoes:
-        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo).
+        """Moving echoes, see `ScattererNetwork.moving`.
 
-        `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
+        The pose encoder sees all frames, including those not chosen.
         """
         z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
         if frames is not None:
@@ -121,12 +138,12 @@ class WeaverNetwork(ScattererNetwork):
         return _placed(self.steps(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
 
     def anchors(self, joints_m: Tensor, velocity_mps: Tensor, view: SceneTensors) -> tuple[Anchors, Anchors, BodyPrior]:
-        """Anchors of direct echoes and of ghosts, and the strength of the body by physics."""
+        """Anchors of direct echoes and of ghosts, and the physical prior of the body."""
         body, ghosts = body_anchors(joints_m, velocity_mps, view), ghost_anchors(joints_m, velocity_mps, view)
         return body, ghosts, body_prior(joints_m)
 
     def steps(self, mixed: Tensor) -> Tensor:
-        """Features (..., echo, WIDTH) -> level, and steps in range, velocity and direction (..., echo, 5)."""
+        """Level, and steps in range, velocity and direction (..., echo, 5), from features (..., echo, WIDTH)."""
         return self.out(mixed)
 
     def _points(self, view: SceneTensors, places: Tensor) -> MeanEchoes:
@@ -149,7 +166,7 @@ class WeaverNetwork(ScattererNetwork):
 
 @full_precision
 def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
-    """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
+    """Values of the map (room, point, channel) at the projections of points; zeros outside the picture."""
     camera = (point_m - view.camera_m[:, None]) @ view.camera_from_radar.transpose(-1, -2)
     depth = camera[..., 2].clamp(min=0.05)
     column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *view.camera[:, None].unbind(-1))
@@ -171,7 +188,7 @@ def _static(distance: Tensor, direction: Tensor, cross_section: Tensor) -> MeanE
 
 
 def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, of_ghosts_m2: Tensor) -> MeanEchoes:
-    """Network's words: level, and small steps in range, velocity and direction."""
+    """Applies the network's output: level, and small steps in range, velocity and direction."""
     level, step_r, step_v, step_x, step_z = out.unbind(-1)
     share = torch.cat([body.share, ghosts.share], -1)
     known = torch.cat([prior.cross_section_m2, of_ghosts_m2], -1) + FAINTEST_M2

@@ -1,4 +1,4 @@
-"""What the networks see of a room: a small picture, the static paths of what it shows, and the flat faces."""
+"""A room as input of the networks: a small picture, the static paths of what it shows, and the flat faces."""
 
 import math
 from dataclasses import dataclass
@@ -30,27 +30,30 @@ PLANE_KINDS = ("floor", "ceiling", "wall", "top", "panel")
 
 @dataclass(frozen=True, kw_only=True)
 class SceneTensors(TensorRecord):
-    """Tensors of one room, or of several with a leading axis; frame of reference is the radar's."""
+    """Tensors of one room, or of several with a leading axis, in the radar's coordinates."""
 
-    image: Tensor  # (channel, row, column), 0 where nothing is known
+    image: Tensor  # (channel, row, column), 0 where unknown
     depth_m: Tensor  # (row, column) along the optical axis; 0 = no measurement
     point_m: Tensor  # (point, 3)
-    point_cross_section_m2: Tensor  # (point,) what physics says of the photographed room; 0 = no point
+    point_cross_section_m2: Tensor  # (point,) predicted by physics for the photographed room; 0 = no point
     point_features: Tensor  # (point, POINT_FEATURES)
     camera_from_radar: Tensor  # (3, 3)
-    camera_m: Tensor  # (3,) where the camera stands, in the radar's frame
+    camera_m: Tensor  # (3,) position of the camera
     camera: Tensor  # (4,) fx, fy, cx, cy in cells of the picture
     plane_centre_m: Tensor  # (plane, 3)
     plane_axes: Tensor  # (plane, 3, 3): u, v, normal
     plane_half_m: Tensor  # (plane, 2); 0 = no plane
     plane_features: Tensor  # (plane, PLANE_FEATURES)
-    plane_reflection: Tensor  # (plane, angle) share of a wave's power that a face throws back, at REFLECTION_COS
+    plane_reflection: Tensor  # (plane, angle) reflected power share of a face at REFLECTION_COS
 
     @classmethod
     def of(cls, scene: Scene, config: RadarConfig, room: PreparedRoom | None = None) -> "SceneTensors":
-        """The view of a scene's photo, with the scene's faces and the static paths that this radar would have.
+        """Tensors of a scene's photo, with the scene's faces and the static paths of the radar.
 
-        `room` is the scene made ready before, where no rays are to be cast.
+        Args:
+            scene: The scene.
+            config: The radar.
+            room: The scene prepared for this radar; by default it is traced here.
         """
         grid = make_grid(scene.photo)
         rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
@@ -80,7 +83,7 @@ def _image(grid: DepthGrid, scene: Scene, view: tuple[np.ndarray, ...]) -> np.nd
 
 
 def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGrid) -> np.ndarray:
-    """Class of the middle pixel of every cell, as a number from 0 to 1."""
+    """Class of the middle pixel of every cell, scaled to 0 to 1."""
     if classes is None:
         return np.zeros((IMAGE_ROWS, IMAGE_COLUMNS))
     rows, columns = classes.index.shape
@@ -90,7 +93,7 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
 
 
 def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
-    """The strongest static paths of the photographed room, each as a scatterer where it appears."""
+    """The strongest static paths of the photographed room, each as a scatterer at its apparent position."""
     config, first = room.config, room.first_order
     level = first.amplitude.abs().numpy()
     order = np.argsort(-level)[:NUM_POINTS]
@@ -122,7 +125,7 @@ def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
 
 
 def _padded(values: np.ndarray, count: int) -> np.ndarray:
-    """Rows of zeros where there are fewer than NUM_POINTS; such a point stands at the radar and returns nothing."""
+    """Padded with rows of zeros to NUM_POINTS; such a point is at the radar and returns nothing."""
     return np.concatenate([values, np.zeros((NUM_POINTS - count, *values.shape[1:]))])
 
 
@@ -151,7 +154,7 @@ def _planes(scene: Scene, room: PreparedRoom) -> dict[str, Tensor]:
 
 
 def _plane_features(plane: Plane) -> np.ndarray:
-    """Which kind, how far, in which direction, and how far the foot of the radar's perpendicular lies inside."""
+    """Kind, distance, direction, and position of the foot of the radar's perpendicular within the face."""
     distance = float(plane.normal @ -plane.centre_m)
     foot = -distance * plane.normal - plane.centre_m
     inside = [

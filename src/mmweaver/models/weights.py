@@ -1,6 +1,6 @@
-"""Weight files: safetensors with what one must know about them in the header. Nothing is unpickled.
+"""Weight files: safetensors with a description in the header. No pickle.
 
-The header holds format, recipe, version, licence, data set and radar, of which `WeightsCard` is the record, and the
+The header contains format, recipe, version, licence, data set and radar, as recorded in `WeightsCard`, and the
 sha256 of the tensors.
 """
 
@@ -30,7 +30,7 @@ WEIGHTS_FILE = "weights.safetensors"  # in a folder of mmweaver train, and in a 
 
 @dataclass(frozen=True, kw_only=True)
 class WeightsCard:
-    """What a weight file says of itself."""
+    """Description of a weight file, stored in its header."""
 
     recipe: str
     licence: str
@@ -40,12 +40,19 @@ class WeightsCard:
     seed: int
     validation_loss: float
     mmweaver_version: str
-    settings: dict[str, Any] = field(default_factory=dict)  # the recipe's
-    tuned_from: str = ""  # sha256 of the tensors that fine-tuning began with
+    settings: dict[str, Any] = field(default_factory=dict)  # of the recipe
+    tuned_from: str = ""  # sha256 of the tensors that fine-tuning started from
 
 
 def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: bool = True) -> None:
-    """Writes a network, whole or not at all; in half precision it is half as large and as good."""
+    """Writes a network atomically.
+
+    Args:
+        file: The weight file.
+        network: The network.
+        card: Its description.
+        half: Whether floats are stored in half precision, which halves the size without loss of quality.
+    """
     dtype = torch.float16 if half else torch.float32
     tensors = {
         name: (tensor.to(dtype) if tensor.is_floating_point() else tensor).contiguous()
@@ -60,7 +67,17 @@ def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: boo
 
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
-    """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
+    """Loads a weaver network, ready for use.
+
+    Args:
+        file: The weight file.
+
+    Returns:
+        The network and its card.
+
+    Raises:
+        InputError: For files that are damaged, foreign or of another version.
+    """
     card, tensors = _read(file)
     if card.recipe == POWER_RECIPE:
         raise InputError(
@@ -73,8 +90,20 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
 
 
 def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made_by: str | None = None) -> WeightsCard:
-    """Reads weights into any network and makes it ready to use. Raises InputError for files that do not fit it, and
-    for those of another recipe than the one named. `made_by`: the command that makes them, for that error."""
+    """Loads weights into any network and makes it ready for use.
+
+    Args:
+        network: The network.
+        file: The weight file.
+        recipe: Required recipe; by default any.
+        made_by: Command that makes such weights, for the error message.
+
+    Returns:
+        The card of the file.
+
+    Raises:
+        InputError: For files that do not fit the network, and for those of another recipe.
+    """
     card, tensors = _read(file)
     command = f"mmweaver train {recipe}"
     if recipe is not None and card.recipe != recipe:
@@ -84,7 +113,7 @@ def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made
 
 
 def _fill(network: nn.Module, file: Path, tensors: dict[str, torch.Tensor]) -> None:
-    """Puts tensors into a network and makes it ready to use. Raises InputError where they do not fit it."""
+    """Loads tensors into a network and makes it ready for use; InputError if they do not fit."""
     wanted = network.state_dict()
     wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
     wrong += [name for name in tensors if name not in wanted]
@@ -98,12 +127,20 @@ def _fill(network: nn.Module, file: Path, tensors: dict[str, torch.Tensor]) -> N
 
 
 def read_card(file: Path) -> WeightsCard:
-    """What a weight file says of itself. Raises InputError as `load_weights` does."""
+    """Description of a weight file.
+
+    Raises:
+        InputError: As `load_weights`.
+    """
     return _read(file)[0]
 
 
 def shipped_weights() -> Path:
-    """The weights that come with mmweaver. Raises InputError where they are missing."""
+    """Path of the weights that come with mmweaver.
+
+    Raises:
+        InputError: If they are missing.
+    """
     file = Path(str(resources.files("mmweaver") / "weights" / SHIPPED))
     if not file.is_file():
         raise InputError("this installation has no weights; train some with: mmweaver train, then give --weights FILE")

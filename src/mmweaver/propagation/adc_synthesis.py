@@ -1,7 +1,8 @@
-"""Paths -> noise-free ADC samples, exact in time: fast time x (slow time . antennas), one matrix product a block.
+"""Noise-free ADC samples of propagation paths, evaluated as one matrix product per block of chirps.
 
-Phases are counted in double precision, all else in single, on the CPU or a GPU. `reference_sum.py` is the sum that
-these factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
+The beat signal is separable to first order: a fast-time factor times a factor of slow time and antenna pair. Phases are
+accumulated in double precision, everything else in single precision, on the CPU or a GPU. `reference_sum.py` is the
+exact sum that these factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
 import math
@@ -25,14 +26,13 @@ from mmweaver.propagation.transmit_elements import TransmitElements
 if TYPE_CHECKING:
     from mmweaver.propagation.board_effects import BoardEffects
 
-ROWS_AT_ONCE = 2048  # static paths, which bounds memory
+ROWS_AT_ONCE = 2048  # static paths per matrix product, which bounds memory
 
 
 class AdcSynthesis:
-    """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded.
+    """Renders paths as the ADC samples of one radar, on one device.
 
-    `board`: whose antennas and range bias they are recorded with; paths are given with its IF already. `is_faded`: for
-    paths that step between the segments of a frame, as the network's do (`FrameClock.faded_segments`).
+    For a radar whose transmitters send simultaneously under a code, `tx` axes of results are slots of the loop.
     """
 
     def __init__(
@@ -43,18 +43,28 @@ class AdcSynthesis:
         *,
         is_faded: bool = False,
     ):
+        """Prepares the factors that depend on the radar alone.
+
+        Args:
+            config: The radar.
+            device: Where samples are computed.
+            board: Board whose antenna errors and range bias are applied, by default an ideal one. Its IF response must
+                already be contained in the amplitudes of the paths (`BoardEffects.recorded_static`, `recorded_moving`).
+            is_faded: Whether neighbouring time segments of a frame are cross-faded, for paths whose amplitude or motion
+                jumps between segments, as those of the networks do (`FrameClock.faded_segments`).
+        """
         self._elements = TransmitElements(config)
         self.config, self.device = self._elements.config, torch.device(device)
         self.clock = FrameClock(self.config)
         mixing = None if board is None or board.channels is None else self._elements.mixing(board.channels)
         self.array = ArrayPhases(self.config, self.device, mixing)
-        # how much a beat turns at each sample where its path is a metre longer
+        # phase in rad that each sample gains per metre of additional path length
         per_m = 2j * math.pi * self.config.chirp_slope_hz_per_s / SPEED_OF_LIGHT_MPS
         since_middle_s = (np.arange(self.config.num_samples) - self.config.num_samples / 2) / self.config.sample_rate_hz
         self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
         self._extra_m = 0.0 if board is None else board.extra_length_m
         self._fast = FastTime(self.config)
-        # with their share of each chirp, where segments fade into each other
+        # each with its weight per chirp where segments are cross-faded
         self._segments: list[tuple[_SegmentFactors, Tensor | None]] = [
             (_SegmentFactors(one, self.device), None) for one in self.clock.segments
         ]
@@ -67,7 +77,7 @@ class AdcSynthesis:
         """Samples of moving paths.
 
         Args:
-            paths: (frame * segment, path), amplitudes in sqrt(mW).
+            paths: Moving paths, (frame * segment, path), amplitudes in sqrt(mW).
 
         Returns:
             Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
@@ -83,7 +93,7 @@ class AdcSynthesis:
             dtype=torch.complex64,
             device=self.device,
         )
-        # On the CPU frame by frame: nothing is padded, and the caches hold it.
+        # On the CPU one frame at a time: no padding is computed, and the working set stays in the cache.
         batches = [slice(0, frames)] if self.device.type != "cpu" else [slice(at, at + 1) for at in range(frames)]
         if any(share is not None for _, share in self._segments):
             adc.zero_()
@@ -101,15 +111,16 @@ class AdcSynthesis:
         return self._elements.slots(adc, 2)
 
     def _share(self, share: np.ndarray) -> Tensor:
-        """Shares (loop, tx) as factors of samples (frame, loop, tx, rx, sample)."""
+        """Weights (loop, tx) as factors of samples (frame, loop, tx, rx, sample)."""
         return torch.from_numpy(share[..., None, None].astype(np.float32)).to(self.device)
 
     def static(self, paths: StaticPaths, weight: Tensor | None = None) -> Tensor:
-        """Samples of static paths, the same in every loop.
+        """Samples of static paths, which are the same in every loop.
 
         Args:
-            paths: (path,).
-            weight: (set, path), real or complex: so many sums of weighted paths; by default one plain sum.
+            paths: Static paths, (path,).
+            weight: Weights (set, path), real or complex; each set gives one weighted sum. By default one unweighted
+                sum.
 
         Returns:
             Samples (tx, rx, sample), or (set, tx, rx, sample) with weights; complex64, in sqrt(mW).
@@ -141,31 +152,45 @@ class AdcSynthesis:
         return self._elements.slots(self.array.mixed(plain.addcmul(tilted, self._turn_per_m), 1), 1)
 
     def occluded(self, paths: ScenePaths) -> Tensor:
-        """Samples of the static paths that are occluded in each frame, complex64 (frame, tx, rx, sample)."""
+        """Samples of the static paths that are occluded in each frame, to be subtracted from those of the empty room.
+
+        Args:
+            paths: All paths of the frames.
+
+        Returns:
+            Samples (frame, tx, rx, sample), complex64, in sqrt(mW).
+        """
         weight = paths.occluded.float()
         if self.device.type != "cpu":
             return self.static(paths.static, weight)
         some = weight.any(dim=0).nonzero()[:, 0]
         factors = self._static_factors(paths.static[some])
-        # each frame on its own: its bits do not depend on which others are asked for
+        # one frame at a time, so that a frame is bit-identical whichever other frames are computed with it
         return torch.cat([self._recorded(factors.summed(frame[None])) for frame in weight[:, some]])
 
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
-        """Samples of leakage, the same in every loop.
+        """Samples of the TX-RX leakage, which are the same in every loop.
 
         Args:
-            length_m: path lengths (tap,), as `BoardEffects.leakage` gives them.
-            amplitude: (tap, tx, rx) in sqrt(mW).
+            length_m: Path lengths (tap,) in metres, as `BoardEffects.leakage` gives them.
+            amplitude: Amplitudes (tap, tx, rx) in sqrt(mW).
 
         Returns:
-            Samples (tx, rx, sample), complex64.
+            Samples (tx, rx, sample), complex64, in sqrt(mW).
         """
         fast = self._fast.factor(length_m / SPEED_OF_LIGHT_MPS, 0.0)  # (tap, sample)
         adc = torch.tensordot(self._elements.pair_values(amplitude), fast, dims=([0], [0]))
         return self._elements.slots(adc, 0)
 
     def static_rate(self, paths: StaticPaths) -> Tensor:
-        """How fast the samples of static paths change within a chirp, complex64 (tx, rx, sample) in sqrt(mW)/s."""
+        """Time derivative of the samples of static paths within a chirp, by which clock errors act on them.
+
+        Args:
+            paths: Static paths, (path,).
+
+        Returns:
+            Rate (tx, rx, sample), complex64, in sqrt(mW)/s.
+        """
         delay_s = paths.length_m.mean(dim=(1, 2)) / SPEED_OF_LIGHT_MPS
         beat_rad_per_s = 2 * math.pi * self.config.chirp_slope_hz_per_s * delay_s
         return self.static(paths, 1j * beat_rad_per_s[None])[0]
@@ -180,7 +205,7 @@ class AdcSynthesis:
         if self.device.type == "cpu" and len(paths) == 1:
             paths = paths[:, paths.length_m[0].argsort()]
             bands = self._fast.bands(paths.length_m[0] / SPEED_OF_LIGHT_MPS)
-        # (frame, time, 3, path): paths come last, as loops over few antennas or chirps cost more than they compute
+        # (frame, time, 3, path): paths come last, as loops over a few antennas or chirps are mostly overhead
         ends = paths.departure.positions_m(segment.place_s), paths.arrival.positions_m(segment.place_s)
         out_m, back_m = (distance_m(end[:, :NUM_NODES]) for end in ends)
         length_m = out_m + back_m  # (frame, node, path)
@@ -207,15 +232,15 @@ class AdcSynthesis:
 
 @dataclass(frozen=True, kw_only=True)
 class _StaticFactors(TensorRecord):
-    """Static paths as sums over them need them."""
+    """Separable factors of static paths."""
 
-    pairs: Tensor  # (path, 2, tx, rx) complex64: of each pair of antennas, and the same times how much longer it is
+    pairs: Tensor  # (path, 2, tx, rx) complex64: phasor per antenna pair, and the same times the excess length in m
     fast: Tensor  # (path, sample) complex64
 
     def summed(self, weight: Tensor) -> Tensor:
         """Sums (2, set, tx, rx, sample) of paths with weights (set, path), real or complex."""
         some = weight.ne(0).any(dim=0).nonzero()[:, 0]
-        # `index_select` takes half as long as an index
+        # `index_select` takes half the time of indexing
         chosen = self if len(some) == len(weight[0]) else self.map(lambda factor: factor.index_select(0, some))
         left = weight[:, some].T.to(torch.complex64)[:, None, :, None, None] * chosen.pairs[:, :, None]
         shape = (*left.shape[1:], self.fast.shape[-1])
@@ -223,7 +248,7 @@ class _StaticFactors(TensorRecord):
 
 
 class _SegmentFactors:
-    """A segment of the frame's clock as tensors."""
+    """Tensors of one time segment of the frame: its nodes, and the interpolation from nodes to chirps and blocks."""
 
     def __init__(self, segment: Segment, device: torch.device):
         self.segment, self.loops = segment, segment.loops
@@ -236,19 +261,32 @@ class _SegmentFactors:
 
 
 class ArrayPhases:
-    """Near-field phases of a radar's antennas relative to the array's centre.
-
-    `mixing` (tx * rx, tx * rx): what a board records of each pair, of what each would receive alone.
-    """
+    """Near-field phases of a radar's antenna pairs relative to the array's centre."""
 
     def __init__(self, config: RadarConfig, device: torch.device, mixing: Tensor | None = None):
+        """Keeps the antenna positions of a radar on a device.
+
+        Args:
+            config: The radar.
+            device: Where phases are computed.
+            mixing: Antenna errors of a board, (tx * rx, tx * rx): recorded pairs by ideal pairs. By default none.
+        """
         self._mixing = None if mixing is None else mixing.to(device)
         self.wavelength_m = config.wavelength_m
         self.tx_m = _double(np.asarray(config.tx_position_m), device)
         self.rx_m = _double(np.asarray(config.rx_position_m), device)
 
     def __call__(self, departure_m: Tensor, arrival_m: Tensor, is_reciprocal: Tensor) -> "PairPhases":
-        """Of paths between these places (frame, ..., 3, path); both orders of reciprocal ones (frame, path)."""
+        """Phases of paths at all antenna pairs, with both directions of travel of reciprocal paths.
+
+        Args:
+            departure_m: Apparent departure points (frame, ..., 3, path), float64.
+            arrival_m: Apparent arrival points, of the same shape.
+            is_reciprocal: Bool (frame, path): whether the wave travels the path in the opposite direction, too.
+
+        Returns:
+            Phases and excess lengths (frame, ..., tx, rx, path).
+        """
         pairs = self._pairs(departure_m, arrival_m)
         some = is_reciprocal.any(dim=0).nonzero()[:, 0]
         if len(some):
@@ -259,7 +297,15 @@ class ArrayPhases:
         return PairPhases(phase=self.mixed(pairs.phase, -3), excess=self.mixed(pairs.excess, -3))
 
     def mixed(self, values: Tensor, axis: int) -> Tensor:
-        """Values of antenna pairs, transmitters on an axis and receivers on the next, as the board records them."""
+        """Applies the board's antenna errors.
+
+        Args:
+            values: Values of ideal antenna pairs, transmitters on one axis and receivers on the next.
+            axis: Axis of the transmitters.
+
+        Returns:
+            Values of the same shape, as the board records them.
+        """
         if self._mixing is None:
             return values
         axis %= values.dim()
@@ -274,34 +320,42 @@ class ArrayPhases:
 
 @dataclass(frozen=True, kw_only=True)
 class PairPhases:
-    """What a path's length from each transmitter to each receiver does to its phase, relative to the array's centre."""
+    """Phasors of a path at all antenna pairs, relative to the array's centre."""
 
-    phase: Tensor  # (..., tx, rx, path) complex64, the sum over both orders of a reciprocal path
-    excess: Tensor  # the same, each times how much longer the path is, in m
+    phase: Tensor  # (..., tx, rx, path) complex64, summed over both directions of a reciprocal path
+    excess: Tensor  # the same, each weighted by its excess length in m
 
 
 def distance_m(place_m: Tensor) -> Tensor:
-    """(..., path) from the array's centre to places (..., 3, path)."""
+    """Distance (..., path) in metres from the array's centre to places (..., 3, path)."""
     return place_m.square().sum(dim=-2).sqrt()
 
 
 def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
-    """|p - a| - |p| (..., antenna, path) of places p (..., 3, path) and antennas a, written so that nothing cancels."""
+    """Path length from an antenna relative to the array's centre, |p - a| - |p|, without cancellation.
+
+    Args:
+        place_m: Places p (..., 3, path) in metres.
+        antenna_m: Antenna positions a (antenna, 3) in metres.
+
+    Returns:
+        Differences (..., antenna, path) in metres.
+    """
     distance = distance_m(place_m)[..., None, :]
     excess = antenna_m.square().sum(dim=-1)[:, None] - 2 * (antenna_m @ place_m)
     both_m = (distance.square() + excess).clamp(min=0).sqrt() + distance
-    return excess / both_m.clamp(min=1e-12)  # 0 for the place of an antenna itself, as padding is
+    return excess / both_m.clamp(min=1e-12)  # 0 at the antenna itself, where padding lies
 
 
 def interpolation(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Weights of linear interpolation, continued beyond the ends.
+    """Weights of linear interpolation, extrapolated beyond the ends.
 
     Args:
-        nodes: places (node,), rising.
-        at: places (time,) of interpolation.
+        nodes: Abscissae (node,), increasing.
+        at: Abscissae (time,) at which values are wanted.
 
     Returns:
-        (node, time): values at nodes times this are values in between.
+        (node, time): `values_at_nodes @ weights` are the interpolated values.
     """
     if len(nodes) == 1:
         return np.ones((1, len(at)))
@@ -314,7 +368,14 @@ def interpolation(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def unpadded(paths: Paths) -> Paths:
-    """Paths (frame, path) without the padding that all frames have."""
+    """Paths without the padding that all frames share.
+
+    Args:
+        paths: Paths (frame, path), padded at the end with amplitudes of zero.
+
+    Returns:
+        The same paths, cut after the last one with a non-zero amplitude in any frame.
+    """
     there = paths.amplitude.ne(0).any(dim=0).nonzero()[:, 0]
     longest = int(there[-1]) + 1 if len(there) else 0
     return paths if longest == paths.amplitude.shape[1] else paths[:, :longest]
@@ -326,7 +387,10 @@ def _double(values: np.ndarray, device: torch.device) -> Tensor:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
+    """Restricts torch to one thread.
+
+    20 frames take 30 ms on one thread; more threads are hardly faster, and a hundred times slower on a busy machine.
+    """
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:

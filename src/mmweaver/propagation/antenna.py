@@ -1,4 +1,4 @@
-"""One antenna's pattern, and the radar equation."""
+"""Antenna pattern and radar equation."""
 
 from typing import Any
 
@@ -7,34 +7,34 @@ import numpy as np
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import PerPoint, Points
 
-# Between -3 dB at half the beamwidth and -6 dB where TI's plots of the xWR1843 have it (50 and 20 degrees).
+# Chosen to pass through -3 dB at half the beamwidth and -6 dB where TI's plots of the xWR1843 show it (50, 20 degrees).
 AZIMUTH_ROLL_OFF = 1.2
 ELEVATION_ROLL_OFF = 1.94
 FLOOR_DB = -25.0  # side lobes
 
 
 def pattern(direction: Points, config: RadarConfig) -> PerPoint:
-    """Amplitude of one antenna relative to its peak straight ahead (+y).
+    """Amplitude pattern of one antenna relative to boresight (+y).
 
     Args:
-        direction: unit vectors (point, 3).
-        config: the radar, for its beam widths.
+        direction: Unit vectors (point, 3).
+        config: The radar, for its beamwidths.
 
     Returns:
-        (point,).
+        Amplitude (point,), 1 at boresight.
     """
     return 10 ** (-pattern_db(direction, config) / 20)
 
 
 def pattern_db(direction: Any, config: RadarConfig) -> Any:
-    """Loss of one antenna in dB; differentiable.
+    """Loss of one antenna in dB relative to boresight; differentiable.
 
     Args:
-        direction: unit vectors (..., 3), an array or a tensor.
-        config: the radar, for its beam widths.
+        direction: Unit vectors (..., 3), an array or a tensor.
+        config: The radar, for its beamwidths.
 
     Returns:
-        (...), 0 straight ahead.
+        Loss (...) in dB, 0 at boresight, at most that of the side lobes.
     """
     if isinstance(direction, np.ndarray):
         xp: Any = np
@@ -45,22 +45,37 @@ def pattern_db(direction: Any, config: RadarConfig) -> Any:
     elevation_deg = xp.abs(xp.rad2deg(xp.arcsin(xp.clip(z, -0.999, 0.999))))
     loss_db = 3 * (azimuth_deg / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
     loss_db = loss_db + 3 * (elevation_deg / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
-    # side lobes of a vertically polarised antenna vanish straight up and down, along its field
+    # side lobes of a vertically polarised antenna vanish along its E-field, straight up and down
     side_lobes_db = -FLOOR_DB - 10 * xp.log10(xp.clip(1 - z**2, 1e-12, 1.0))
     return xp.minimum(loss_db, side_lobes_db)
 
 
 def scatterer_gain(config: RadarConfig) -> float:
-    """Amplitude in sqrt(mW) of a scatterer of 1 m2 at 1 m, straight ahead.
+    """Amplitude of the echo of a scatterer of 1 m2 at 1 m on boresight.
 
-    Divide by both distances, multiply by sqrt(cross section) and by the pattern of both directions.
+    Divide by both leg lengths, multiply by sqrt(cross section) and by the pattern in both directions.
     Reference: the radar equation, docs/radar_primer.md, equation 10.
+
+    Args:
+        config: The radar, for its transmit power, antenna gain and wavelength.
+
+    Returns:
+        Amplitude in sqrt(mW).
     """
     power_db = config.tx_power_dbm + 2 * config.antenna_gain_dbi
     return 10 ** (power_db / 20) * config.wavelength_m / (4 * np.pi) ** 1.5
 
 
 def specular_gain(config: RadarConfig) -> float:
-    """Amplitude in sqrt(mW) of a perfect specular reflector at a path length of 1 m, straight ahead (Friis; eq. 11)."""
+    """Amplitude of a perfect specular reflection at a path length of 1 m on boresight.
+
+    Reference: Friis equation, docs/radar_primer.md, equation 11.
+
+    Args:
+        config: The radar, for its transmit power, antenna gain and wavelength.
+
+    Returns:
+        Amplitude in sqrt(mW).
+    """
     power_db = config.tx_power_dbm + 2 * config.antenna_gain_dbi
     return 10 ** (power_db / 20) * config.wavelength_m / (4 * np.pi)

@@ -1,7 +1,7 @@
 """A background recording in place of sampled static phases.
 
-Static clutter is then the recording's own. How much of it a body occludes is inferred: the static paths are given the
-amplitudes that, of all they might have, explain the recording best.
+Static clutter is then the recording's own. How much of it a body occludes is inferred: the static paths receive the
+posterior mean amplitudes given the recording.
 Reference: linear Gaussian conditioning (Rasmussen and Williams, Gaussian Processes, 2006, appendix A.2).
 """
 
@@ -27,30 +27,39 @@ from mmweaver.signal.spectra import (
     range_doppler_power,
 )
 
-MISFIT = 0.01  # of the recording's mean power is not to be explained by a photo's geometry
-SHOWN = 1e-4  # of the strongest cell: what levels are compared by
-MOVES = 10.0  # times the noise
+MISFIT = 0.01  # share of the recording's mean power that a photo's geometry cannot explain
+SHOWN = 1e-4  # cells above this share of the strongest are used to compare levels
+MOVES = 10.0  # times the noise power: moving cells above it count as motion
 NO_SCALE = "the background recording has no absolute scale: it was taken to be as strong as the scene's paths predict"
 SOMEBODY = "something moves in the background recording: its mean over time was taken"
 
 
 @dataclass(frozen=True, kw_only=True)
 class BackgroundRecording:
-    """What a recording tells of room and receiver."""
+    """Static clutter, noise level and scale that a recording without people provides."""
 
     static: Tensor  # complex (range, antenna), the cube at zero Doppler, in sqrt(mW)
     noise_power: float  # mW in a cell of the cube
-    sample_noise_mw: float  # of an ADC sample
-    unit: float  # sqrt(mW) of 1.0 in the recording
-    count_sqrt_mw: float  # of the converter
+    sample_noise_mw: float  # noise power per ADC sample
+    unit: float  # sqrt(mW) per unit of the recording
+    count_sqrt_mw: float  # sqrt(mW) per count of the converter
     assumptions: tuple[str, ...]
 
     @classmethod
     def of(cls, recording: RadarCube, expected: Tensor, radar: MeanPower) -> "BackgroundRecording":
-        """Of a recording by the same radar (`check_recording`).
+        """Evaluates a recording by the same radar (`check_recording`).
 
-        `expected` (range, azimuth) is the mean power that the scene's paths predict, which gives a recording its scale
-        where it has none. Raises InputError where they have nothing in common.
+        Args:
+            recording: Cube without people.
+            expected: Mean power (range, azimuth) in mW that the scene's paths predict; it sets the scale of a recording
+                that has none.
+            radar: Mean power maps of the radar, for its configuration and noise.
+
+        Returns:
+            The background, with assumptions about scale and motion in words.
+
+        Raises:
+            InputError: If a recording without scale has no cell in common with the scene's paths.
         """
         middle = radar.config.num_loops // 2
         mean = recording.values[:, :, middle].mean(axis=0, dtype=np.complex128)
@@ -75,9 +84,16 @@ class BackgroundRecording:
         )
 
     def conditioned(self, paths: StaticPaths, renderer: CubeRenderer) -> StaticPaths:
-        """Static paths (path,) with the amplitudes that the recording makes most likely.
+        """Static paths with the amplitudes that are most likely given the recording.
 
-        Each may be any complex number of times as strong, of mean power 1 (a priori).
+        A priori each amplitude is multiplied by an independent complex Gaussian of mean power 1.
+
+        Args:
+            paths: Static paths of the scene, (path,).
+            renderer: Renderer of the radar that made the recording.
+
+        Returns:
+            The same paths with posterior mean amplitudes.
         """
         seen = renderer.static(paths).each()  # (range and antenna, path)
         wanted = self.static.flatten()
@@ -94,7 +110,15 @@ class BackgroundRecording:
 
 
 def check_recording(recording: RadarCube, config: RadarConfig) -> None:
-    """Raises InputError for a recording of another radar, of no numbers, or of nothing."""
+    """Checks that a background recording fits the radar.
+
+    Args:
+        recording: Cube without people.
+        config: The radar to generate for; its name and frame period may differ.
+
+    Raises:
+        InputError: If the recording is from a radar with other settings, empty, zero or not finite.
+    """
     own = {field.name for field in fields(config)} - {"name", "frame_period_s"}
     if any(getattr(recording.config, name) != getattr(config, name) for name in own):
         raise InputError(
@@ -106,13 +130,18 @@ def check_recording(recording: RadarCube, config: RadarConfig) -> None:
 
 
 def agreeing_gain(maps: Sequence[tuple[Tensor, Tensor]]) -> float:
-    """The factor of amplitude at which recorded power maps agree with expected ones, by the median of what both show.
+    """Amplitude factor that brings recorded power maps to the level of expected ones.
+
+    The median log ratio over the cells that are visible in both.
 
     Args:
-        maps: pairs of (expected, recorded) power.
+        maps: Pairs of (expected, recorded) power maps of equal shape.
+
+    Returns:
+        Factor of the recorded amplitude.
 
     Raises:
-        InputError: where they show nothing in common.
+        InputError: If no cell is visible in both.
     """
     ratios = []
     for expected, own in maps:

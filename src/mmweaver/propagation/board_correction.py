@@ -1,7 +1,7 @@
-"""A recording without the errors of the board that made it: `board_effects` the other way round.
+"""Removes the errors of a board from its recordings: the inverse of `board_effects`.
 
-Noise stays noise, so nothing is gained where the IF passes little: there it is raised by MAX_GAIN_DB at most. What
-is another error each time (drift) cannot be taken away. Reference: docs/board.md.
+Noise is amplified where the IF response is weak, so the correction is limited to MAX_GAIN_DB. Errors that differ
+between recordings (drift) cannot be removed. Reference: docs/board.md.
 """
 
 from dataclasses import dataclass, replace
@@ -17,13 +17,19 @@ from mmweaver.propagation.adc_synthesis import AdcSynthesis
 from mmweaver.propagation.board_effects import BoardEffects
 
 MAX_GAIN_DB = 30.0
-WORST_CONDITION = 1e3  # of coupled antennas, beyond which they cannot be taken apart
-LIKE_THE_LEAKAGE = 0.5  # correlation of a recording of unknown scale with a board's leakage, from which it is that
+WORST_CONDITION = 1e3  # condition number of the antenna coupling beyond which it is not inverted
+LIKE_THE_LEAKAGE = 0.5  # minimum correlation between a recording of unknown scale and a board's leakage to remove it
 
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectedSamples:
-    """Samples without errors, of a radar whose antennas are where the board has them; and what was done, in words."""
+    """Samples with the board's errors removed.
+
+    Attributes:
+        adc: The samples; their radar has the antenna positions of the board.
+        corrected: Errors that were removed, in words.
+        left_in: Errors that remain, in words.
+    """
 
     adc: AdcCube
     corrected: tuple[str, ...]
@@ -34,11 +40,14 @@ def corrected(adc: AdcCube, board: Board) -> CorrectedSamples:
     """Recorded samples as an ideal board would have recorded them.
 
     Args:
-        adc: samples (frame, loop, tx, rx, sample).
-        board: that recorded them.
+        adc: Samples (frame, loop, tx, rx, sample).
+        board: The board that recorded them.
+
+    Returns:
+        Corrected samples, and which errors were removed and which remain.
 
     Raises:
-        InputError: for the board of another radar, and for antennas whose coupling cannot be undone.
+        InputError: If the board belongs to another radar, or its antenna coupling cannot be inverted.
     """
     effects = BoardEffects(board, adc.config)
     done, left = [], []
@@ -76,7 +85,7 @@ _WHY_LEAKAGE = "leakage: the recording's static echoes are not like it, or its s
 
 
 def _remove_leakage(samples: np.ndarray, adc: AdcCube, effects: BoardEffects) -> bool:
-    """Takes the leakage away from samples, in place; whether that could be done."""
+    """Subtracts the leakage from samples, in place; returns whether that was possible."""
     config = adc.config
     if config.is_coded or not config.complex_samples:
         return False
@@ -89,9 +98,9 @@ def _remove_leakage(samples: np.ndarray, adc: AdcCube, effects: BoardEffects) ->
 
 
 def _scale(samples: np.ndarray, leakage: np.ndarray) -> float | None:
-    """Sqrt(mW) of 1.0 in a recording that holds this leakage; None if it seems to hold another."""
+    """Sqrt(mW) per unit of a recording that contains this leakage; None if it seems to contain another."""
     still = samples.mean(axis=(0, 1), dtype=np.complex128)
-    # the nearest bins alone: further off the room's echoes are as strong
+    # only the nearest bins: farther away the room's echoes are as strong as the leakage
     near, wanted = (np.fft.fft(each * np.hanning(each.shape[-1]), axis=-1)[..., :4] for each in (still, leakage))
     common, own = np.vdot(wanted, near), np.vdot(near, near).real
     power = np.vdot(wanted, wanted).real
@@ -101,7 +110,7 @@ def _scale(samples: np.ndarray, leakage: np.ndarray) -> float | None:
 
 
 def _unmixed(samples: np.ndarray, mixing: np.ndarray, board: Board) -> np.ndarray:
-    """Samples (frame, loop, tx, rx, sample) of antenna pairs as each alone receives."""
+    """Samples (frame, loop, tx, rx, sample) with the antenna coupling inverted."""
     if np.linalg.cond(mixing) > WORST_CONDITION:
         raise InputError(f"board {board.name!r} couples antennas so that they cannot be taken apart")
     inverse = np.linalg.inv(mixing).astype(np.complex64)
@@ -111,7 +120,7 @@ def _unmixed(samples: np.ndarray, mixing: np.ndarray, board: Board) -> np.ndarra
 
 
 def _unfiltered(samples: np.ndarray, config: RadarConfig, effects: BoardEffects) -> np.ndarray:
-    """Samples before the IF filter: each beat over the response at it. Of real samples the other half is conjugate."""
+    """Samples before the IF filter: the spectrum over the response, Hermitian for real samples."""
     from scipy import fft
 
     share = np.fft.fftfreq(config.num_samples)
@@ -120,7 +129,7 @@ def _unfiltered(samples: np.ndarray, config: RadarConfig, effects: BoardEffects)
     else:
         response = effects.response(np.abs(share))
         response = np.where(share < 0, response.conj(), response)
-        response = np.where(np.isin(share, (0.0, -0.5)), np.abs(response), response)  # these bins of it are real
+        response = np.where(np.isin(share, (0.0, -0.5)), np.abs(response), response)  # DC and Nyquist bins are real
     response = response * effects.gain
     least = 10 ** (-MAX_GAIN_DB / 20) * effects.gain
     response *= np.maximum(1, least / np.maximum(np.abs(response), 1e-12))
@@ -129,7 +138,7 @@ def _unfiltered(samples: np.ndarray, config: RadarConfig, effects: BoardEffects)
 
 
 def _nearer(samples: np.ndarray, config: RadarConfig, bias_m: float) -> np.ndarray:
-    """Samples without the range bias; of real ones the analytic signal is moved, and its real part kept."""
+    """Samples without the range bias; real samples are shifted as analytic signals, and the real part is kept."""
     beat_hz = 2 * config.chirp_slope_hz_per_s * bias_m / SPEED_OF_LIGHT_MPS
     since_middle_s = (np.arange(config.num_samples) - config.num_samples / 2) / config.sample_rate_hz
     turn = np.exp(-2j * np.pi * beat_hz * since_middle_s).astype(np.complex64)

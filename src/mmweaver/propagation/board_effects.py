@@ -1,7 +1,7 @@
-"""What a board does to signals: to the amplitudes of paths, to antennas, to chirps, and to the receiver's noise.
+"""Effects of a board on signals: on path amplitudes, antennas, chirps, and the receiver's noise.
 
-Both renderers take it from here. A path is a tone of the IF, so the IF response is a factor of its amplitude, and so is
-the drift of the carrier; antenna errors mix the phases of antenna pairs; a range bias only moves beats.
+Both renderers use them. A path is a tone at the IF, so the IF response and the drift of the carrier are factors of its
+amplitude; antenna errors mix the phases of antenna pairs; a range bias shifts beat frequencies.
 Reference: docs/board.md.
 """
 
@@ -17,35 +17,70 @@ from mmweaver.core.radar_config import Position, RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.propagation.paths import Interaction, Paths, StaticPaths
 
-DRIFT_PERIODS_S = (3.0, 7.0, 17.0, 41.0)  # of the waves that a drift is made of, equally strong
+DRIFT_PERIODS_S = (3.0, 7.0, 17.0, 41.0)  # of the sinusoids of equal strength that make up a drift
 SAME_ROW_M = 1e-6
 
 
 class BoardEffects:
-    """A board in one radar. `radar` is the radar as built; what is given out has the `nominal` one, as a user's has."""
+    """Errors of one board with one radar.
+
+    Attributes:
+        board: The board.
+        nominal: The radar as users know it, which results are labelled with.
+        radar: The radar as built, with the board's antenna spacing and noise figure.
+        extra_length_m: Additional path length in metres by the range bias.
+        channels: Antenna errors (antenna, antenna), complex64, or None without any.
+        first_chirp: Complex factor of the first chirp of each frame.
+        first_slot: Slot in which that chirp is sent.
+    """
 
     def __init__(self, board: Board, config: RadarConfig):
+        """Evaluates a board.
+
+        Args:
+            board: The board.
+            config: The nominal radar.
+
+        Raises:
+            InputError: If the board does not fit the radar (`Board.check_fits`).
+        """
         board.check_fits(config)
         self.board, self.nominal = board, config
         self.radar = built_radar(board, config)
         self.extra_length_m = 2 * board.range_bias_m
-        self.channels = _channels(board, config)  # complex64 (antenna, antenna), or None where nothing is mixed
+        self.channels = _channels(board, config)
         first = 1 + board.first_chirp_amplitude_percent / 100
         self.first_chirp = complex(first * np.exp(1e-3j * board.first_chirp_phase_mrad))
         self.first_slot = 0 if config.is_coded else config.tx_order[0]
 
     # paths ----------------------------------------------------------------------------------------------------------
     def recorded_static(self, paths: StaticPaths) -> StaticPaths:
-        """Static paths (path,) as strong as the receiver's IF leaves them.
+        """Static paths with the gain and IF response of the receiver.
 
-        Clutter is as strong as recorded over the noise of boards, whose gains are in it.
+        Diffuse clutter is not amplified by the board's gain: its level was taken from recordings over the noise of
+        boards whose gains it already contains.
+
+        Args:
+            paths: Static paths, (path,).
+
+        Returns:
+            The same paths with amplitudes behind the IF filter.
         """
         gain = torch.where(paths.interaction == int(Interaction.CLUTTER), 1.0, self.gain)
         factor = self.if_response(paths.length_m.mean(dim=(-2, -1))) * gain
         return replace(paths, amplitude=paths.amplitude * factor)
 
     def recorded_moving(self, paths: Paths, frames: np.ndarray, seed: int) -> Paths:
-        """Moving paths (frame * segment, path) of frames of these numbers, with the carrier's drift, too."""
+        """Moving paths with the gain and IF response of the receiver, and the drift of its carrier.
+
+        Args:
+            paths: Moving paths, (frame * segment, path).
+            frames: Frame numbers (frame,), which the drift depends on.
+            seed: Seed of the drift.
+
+        Returns:
+            The same paths with amplitudes behind the IF filter.
+        """
         length_m = paths.length_m
         factor = self.if_response(length_m) * self.gain
         if self.board.drift_ppm:
@@ -56,21 +91,21 @@ class BoardEffects:
 
     @property
     def gain(self) -> float:
-        """Of the amplitude of echoes."""
+        """Amplitude gain of echoes."""
         return 10 ** (self.board.gain_db / 20)
 
     def if_response(self, length_m: Tensor) -> Tensor:
-        """Complex gain (...) of the IF at the beats of path lengths (...)."""
+        """Complex gain (...) of the IF at the beat frequencies of path lengths (...) in metres."""
         config = self.radar
         beat_hz = config.chirp_slope_hz_per_s * (length_m + self.extra_length_m) / SPEED_OF_LIGHT_MPS
         return torch.from_numpy(self.response((beat_hz / config.sample_rate_hz).numpy()))
 
     def noise_gain(self, share: np.ndarray) -> np.ndarray:
-        """By what the IF multiplies the amplitude of noise at shares (...) of the sample rate."""
+        """Amplitude gain (...) of noise at frequencies (...) given as shares of the sample rate."""
         return np.abs(self.response(share))
 
     def response(self, share: np.ndarray) -> np.ndarray:
-        """Complex gain (...) of the IF at shares (...) of the sample rate."""
+        """Complex gain (...) of the IF at frequencies (...) given as shares of the sample rate."""
         board = self.board
         if not len(board.if_share):
             return np.ones(share.shape, complex)
@@ -84,7 +119,15 @@ class BoardEffects:
         return bool(len(self.board.if_share))
 
     def drift(self, frames: np.ndarray, seed: int) -> np.ndarray:
-        """Relative error (frame,) of the carrier at each frame: slow waves with the phases of a seed."""
+        """Relative frequency error of the carrier, a sum of slow sinusoids of random phase.
+
+        Args:
+            frames: Frame numbers (frame,).
+            seed: Seed of the phases.
+
+        Returns:
+            Relative error (frame,), with the rms value that the board states in ppm.
+        """
         phase = stream(seed, "carrier drift").uniform(0, 2 * np.pi, len(DRIFT_PERIODS_S))
         turns = np.asarray(frames)[:, None] * self.nominal.frame_period_s / np.array(DRIFT_PERIODS_S)
         waves = np.sin(2 * np.pi * turns + phase).sum(axis=1) * np.sqrt(2 / len(DRIFT_PERIODS_S))
@@ -93,7 +136,7 @@ class BoardEffects:
     # leakage --------------------------------------------------------------------------------------------------------
     @property
     def leakage(self) -> tuple[Tensor, Tensor]:
-        """Path lengths (tap,) in metres, and amplitudes (tap, tx, rx) in sqrt(mW), complex64, of the leakage."""
+        """Path lengths (tap,) in metres and amplitudes (tap, tx, rx) in sqrt(mW), complex64, of the TX-RX leakage."""
         board, config = self.board, self.nominal
         level_db, phase = board.leakage_level_db, np.radians(board.leakage_phase_deg)
         amplitude = 10 ** ((level_db + config.tx_power_dbm) / 20) * np.exp(1j * phase)
@@ -102,14 +145,22 @@ class BoardEffects:
 
     @property
     def leakage_rate(self) -> tuple[Tensor, Tensor]:
-        """The same, amplitudes as they change with the carrier's relative error."""
+        """Path lengths as in `leakage`, and the derivative of its amplitudes by the relative error of the carrier."""
         length_m, amplitude = self.leakage
         turn = 2j * torch.pi / self.radar.wavelength_m * length_m
         return length_m, (amplitude * turn[:, None, None]).to(torch.complex64)
 
 
 def built_radar(board: Board, config: RadarConfig) -> RadarConfig:
-    """The radar with the antenna places and the noise figure that its board has."""
+    """The radar with the antenna spacing and noise figure of its board.
+
+    Args:
+        board: The board; what it does not state stays nominal.
+        config: The nominal radar.
+
+    Returns:
+        The radar as built.
+    """
     values: dict[str, object] = {}
     if board.noise_figure_db is not None:
         values["noise_figure_db"] = board.noise_figure_db
@@ -125,7 +176,7 @@ def _scaled(places_m: tuple[Position, ...], times: float) -> tuple[Position, ...
 
 
 def _channels(board: Board, config: RadarConfig) -> Tensor | None:
-    """What is recorded of each antenna pair, of what each would receive alone: (antenna, antenna)."""
+    """Antenna errors (antenna, antenna): recorded pairs by ideal pairs; None for the identity."""
     count = config.num_tx * config.num_rx
     gain_db = board.channel_gain_db if board.channel_gain_db.size else np.zeros((config.num_tx, config.num_rx))
     phase_deg = board.channel_phase_deg if board.channel_phase_deg.size else np.zeros((config.num_tx, config.num_rx))

@@ -1,7 +1,7 @@
-"""A person as the radar sees one: capsules around the bones, points on their skin that ride along.
+"""A person as the radar sees one: capsules around the bones, and scattering points on their surface.
 
-The points and their micro-phases belong to the subject, not to the sequence: the same person in another motion has
-the same skin. Reference: physics of published 77 GHz body models, docs/radar_primer.md, section 4.
+Points and micro-phases belong to the subject, not to the sequence: the same person has the same skin in every motion.
+Reference: published 77 GHz body models, docs/radar_primer.md, section 4.
 """
 
 from dataclasses import dataclass
@@ -25,24 +25,29 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.propagation.skin_scattering import SkinEcho
 
-AVERAGE_SUBJECT, AVERAGE_NUM_POINTS = 90_000, 600  # the average body, no subject of a generated sequence
+AVERAGE_SUBJECT, AVERAGE_NUM_POINTS = 90_000, 600  # the average body, which no generated sequence uses
 DEFAULT_NUM_POINTS = 800
-CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # how far each part of the trunk breathes
-CHEST_BACK = 0.15  # and its back, of its front
-# how fast each capsule's radius grows along it
+CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # breathing amplitude relative to the chest
+CHEST_BACK = 0.15  # breathing amplitude of the back relative to the front
+# slope of each capsule's radius along its axis
 TAPER = np.array([(c.end_radius_m - c.start_radius_m) / c.typical_length_m * (c.start != c.end) for c in CAPSULES])
 
 
 @dataclass(frozen=True, kw_only=True)
 class Skin:
-    """Points of a body at some times: place and outward normal (time, point, 3)."""
+    """Skin points of a body over time.
+
+    Attributes:
+        place_m: Positions (time, point, 3) in metres.
+        normal: Outward unit normals (time, point, 3).
+    """
 
     place_m: np.ndarray
     normal: np.ndarray
 
 
 class ScatteringBody:
-    """One subject's skin points on its capsules; `skin` and `hull` pose them."""
+    """The skin points of one subject on its capsules; `skin` and `hull` pose them."""
 
     def __init__(
         self,
@@ -52,15 +57,24 @@ class ScatteringBody:
         echo: SkinEcho | None = None,
         girth: float = 1.0,
     ):
+        """Samples the skin points of a subject.
+
+        Args:
+            subject: Number of the person, which seeds points and micro-phases.
+            height_m: Body height in metres.
+            num_points: Number of skin points.
+            echo: How skin scatters; by default `SkinEcho()`.
+            girth: Circumference relative to a person of average build.
+        """
         self.echo = echo or SkinEcho()
         self.height_m, self.girth = height_m, girth
         self.radii_m = radii_m(height_m, girth)  # (capsule, 2)
-        self.widths = widths_per_depth()  # (capsule,) how much wider than deep each is
+        self.widths = widths_per_depth()  # (capsule,) width over depth
         self._posed: tuple[bytes, PosedCapsules] | None = None
         rng = stream(subject, "body", num_points)
         area = np.array([_side_area(capsule) for capsule in CAPSULES])
         self.part = np.sort(rng.choice(len(CAPSULES), size=num_points, p=area / area.sum()))
-        # Uniform over the sides and, by Archimedes, over the round caps.
+        # Uniform over the sides and, by Archimedes' hat-box theorem, over the round caps.
         caps = np.array([_cap_shares(c) for c in CAPSULES])[self.part]
         self.along = rng.random(num_points) * (1 + caps.sum(axis=1)) - caps[:, 0]
         over = self.along - np.clip(self.along, 0.0, 1.0)
@@ -72,7 +86,7 @@ class ScatteringBody:
         self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
 
     def posed(self, joints_m: np.ndarray) -> PosedCapsules:
-        """The capsules for joints (time, 22, 3); the last ones are kept, for skin and occlusion ask for the same."""
+        """The capsules for joints (time, 22, 3). The last result is kept: skin and occlusion use the same joints."""
         asked, kept = joints_m.tobytes(), self._posed
         if kept is None or kept[0] != asked:
             kept = self._posed = asked, pose_capsules(joints_m, self.height_m)
@@ -80,13 +94,21 @@ class ScatteringBody:
 
     @cached_property
     def _breathes(self) -> np.ndarray:
-        """How far each point follows the chest's front: all of it in front, a little at the sides and back."""
+        """Breathing amplitude of each point relative to the chest's front: 1 in front, small at the sides and back."""
         share = np.array([CHEST.get(capsule.start, 0.0) for capsule in CAPSULES])[self.part]
         front = np.maximum(np.sin(self.angle_rad), 0.0)
         return share * (CHEST_BACK + (1 - CHEST_BACK) * front)
 
     def skin(self, joints_m: np.ndarray, chest_m: np.ndarray | None = None) -> Skin:
-        """Skin points for joints (time, 22, 3); `chest_m` (time,) is how far the chest's front stands out."""
+        """Poses the skin points.
+
+        Args:
+            joints_m: Joints (time, 22, 3) in metres.
+            chest_m: Outward displacement of the chest's front (time,) in metres; by default none.
+
+        Returns:
+            Positions and normals of the skin points.
+        """
         posed = self.posed(joints_m)
         part, radii = self.part, self.radii_m
         along = np.clip(self.along, 0.0, 1.0)
@@ -110,7 +132,14 @@ class ScatteringBody:
         return Skin(place_m=place, normal=outward)
 
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Low-poly hull of all capsules for occlusion: vertices (time, vertex, 3) and faces (face, 3)."""
+        """Poses a low-poly hull of all capsules, for occlusion.
+
+        Args:
+            joints_m: Joints (time, 22, 3) in metres.
+
+        Returns:
+            Vertices (time, vertex, 3) in metres and faces (face, 3).
+        """
         return hull(self.posed(joints_m), self.height_m, self.girth)
 
 
@@ -120,13 +149,13 @@ def _side_area(capsule: Capsule) -> float:
 
 
 def _cap_shares(capsule: Capsule) -> tuple[float, float]:
-    """Length of the round caps at start and end relative to the side; only free ends have skin on them."""
+    """Length of the round caps at start and end relative to the side; only free ends are capped."""
     share = capsule.end_radius_m / capsule.typical_length_m if capsule.extend_m else 0.0
     return (share if capsule.is_lump else 0.0, share)
 
 
 def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
-    """How much brighter than the trunk a capsule is."""
+    """Brightness of a capsule relative to the trunk, in dB."""
     start, end = part_of(capsule.start), part_of(capsule.end)
     if end in ("elbow", "wrist"):
         return echo.arms_db
@@ -134,11 +163,17 @@ def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
 
 
 def body_of(pose: PoseSequence, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None) -> ScatteringBody:
-    """The body that a pose sequence moves."""
+    """The scattering body of the person in a pose sequence.
+
+    Args:
+        pose: Motion of one person, for its subject, height and girth.
+        num_points: Number of skin points.
+        echo: How skin scatters; by default `SkinEcho()`.
+    """
     return ScatteringBody(pose.subject, pose.height_m, num_points, echo, pose.girth)
 
 
 @lru_cache(maxsize=1)
 def average_body() -> ScatteringBody:
-    """A person of average height with a surface that belongs to no subject."""
+    """A person of average height, with skin points that belong to no subject."""
     return ScatteringBody(AVERAGE_SUBJECT, REFERENCE_HEIGHT_M, AVERAGE_NUM_POINTS)

@@ -1,4 +1,4 @@
-"""A person's paths: direct, over one face of the room, over a face both ways; and which static paths are occluded."""
+"""Paths of one person, direct and over one face of the room, and the static paths that the person occludes."""
 
 from copy import copy
 from dataclasses import dataclass, replace
@@ -17,14 +17,14 @@ from mmweaver.propagation.visibility import Visibility
 from mmweaver.propagation.visible_body import BodyAtFrames, VisibleBody, occluded_by
 
 GHOST_POINTS = 200
-GHOST_SLAB_ECHOES = 2  # of a face in body-wall paths: front, and back with all that goes to and fro within
+GHOST_SLAB_ECHOES = 2  # per face in body-wall paths: front, and back with all internal reflections
 SKIN_MARGIN_M = 0.03  # a point on the skin is not occluded by its own capsule's hull
 ROOM_MARGIN_M = 0.05  # nor by the seat it touches
-WALL_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
-MIN_SHARE = 1e-4  # ghosts over one face of less power than this share of the direct paths are left out,
-LEFT_OUT = 0.02  # and so much of the others' power, in their faintest paths
-CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine from its middle,
-SIDE_MARGIN = 0.05  # and in the sine to its right and left
+WALL_MARGIN_M = 0.12  # largest distance between the mesh of a wall and its fitted plane
+MIN_SHARE = 1e-4  # ghosts over one face with less than this share of the direct power are omitted,
+LEFT_OUT = 0.02  # and the faintest paths of the others, up to this share of their power
+CONE_MARGIN = 0.02  # around the skin as seen from the radar, in the cosine of the angle to its centre,
+SIDE_MARGIN = 0.05  # and in the sine of the angle to its right and left
 
 
 class BodyPaths(VisibleBody):
@@ -43,7 +43,17 @@ class BodyPaths(VisibleBody):
         hulls: list[RayCaster] | None = None,
         known: Visibility | None = None,
     ):
-        """`joints_m` (frame, node, 22, 3) and `chest_m` (frame, node) are given at the clock's nodes."""
+        """Poses the person, and determines which paths are clear.
+
+        Args:
+            room: The room; a `RayTracedRoom` unless the visibility is known.
+            body: The person's skin points.
+            clock: Clock of the radar's frame.
+            joints_m: Joints (frame, node, 22, 3) in metres at the clock's nodes.
+            chest_m: Outward displacement of the chest (frame, node) in metres; by default none.
+            hulls: One occluding mesh per frame, of all people present; by default the body's own.
+            known: Visibility of an earlier run, used instead of rays.
+        """
         super().__init__(room, body, BodyAtFrames.of(body, clock, joints_m, chest_m, hulls if known is None else []))
         self.known = known
         self.over_faces: list[np.ndarray | None] = [None] * len(room.reflectors)
@@ -54,11 +64,11 @@ class BodyPaths(VisibleBody):
             self.parts += self._ghosts(index, direct)
         self.second: BodyRoomPaths | None = None
         if room.propagation.bounces > 1 and known is None:
-            # a copy: two records that hold each other stay in memory until the garbage collector runs
+            # a copy: a reference cycle would stay in memory until the garbage collector runs
             self.second = BodyRoomPaths(copy(self))
 
     def paths(self, frame: int) -> list[Paths]:
-        """All paths over the person in one frame, a record (path,) for each time segment."""
+        """All paths over the person in one frame, one record (path,) per time segment."""
         of_segments = [
             Paths.cat([part.paths(frame, motion) for part in self.parts]) for motion in self.posed.motion[frame]
         ]
@@ -68,7 +78,7 @@ class BodyPaths(VisibleBody):
         return [Paths.cat([first, second[index]]) for index, first in enumerate(of_segments)]
 
     def occluded_paths(self, frame: int) -> StaticPaths:
-        """The static paths that the person occludes in one frame."""
+        """The static paths that the person occludes in one frame, (path,)."""
         return self.room.paths[torch.from_numpy(self.occluded(frame))]
 
     def occluded(self, frame: int) -> np.ndarray:
@@ -78,7 +88,7 @@ class BodyPaths(VisibleBody):
         return occluded_by(self.posed.hulls[frame], self.room.paths, self.occludable(frame))
 
     def visibility(self) -> Visibility:
-        """What the rays decided, to be kept."""
+        """The results of all ray casts, to be stored and passed as `known`."""
         occluded = np.zeros((self.num_frames, len(self.room.paths)), bool)
         for frame, row in enumerate(occluded):
             row[self.occluded(frame)] = True
@@ -91,7 +101,7 @@ class BodyPaths(VisibleBody):
         )
 
     def occludable(self, frame: int) -> np.ndarray:
-        """Indices of the static paths that the body may occlude: a cone around it, between its right and its left."""
+        """Indices of the static paths that the body may occlude: those within a cone and a wedge around it."""
         away = -self.towards[frame]
         axis = self.posed.place_m[frame].mean(axis=0)
         ahead = axis / np.linalg.norm(axis)
@@ -112,7 +122,7 @@ class BodyPaths(VisibleBody):
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     def _ghosts(self, index: int, direct_power: np.ndarray) -> list["SkinPaths"]:
-        """Over a face on departure or arrival, and over the face on both."""
+        """Paths over one face on departure or arrival, and over that face on both."""
         face, count, chosen = self.room.reflectors[index], len(self.body.micro_phase), ghost_points(self.body)
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
         area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
@@ -121,7 +131,7 @@ class BodyPaths(VisibleBody):
         corner = face.crossing(np.zeros(3), image)
         leg_m = np.linalg.norm(corner, axis=-1)
         to_corner = (corner - place) / np.maximum(length_m - leg_m, 1e-6)[..., None]
-        cos = np.clip((normal * to_corner).sum(-1), -1, 1)  # skin that touches the face has no direction to it
+        cos = np.clip((normal * to_corner).sum(-1), -1, 1)  # undefined where skin touches the face
         taper = face.inside(corner, fresnel_radius_m(leg_m, length_m - leg_m, self.config.wavelength_m))
         cos_face = np.abs(to_corner @ face.plane.normal)
         seen = (cos > 0.02) & (face.side(place) > 0.02) & (taper > 0.02) & (length_m < 2 * self.config.max_range_m)
@@ -151,7 +161,7 @@ class BodyPaths(VisibleBody):
         return [replace(ghost, present=ghost.present & clear) for ghost in ghosts]
 
     def _clear_legs(self, corner: np.ndarray, place: np.ndarray, ask: np.ndarray) -> np.ndarray:
-        """Radar to face and face to skin, past the room and past the body."""
+        """Whether the legs from radar to face and from face to skin are clear of the room and of the body."""
         which = np.nonzero(ask)
         clear = ask.copy()
         for start, end in ((np.zeros_like(corner), corner), (corner, place)):
@@ -161,16 +171,17 @@ class BodyPaths(VisibleBody):
 
 
 def ghost_points(body: ScatteringBody) -> np.ndarray:
-    """Indices of the few skin points that stand for the body in reflections."""
+    """Indices of the few skin points that represent the body in specular multipath."""
     count = len(body.micro_phase)
     return np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
 
 
 @dataclass(frozen=True)
 class SkinPaths:
-    """One kind of path over the chosen skin points in all frames.
+    """One kind of path over selected skin points in all frames.
 
-    `departure`, `arrival`: the face that the wave meets before and after the skin. With one face both orders count.
+    `departure` and `arrival` are the faces that the wave meets before and after the skin. A path over one face counts
+    in both directions of travel.
     """
 
     departure: SpecularReflector | None
@@ -178,10 +189,17 @@ class SkinPaths:
     points: np.ndarray  # (path,)
     amplitude: np.ndarray  # (frame, path) complex
     present: np.ndarray  # (frame, path) bool
-    longer_m: np.ndarray | None = None  # (frame, path) of the path than over the face's front, if it is
+    longer_m: np.ndarray | None = None  # (frame, path) excess length over the reflection at the face's front
 
     def strongest(self, direct_power: np.ndarray) -> "SkinPaths":
-        """Without the frames that hardly add to the direct paths, and without the faintest paths of the others."""
+        """The relevant paths: without frames whose ghosts are negligible, and without the faintest paths of the others.
+
+        Args:
+            direct_power: Power (frame,) of the direct paths in mW.
+
+        Returns:
+            The same paths, with fewer marked as present.
+        """
         power = np.abs(self.amplitude) ** 2 * self.present
         order = np.argsort(power, axis=1)
         below: np.ndarray = np.cumsum(np.take_along_axis(power, order, axis=1), axis=1)
@@ -191,7 +209,15 @@ class SkinPaths:
         return replace(self, present=self.present & strong & (total > MIN_SHARE * direct_power[:, None]))
 
     def paths(self, frame: int, motion: np.ndarray) -> Paths:
-        """The paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
+        """The paths present in one time segment of a frame.
+
+        Args:
+            frame: Index of the frame.
+            motion: Position, velocity and acceleration (point, 3, 3) of all skin points in m, m/s, m/s2.
+
+        Returns:
+            Paths (path,).
+        """
         there = self.present[frame]
         skin = motion[self.points[there]]
         departure, arrival = (skin if face is None else face.image_of_motion(skin) for face in self.faces)
@@ -203,11 +229,11 @@ class SkinPaths:
 
     @property
     def faces(self) -> tuple[SpecularReflector | None, SpecularReflector | None]:
-        """Those met on departure and on arrival."""
+        """The faces met on departure and on arrival, None for a direct leg."""
         return self.departure, self.arrival
 
     @property
     def interaction(self) -> Interaction:
-        """By whether the path leads over a face on departure and on arrival."""
+        """The kind of path, by the number of its legs that lead over a face."""
         kinds = (Interaction.BODY, Interaction.BODY_WALL, Interaction.WALL_BODY_WALL)
         return kinds[sum(face is not None for face in self.faces)]

@@ -1,8 +1,8 @@
-"""Paths -> the range-Doppler cube without ADC samples: each path's range kernel x (Doppler spectrum . antennas).
+"""Range-Doppler cubes of paths without ADC samples: per path a range kernel times Doppler spectrum and antenna phases.
 
-What `adc_synthesis` and the transforms give together, for a fraction of the cost. In range a path leaves the window's
-spectrum K, in Doppler the transform of its own chirps. Within a time segment a path moves by a share of a range bin: K
-is taken to first order, K(r - b - d) = K(r - b) - d K'(r - b), with d for each chirp and antenna.
+Gives what `adc_synthesis` and the transforms give together, at a fraction of the cost. In range a path contributes the
+window's spectrum K, in Doppler the transform of its own chirps. Within a time segment a path moves by a fraction of a
+range bin, so K is expanded to first order, K(r - b - d) = K(r - b) - d K'(r - b), with d per chirp and antenna.
 Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
@@ -28,41 +28,48 @@ from mmweaver.signal.windows import hann
 if TYPE_CHECKING:
     from mmweaver.propagation.board_effects import BoardEffects
 
-FRAMES_AT_ONCE = 4  # stay in the cache
+FRAMES_AT_ONCE = 4  # fit into the cache
 
 
 @dataclass(frozen=True, kw_only=True)
 class StaticResponse(TensorRecord):
-    """What each static path leaves in the cube at zero Doppler: a sum of two products of range and antenna."""
+    """Contribution of each static path to the cube at zero Doppler: two products of range and antenna factors."""
 
     at_range: Tensor  # (path, range) range kernel
     range_slope: Tensor  # (path, range) its slope
     echo: Tensor  # (path, antenna) complex
-    tilted: Tensor  # (path, antenna) complex: the same times how many bins an antenna is off the array's mean
+    tilted: Tensor  # (path, antenna) complex: `echo` times the antenna's range offset in bins from the array's mean
 
     def layer(self) -> Tensor:
-        """The sum of all paths, complex (range, antenna)."""
+        """The sum of all paths, complex64 (range, antenna), in sqrt(mW)."""
         in_range = torch.cat([self.at_range, self.range_slope])
         antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
         return torch.view_as_complex((in_range.T @ antennas).unflatten(1, (-1, 2)))
 
     def layers(self, chosen: Tensor) -> Tensor:
-        """The sums of the chosen paths (frame, path), complex (frame, range, antenna)."""
+        """Sums of the selected paths of each frame.
+
+        Args:
+            chosen: Bool or 0/1 mask (frame, path).
+
+        Returns:
+            Layers (frame, range, antenna), complex64, in sqrt(mW).
+        """
         in_range = torch.cat([self.at_range, self.range_slope])
         antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
         share = chosen.float().repeat(1, 2)  # with their slopes
-        changes = torch.cat([share[:1], share.diff(dim=0)])  # few are hidden anew from frame to frame
+        changes = torch.cat([share[:1], share.diff(dim=0)])  # few paths change from frame to frame
         rows = [one.nonzero()[:, 0] for one in changes]
         each = [in_range[row].T @ (antennas[row] * one[row, None]) for row, one in zip(rows, changes, strict=True)]
         return torch.view_as_complex(torch.stack(each).cumsum(dim=0).unflatten(2, (-1, 2)))
 
     def each(self) -> Tensor:
-        """Every path's own, complex (range * antenna, path)."""
+        """Contribution of every single path, complex64 (range * antenna, path)."""
         both = self.at_range[..., None] * self.echo[:, None] + self.range_slope[..., None] * self.tilted[:, None]
         return both.flatten(1).T
 
     def scaled(self, factor: Tensor) -> "StaticResponse":
-        """Of paths whose amplitudes are multiplied by factors (path,)."""
+        """The response of paths whose amplitudes are multiplied by real or complex factors (path,)."""
         return StaticResponse(
             at_range=self.at_range,
             range_slope=self.range_slope,
@@ -72,12 +79,16 @@ class StaticResponse(TensorRecord):
 
 
 class CubeRenderer:
-    """The cube that paths leave in one radar, on the CPU; values as `signal.cube.radar_cube` gives them.
-
-    `board`: whose antennas, range bias and first chirps it is recorded with; paths are given with its IF already.
-    """
+    """Renders paths as the range-Doppler cube of one radar, on the CPU; scaled as `signal.cube.radar_cube`."""
 
     def __init__(self, config: RadarConfig, board: "BoardEffects | None" = None):
+        """Prepares kernels and transforms that depend on the radar alone.
+
+        Args:
+            config: The radar.
+            board: Board whose antenna errors, range bias and first chirp are applied, by default an ideal one. Its IF
+                response must already be contained in the amplitudes of the paths.
+        """
         self._elements = TransmitElements(config)
         self._static_mixing = _static_mixing(config) if config.is_coded else None
         config = self._elements.config
@@ -87,7 +98,7 @@ class CubeRenderer:
         self._range_kernel = WindowKernel(hann(config.num_samples))
         bins = config.first_range_bin + np.arange(config.num_range_bins)
         self._range_bin = torch.from_numpy(bins).float()
-        # the kernel counts phase from the middle of the window, the transform from its beginning
+        # the kernel's phase refers to the middle of the window, the transform's to its beginning
         self._range_sign = torch.from_numpy((-1.0) ** bins).float()
         weight = torch.from_numpy(doppler_weight(config.num_loops))
         compensation = torch.from_numpy(tdm_compensation(config))
@@ -105,10 +116,10 @@ class CubeRenderer:
         self._segments = [_SegmentDoppler.of(one, by_tx) for one in self.clock.faded_segments]
 
     def moving(self, paths: Paths) -> Tensor:
-        """Cube values of moving paths.
+        """Cube of moving paths.
 
         Args:
-            paths: (frame * segment, path), amplitudes in sqrt(mW).
+            paths: Moving paths, (frame * segment, path), amplitudes in sqrt(mW).
 
         Returns:
             Values (frame, range, doppler, antenna), complex64, in sqrt(mW).
@@ -117,24 +128,24 @@ class CubeRenderer:
         frames = len(paths) // count
         values = torch.empty(
             frames, config.num_range_bins, config.num_antennas, config.num_loops, dtype=torch.complex64
-        )  # Doppler last: loops over few antennas cost more than they compute
+        )  # Doppler last: loops over a few antennas are mostly overhead
         flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 antenna doppler)
         for index, segment in enumerate(self._segments):
             self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
         return self._elements.decoded(values.transpose(2, 3).contiguous())
 
     def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
-        """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
+        """Writes or adds one segment's contribution, paths (frame, path), to values (frame, range, ...)."""
         config = self.config
         length_m, rate_mps = paths.length_m, paths.rate_mps
         pairs = self._array(paths.departure.position_m.mT, paths.arrival.position_m.mT, paths.is_reciprocal)
         amplitude = paths.amplitude[:, None, None]
         array, longer_m = ((part * amplitude).movedim(-1, 1)[..., None] for part in (pairs.phase, pairs.excess))
-        longer = longer_m / (2 * config.range_resolution_m)  # in bins, than the centre's; (frame, path, tx, rx, 1)
+        longer = longer_m / (2 * config.range_resolution_m)  # excess in bins; (frame, path, tx, rx, 1)
         plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
         plain, late = plain[..., None, :], late[..., None, :]  # (frame, path, tx, 1, doppler)
-        shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
+        shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by Doppler
         place = (length_m + self._extra_m) / (2 * config.range_resolution_m) + shift_bin
         kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
         in_range = torch.cat([kernel * self._range_sign, slope * -self._range_sign], dim=1).transpose(1, 2)
@@ -157,7 +168,14 @@ class CubeRenderer:
         return motion @ torch.stack([torch.ones_like(time_s), time_s, time_s**2])
 
     def static(self, paths: StaticPaths) -> StaticResponse:
-        """What static paths (path,) leave at zero Doppler."""
+        """Contribution of static paths at zero Doppler.
+
+        Args:
+            paths: Static paths, (path,).
+
+        Returns:
+            The response of each path; `StaticResponse.layer` sums them.
+        """
         config = self.config
         length_m = self._elements.lengths(paths.length_m).flatten(1)  # (path, antenna)
         mean_m = length_m.mean(dim=1)
@@ -175,18 +193,26 @@ class CubeRenderer:
         return self._elements.decoded(self._array.mixed(echo.unflatten(1, (self.config.num_tx, -1)), 1).flatten(1))
 
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
-        """What leakage leaves at zero Doppler, complex64 (range, antenna); `BoardEffects.leakage` gives it."""
+        """Contribution of the TX-RX leakage at zero Doppler.
+
+        Args:
+            length_m: Path lengths (tap,) in metres, as `BoardEffects.leakage` gives them.
+            amplitude: Amplitudes (tap, tx, rx) in sqrt(mW).
+
+        Returns:
+            Layer (range, antenna), complex64, in sqrt(mW).
+        """
         at_range = self.leakage_response(length_m)
         return at_range.T @ self._elements.decoded(self._elements.pair_values(amplitude).flatten(1))
 
     def leakage_response(self, length_m: Tensor) -> Tensor:
-        """Range response of leakage of amplitude 1.
+        """Range response of leakage of unit amplitude.
 
         Args:
-            length_m: path lengths (tap,).
+            length_m: Path lengths (tap,) in metres.
 
         Returns:
-            (tap, range), complex64.
+            Response (tap, range), complex64.
         """
         config = self.config
         delay_s = length_m / SPEED_OF_LIGHT_MPS
@@ -198,8 +224,8 @@ class CubeRenderer:
         """Adds static layers to cube values, in place.
 
         Args:
-            values: (frame, range, doppler, antenna).
-            layer: (range, antenna), or (frame, range, antenna).
+            values: Cube (frame, range, doppler, antenna), complex64.
+            layer: Layer (range, antenna) of all frames, or (frame, range, antenna).
         """
         if self._static_mixing is not None:
             tx = layer.unflatten(-1, (self._static_mixing.shape[-1], -1))
@@ -210,16 +236,17 @@ class CubeRenderer:
 
 
 def _chirps(config: RadarConfig, first: complex) -> Tensor:
-    """What a board multiplies each chirp (loop, tx) by."""
+    """Complex factors of the chirps (loop, tx) by the board."""
     chirps = np.ones((config.num_loops, config.num_tx), np.complex64)
     chirps[0, config.tx_delay_s == 0] = first
     return torch.from_numpy(chirps)
 
 
 def _static_mixing(config: RadarConfig) -> Tensor:
-    """What a static signal of each (virtual) transmitter leaves in each static Doppler bin, (bin, tx, tx).
+    """Contribution of a static signal of each (virtual) transmitter to each static Doppler bin, (bin, tx, tx).
 
-    The slots' compensation is made for a bin's velocity, so away from zero Doppler it mixes the transmitters slightly.
+    The compensation of the slots' delays assumes the velocity of a bin, so away from zero Doppler it mixes the
+    transmitters slightly.
     """
     encoder = np.linalg.pinv(config.tx_decoder)  # (slot, tx)
     each = np.einsum("vs,ds,sw->dvw", config.tx_decoder, slot_compensation(config)[:, :: config.num_rx], encoder)
@@ -233,17 +260,17 @@ class _SegmentDoppler(TensorRecord):
     """The chirps of one time segment, and their windowed and TDM-compensated transform."""
 
     time_s: Tensor  # (tx * loop,) since the segment's middle
-    transform: Tensor  # (tx, loop, 2 doppler): of values at the chirps, and of the same times their time
+    transform: Tensor  # (tx, loop, 2 doppler): for values at the chirps, and for values weighted by the chirps' times
 
     @classmethod
     def of(cls, faded: FadedSegment, by_tx: Tensor) -> "_SegmentDoppler":
-        """Of a segment of the clock, with its share of each chirp, and the whole frame's transform."""
+        """Transform of a segment, from its weight per chirp and the transform of the whole frame."""
         time_s = torch.from_numpy(np.ascontiguousarray(faded.segment.chirp_s.T))  # (tx, loop)
         own = by_tx[:, faded.segment.loops] * torch.from_numpy(faded.share.T).float()[..., None]
         return cls(time_s=time_s.flatten(), transform=torch.cat([own, own * time_s.float()[..., None]], dim=-1))
 
     def spectra(self, cycles: Tensor) -> tuple[Tensor, Tensor]:
-        """Doppler spectra (frame, path, tx, doppler) of phases (frame, path, tx * loop), and of them times time."""
+        """Doppler spectra (frame, path, tx, doppler) of phases (frame, path, tx * loop), plain and weighted by time."""
         num_tx, loops, width = self.transform.shape
         chirps = phasor(cycles).unflatten(-1, (num_tx, loops)).flatten(0, 1).transpose(0, 1)  # (tx, ..., loop)
         both = (chirps @ self.transform).unflatten(1, cycles.shape[:2]).unflatten(-1, (2, width // 2))

@@ -1,4 +1,4 @@
-"""Edges of furniture: where the room's mesh ends before something farther away."""
+"""Edges of furniture: free edges of the room's mesh in front of a farther background."""
 
 from dataclasses import dataclass, replace
 
@@ -9,10 +9,10 @@ from mmweaver.core.ray_caster import RayCaster
 from mmweaver.core.records import Scene
 from mmweaver.core.rotations import unit
 
-SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): what of an edge adds up in phase
-NEIGHBOURHOOD_M = 0.15  # about a piece, whose edges say where it runs
-LINE_WIDTH, LINE_REACH_M = 0.1, 0.04  # edges on a line: variance across over along; standard deviation along, at least
-STEP_OVER_M = 0.10  # the ground behind an edge lies at least so much farther
+SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): the length of an edge that adds up in phase
+NEIGHBOURHOOD_M = 0.15  # radius around a piece within which edges determine its direction
+LINE_WIDTH, LINE_REACH_M = 0.1, 0.04  # edges on a line: maximum variance ratio across/along, minimum deviation along
+STEP_OVER_M = 0.10  # minimum distance between an edge and the background behind it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,13 +26,16 @@ class Edges:
 
 
 def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edges:
-    """Free edges of the mesh that the radar sees before a farther background, in pieces of SEGMENT_M.
+    """Free edges of the mesh that the radar sees in front of a farther background, in pieces of SEGMENT_M.
 
     Args:
-        scene: room with its mesh.
-        caster: of that mesh.
-        straight: a piece runs as the edge's wider neighbourhood does: the mesh of a photo ends in steps of its cells,
-            whose own directions say little.
+        scene: Room with its mesh.
+        caster: Ray caster of that mesh.
+        straight: Whether pieces are aligned with the edge's wider neighbourhood. The mesh of a photo ends in steps of
+            its cells, whose own directions are meaningless.
+
+    Returns:
+        Pieces of edge, (edge,).
     """
     ends, opposite, face = _free_edges(scene.faces)
     vertices = scene.vertices_m.astype(float)
@@ -50,7 +53,7 @@ def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edg
 
 
 def _straightened(pieces: Edges, middle_m: np.ndarray, length_m: np.ndarray) -> Edges:
-    """Pieces along the line through all edges (edge, 3) near them, where these lie on a line."""
+    """Pieces aligned with the line through all edges (edge, 3) near them, where these lie on a line."""
     near = KDTree(pieces.place_m).sparse_distance_matrix(KDTree(middle_m), NEIGHBOURHOOD_M, output_type="coo_matrix")
     piece, edge, count = near.row, near.col, len(pieces.length_m)
     weight = np.bincount(piece, length_m[edge], minlength=count)
@@ -68,7 +71,7 @@ def _straightened(pieces: Edges, middle_m: np.ndarray, length_m: np.ndarray) -> 
 
 
 def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges of exactly one face: their ends (edge, 2), the face's third vertex, the face."""
+    """Edges of exactly one face: their vertices (edge, 2), the face's third vertex, and the face."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     third = np.concatenate([faces[:, 2], faces[:, 0], faces[:, 1]])
     face = np.tile(np.arange(len(faces)), 3)
@@ -79,13 +82,13 @@ def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
-    """How far a ray from the radar towards each target goes."""
+    """Length of a ray from the radar towards each target until it meets the mesh."""
     direction = unit(target_m)
     return caster.distance_m(np.zeros_like(direction), direction)
 
 
 def _merged_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
-    """One piece for each small cube of space: its mean place and main direction, no longer than the cube."""
+    """One piece per voxel, with mean place and main direction, no longer than the voxel."""
     if len(middle) == 0:
         return Edges(place_m=middle, direction=along, length_m=length, material=material)
     _, first, cell, count = np.unique(

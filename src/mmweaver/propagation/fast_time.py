@@ -1,7 +1,7 @@
-"""How beats run through the samples of a chirp, and the sum of many of them.
+"""Beat signals over the samples of a chirp, and weighted sums of many of them.
 
-A person fills some twenty range cells of some hundred: beats so close together are summed at a few instants of the
-chirp, and all samples follow by interpolation. Reference: docs/radar_primer.md, equation 7.
+A person covers some twenty of a hundred range cells. Beats that close together are summed at a few instants of the
+chirp, and all samples follow by Chebyshev interpolation. Reference: docs/radar_primer.md, equation 7.
 """
 
 import math
@@ -12,27 +12,40 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 
-COARSE = 16  # samples of which the fast-time factor is made, and steps between them
-BAND_CYCLES = 18.0  # within a chirp, between beats that are summed together
-NUM_NODES = 48  # instants at which they are: Chebyshev points, good for 20 cycles
-WORTH = 1.3  # products of matrices saved over those made, from which interpolation is quicker
+COARSE = 16  # the fast-time factor is a product of one over 16 samples and one over steps of 16 samples
+BAND_CYCLES = 18.0  # largest difference in cycles per chirp of beats that are summed together
+NUM_NODES = 48  # Chebyshev points at which they are summed, sufficient for 20 cycles
+WORTH = 1.3  # ratio of multiplications saved to those added, above which interpolation is faster
 
 
 class FastTime:
-    """The fast-time factor of beats in one radar, exp(2 pi j (S tau + shift) t): no phase in the sampling's middle."""
+    """Fast-time factors exp(2 pi j (S tau + shift) t) of beats in one radar; the phase is zero in mid-sampling."""
 
     def __init__(self, config: RadarConfig):
+        """Prepares the interpolation.
+
+        Args:
+            config: The radar, for its chirp slope and sampling.
+        """
         self.config = config
         half = (config.num_samples - 1) / 2
         sample = np.arange(config.num_samples) - config.num_samples / 2
         unit = np.cos(np.pi * (np.arange(NUM_NODES) + 0.5) / NUM_NODES)
-        # shares of the sampling since its middle
+        # time since the middle of the sampling, as a share of its duration
         self._node = torch.from_numpy(((half * unit - 0.5) / config.num_samples).astype(np.float32))
         self._sample = torch.from_numpy(sample / config.num_samples)
         self._interpolation = torch.from_numpy(_chebyshev(unit, (sample + 0.5) / half).astype(np.complex64))
 
     def factor(self, delay_s: Tensor, shift_hz: Tensor | float) -> Tensor:
-        """complex64 (..., sample) of delays and shifts (...) (eq. 7)."""
+        """Fast-time factors, with the residual video phase (eq. 7).
+
+        Args:
+            delay_s: Delays (...) in seconds.
+            shift_hz: Doppler shifts (...) in Hz.
+
+        Returns:
+            Factors (..., sample), complex64.
+        """
         num = self.config.num_samples
         cycles_a_sample = (self._cycles(delay_s, shift_hz) / num)[..., None]
         fine = phasor(cycles_a_sample * torch.arange(COARSE, device=delay_s.device))
@@ -41,13 +54,20 @@ class FastTime:
         return (rough[..., :, None] * fine[..., None, :]).flatten(-2)[..., :num]
 
     def bands(self, delay_s: Tensor) -> list[slice]:
-        """Where rising delays (path,) are so many within a band that they are summed together."""
+        """Runs of delays that are close enough to be summed together, where that is faster.
+
+        Args:
+            delay_s: Delays (path,) in seconds, increasing.
+
+        Returns:
+            Disjoint slices of the paths, in order.
+        """
         cycles, found = self._cycles(delay_s, 0.0), []
         at = 0
         worth = WORTH * NUM_NODES * self.config.num_samples / max(self.config.num_samples - NUM_NODES, 1)
         end = torch.searchsorted(cycles, cycles + BAND_CYCLES)
         while at < len(cycles):
-            # the fullest band that begins before the first one from here ends
+            # the fullest band that begins before the end of the first one
             first = at + int((end - torch.arange(len(cycles)))[at : int(end[at])].argmax())
             if end[first] - first >= worth:
                 found.append(slice(first, int(end[first])))
@@ -55,9 +75,16 @@ class FastTime:
         return found
 
     def summed(self, weights: Tensor, delay_s: Tensor, shift_hz: Tensor, bands: list[slice] | None = None) -> Tensor:
-        """Sums (frame, row, sample) of the factors of beats (frame, path) with weights (frame, row, path).
+        """Weighted sums of fast-time factors.
 
-        `bands`: runs of paths of the only frame that lie within a band, or about so.
+        Args:
+            weights: Weights (frame, row, path), complex64.
+            delay_s: Delays (frame, path) in seconds.
+            shift_hz: Doppler shifts (frame, path) in Hz.
+            bands: Runs of paths as `bands` gives them, for a single frame. By default every factor is computed exactly.
+
+        Returns:
+            Sums (frame, row, sample), complex64.
         """
         if not bands:
             return weights @ self.factor(delay_s, shift_hz)
@@ -70,9 +97,9 @@ class FastTime:
         return (torch.cat(left, dim=1) @ torch.cat(right))[None]
 
     def _band_factor(self, weights: Tensor, cycles: Tensor, square: Tensor) -> tuple[Tensor, Tensor]:
-        """Sums (row, node) with weights (row, path) of beats within a band, and what makes samples of them.
+        """Sums (row, node) of beats within a band, and the matrix that interpolates them to samples.
 
-        `cycles` (path,) are those in the sampling.
+        `cycles` (path,) are the cycles of the beats during the sampling.
         """
         middle = (cycles.min() + cycles.max()) / 2
         angle = (cycles - middle).float()[:, None] * self._node - square[:, None]
@@ -80,23 +107,23 @@ class FastTime:
         return weights @ torch.complex(angle.cos(), angle.sin()), self._interpolation * phasor(middle * self._sample)
 
     def _cycles(self, delay_s: Tensor, shift_hz: Tensor | float) -> Tensor:
-        """Periods of beats within the sampling."""
+        """Cycles of beats during the sampling."""
         config = self.config
         return (config.chirp_slope_hz_per_s * delay_s + shift_hz) * (config.num_samples / config.sample_rate_hz)
 
     def _square(self, delay_s: Tensor) -> Tensor:
-        """What the square of the delay turns a beat back, in periods."""
+        """Residual video phase in cycles, which is subtracted."""
         return self.config.chirp_slope_hz_per_s * delay_s**2 / 2
 
 
 def phasor(cycles: Tensor) -> Tensor:
-    """exp(2 pi j cycles), complex64; wrapped in double precision first."""
+    """exp(2 pi j cycles) as complex64; cycles are wrapped in double precision first."""
     angle = (cycles - cycles.round()).to(torch.float32).mul_(2 * math.pi)
     return torch.complex(angle.cos(), angle.sin())
 
 
 def _chebyshev(node: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(node, place): values at Chebyshev points in [-1, 1] times this are those of the polynomial through them."""
+    """Interpolation matrix (node, place) from values at Chebyshev points in [-1, 1] to those of their polynomial."""
     order = np.arange(len(node))
     basis = 2 * np.cos(order[:, None] * np.arccos(node)) / len(node)
     basis[0] /= 2

@@ -1,4 +1,4 @@
-"""When chirps are sent within a frame, and the time segments within which motion is taken as quadratic."""
+"""Times of the chirps within a frame, and the time segments within which motion is quadratic."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,14 +7,14 @@ import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
 
-NUM_NODES = 3  # instants of a segment at which positions are asked for
-MAX_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time for so long
-BLOCK_S = 2.5e-3  # within which range changes to first order in time, and angles linearly from one to the next
+NUM_NODES = 3  # instants per segment at which positions are evaluated
+MAX_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time within a segment
+BLOCK_S = 2.5e-3  # range is linear in time within a block; array phases are interpolated linearly between blocks
 
 
 @dataclass(frozen=True, kw_only=True)
 class FadedSegment:
-    """A segment that reaches to the middles of its neighbours, with its share of each chirp; the shares add up to 1."""
+    """A segment that reaches to the middles of its neighbours, with a weight per chirp; all weights add up to 1."""
 
     segment: "Segment"
     share: np.ndarray  # (loop, tx) from 0 to 1
@@ -22,12 +22,12 @@ class FadedSegment:
 
 @dataclass(frozen=True, kw_only=True)
 class Segment:
-    """A run of loops of a frame. Times are relative to its middle, which lies `middle_s` after the frame's start."""
+    """A run of loops of a frame. Times are relative to its middle, which is `middle_s` after the start of the frame."""
 
     first_loop: int
     middle_s: float
     chirp_s: np.ndarray  # (loop, tx) middle of each chirp's sampling
-    node_s: np.ndarray  # (node,) where positions are asked for: Chebyshev points, the second at 0
+    node_s: np.ndarray  # (node,) Chebyshev points at which positions are evaluated, the second at 0
     blocks: tuple[slice, ...]  # of loops, counted from the segment's first
 
     @cached_property
@@ -41,7 +41,14 @@ class Segment:
         return np.array([self.chirp_s[block].mean() for block in self.blocks])
 
     def weights(self, time_s: np.ndarray) -> np.ndarray:
-        """(node, time): values at the nodes times this are values at the times (Lagrange)."""
+        """Weights of Lagrange interpolation.
+
+        Args:
+            time_s: Times (time,) since the middle of the segment.
+
+        Returns:
+            (node, time): `values_at_nodes @ weights` are the values at these times.
+        """
         others = self.node_s[:, None] - self.node_s[None, :]
         np.fill_diagonal(others, 1.0)
         gaps = time_s[None, :] - self.node_s[:, None]
@@ -49,34 +56,50 @@ class Segment:
         return product / others.prod(axis=1)[:, None]
 
     def slopes(self, time_s: np.ndarray) -> np.ndarray:
-        """(node, time): values at the nodes times this are rates at the times, exact for quadratics."""
+        """Weights of differentiation, exact for quadratics.
+
+        Args:
+            time_s: Times (time,) since the middle of the segment.
+
+        Returns:
+            (node, time): `values_at_nodes @ slopes` are the time derivatives, per second.
+        """
         step_s = np.ptp(self.node_s) / 2
         return (self.weights(time_s + step_s) - self.weights(time_s - step_s)) / (2 * step_s)
 
 
 class FrameClock:
-    """The chirps and segments of a radar's frame: one segment up to 10 ms of chirps, an odd number beyond.
+    """Chirps and time segments of a radar's frame: one segment for up to 10 ms, an odd number for longer frames.
 
-    The middle one of `node_s` is the frame's middle.
+    Attributes:
+        chirp_s: Middle of each chirp's sampling since the start of the frame, (loop, tx).
+        segments: The segments, in order.
+        node_s: Nodes of all segments since the start of the frame, (segment * node,); the middle one is the frame's
+            middle.
     """
 
     def __init__(self, config: RadarConfig):
+        """Divides a frame into segments.
+
+        Args:
+            config: The radar, for its chirp and loop timing.
+        """
         self.config = config
         middle_s = config.idle_time_s + config.adc_start_time_s + config.num_samples / config.sample_rate_hz / 2
         loop_s = np.arange(config.num_loops) * config.loop_period_s
-        self.chirp_s = loop_s[:, None] + config.tx_delay_s[None, :] + middle_s  # (loop, tx) since the frame's start
+        self.chirp_s = loop_s[:, None] + config.tx_delay_s[None, :] + middle_s
         count = int(np.ceil(config.active_time_s / MAX_SEGMENT_S))
         count = min(count + 1 - count % 2, config.num_loops)
         loops = np.array_split(np.arange(config.num_loops), count)
         self.segments = tuple(self._segment(part) for part in loops)
-        self.node_s = np.concatenate([one.middle_s + one.node_s for one in self.segments])  # (segment * node,)
+        self.node_s = np.concatenate([one.middle_s + one.node_s for one in self.segments])
 
     @cached_property
     def faded_segments(self) -> tuple[FadedSegment, ...]:
-        """Each segment with a share of every chirp that rises and falls as a squared sine from middle to middle.
+        """Segments whose weights rise and fall as a squared sine from middle to middle.
 
-        Paths whose motion and amplitude are known for each segment on its own step from one to the next; a step leaves
-        spurs over all velocities, a smooth transition none.
+        Where motion and amplitude are known per segment only, paths jump from one segment to the next. A jump leaves
+        spurs over all velocities; a smooth transition does not.
         """
         middle_s = self.middle_s
         before, after = (np.append(-np.inf, middle_s[:-1]), np.append(middle_s[1:], np.inf))
@@ -90,7 +113,7 @@ class FrameClock:
         return tuple(faded)
 
     def _segment(self, loops: np.ndarray, middle_s: float | None = None) -> Segment:
-        """A run of loops; times count from the middle of its chirps, or from `middle_s`."""
+        """A run of loops; times are relative to the middle of its chirps, or to `middle_s`."""
         chirp_s = self.chirp_s[loops]
         if middle_s is None:
             middle_s = float((chirp_s.min() + chirp_s.max()) / 2)
@@ -109,5 +132,5 @@ class FrameClock:
 
     @property
     def middle_s(self) -> np.ndarray:
-        """Middle of each segment since the frame's start, (segment,)."""
+        """Middle of each segment since the start of the frame, (segment,)."""
         return np.array([one.middle_s for one in self.segments])

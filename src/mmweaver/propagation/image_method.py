@@ -1,4 +1,4 @@
-"""The image method: specular reflection of the radar's waves by flat faces.
+"""Image method: specular reflection by flat faces.
 
 Reference: docs/radar_primer.md, section 5; reflection coefficients from `materials`.
 """
@@ -16,54 +16,76 @@ from mmweaver.core.rotations import unit
 from mmweaver.core.shapes import Values
 from mmweaver.propagation.materials import MATERIALS, Material, SlabEchoes, reflection, slab_echoes
 
-MAX_REFLECTORS = 10  # the largest faces; smaller ones count as diffuse surface only
-BEFORE_M = 0.12  # mesh and fitted plane of a wall differ by so much, so rays at the mesh do not tell these faces apart
+MAX_REFLECTORS = 10  # the largest faces; smaller ones scatter diffusely only
+BEFORE_M = 0.12  # distance between mesh and fitted plane of a wall, below which rays cannot separate two faces
 SAME_FACE_M, PARALLEL_COS = 0.02, 0.98
-SLAB_ECHOES = 3  # of a face: front, back, and all that goes to and fro within
+SLAB_ECHOES = 3  # per face: front, back, and all internal reflections
 
 
 Vectors = TypeVar("Vectors", np.ndarray, Tensor)
 
 
 def mirrored(vectors: Vectors, along: Vectors, normal: Vectors) -> Vectors:
-    """Mirror images (..., 3) in a face with a unit normal (..., 3), of arrays or tensors.
+    """Mirror images in a face.
 
-    `along` (...) is the height above the face of places, and the component along its normal of velocities.
+    Args:
+        vectors: Places or velocities (..., 3), arrays or tensors.
+        along: Height (...) of places above the face, or normal component of velocities.
+        normal: Unit normal (..., 3) of the face.
+
+    Returns:
+        Images (..., 3).
     """
     return vectors - 2 * along[..., None] * normal  # ty: ignore[invalid-explicit-return]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpecularReflector:
-    """A plane as the simulator uses it."""
+    """A flat face that reflects specularly."""
 
     plane: Plane
     offset_m: float  # normal . x on the face
     is_rough: bool = False  # whether its fine roughness scatters
-    before: tuple["SpecularReflector", ...] = ()  # faces right before it: where they are, it is hidden
+    before: tuple["SpecularReflector", ...] = ()  # faces directly in front, which hide it where they extend
 
     def side(self, points_m: np.ndarray) -> Values:
-        """Signed distance (...,), positive on the free side."""
+        """Signed distance (...) of places (..., 3) in metres, positive on the free side."""
         return points_m @ self.plane.normal - self.offset_m
 
     def image(self, points_m: np.ndarray) -> np.ndarray:
-        """Mirrored points (..., 3)."""
+        """Mirror images (..., 3) of places (..., 3)."""
         return mirrored(points_m, np.asarray(self.side(points_m)), self.plane.normal)
 
     def image_of_motion(self, motion: np.ndarray) -> np.ndarray:
-        """Mirrored position, velocity and acceleration (..., 3, 3), the last but one axis naming which."""
+        """Mirror image (..., 3, 3) of position, velocity and acceleration, which lie along the last but one axis."""
         along = motion @ self.plane.normal
         along[..., 0] -= self.offset_m
         return mirrored(motion, along, self.plane.normal)
 
     def crossing(self, start_m: np.ndarray, image_m: np.ndarray) -> np.ndarray:
-        """Where the segments from `start_m` to `image_m`, one on each side, meet the face (..., 3)."""
+        """Reflection points: where the segments from places to images on the other side meet the face.
+
+        Args:
+            start_m: Places (..., 3) on the free side.
+            image_m: Images (..., 3) behind the face.
+
+        Returns:
+            Points (..., 3) on the face.
+        """
         near, far = self.side(start_m), -self.side(image_m)
         share = near / np.maximum(near + far, 1e-9)
         return start_m + np.asarray(share)[..., None] * (image_m - start_m)
 
     def inside(self, points_m: np.ndarray, fresnel_m: Values) -> Values:
-        """How much of the first Fresnel zone about each point of the face lies within it and is not hidden, 0 to 1."""
+        """Share of the first Fresnel zone around points of the face that lies within it and is not hidden.
+
+        Args:
+            points_m: Points (..., 3) on the face.
+            fresnel_m: Radius (...) of the Fresnel zone in metres.
+
+        Returns:
+            Weights (...) from 0 to 1.
+        """
         weight = self._within(points_m, fresnel_m)
         for face in self.before:
             weight = weight * (1 - face._within(points_m, fresnel_m))
@@ -79,23 +101,40 @@ class SpecularReflector:
         return np.clip(weight, 0.0, 1.0)
 
     def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
-        """Specular reflection coefficient: the slab's minus what roughness scatters."""
+        """Specular reflection coefficient: that of the slab, reduced by diffuse scattering.
+
+        Args:
+            cos_incidence: Cosine (...) of the angle of incidence.
+            frequency_hz: Frequency in Hz.
+
+        Returns:
+            Complex amplitude coefficient (...).
+        """
         smooth = self._smooth(cos_incidence, frequency_hz)
         return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation)
 
     def echoes(self, cos_incidence: Values, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
-        """The same over a radar's band, in the phases of its beat: the echoes of the slab's two surfaces."""
+        """The reflection over the radar's band, as echoes of the slab's two surfaces in the phases of a beat signal.
+
+        Args:
+            cos_incidence: Cosine (...) of the angle of incidence.
+            frequency_hz: Frequency in Hz at which the sum of the echoes is exact.
+            most: Maximum number of echoes.
+
+        Returns:
+            The echoes, reduced by diffuse scattering.
+        """
         smooth = self._smooth(cos_incidence, frequency_hz)
         slab = slab_echoes(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation, most=most)
         return SlabEchoes(smooth * slab.coefficient, slab.longer_m)
 
     def _smooth(self, cos_incidence: Values, frequency_hz: float) -> Values:
-        """Share of the reflected amplitude that is not scattered."""
+        """Share of the reflected amplitude that is specular."""
         smooth = np.sqrt(1 - self.material.scattering**2)
         return smooth * np.sqrt(1 - self.material.fine_loss(cos_incidence, frequency_hz)) if self.is_rough else smooth
 
     def is_before(self, other: "SpecularReflector") -> bool:
-        """Whether it lies right before another face, or, as a window, in it."""
+        """Whether the face lies directly in front of another one, or within it as a window does."""
         ahead_m = float(other.side(self.plane.centre_m))
         if self is other or self.plane.normal @ other.plane.normal < PARALLEL_COS or ahead_m > BEFORE_M:
             return False
@@ -111,7 +150,7 @@ class SpecularReflector:
 
     @property
     def polarisation(self) -> str:
-        """Of a vertically polarised radar's wave on this face."""
+        """Polarisation of a vertically polarised radar's wave relative to this face, "te" or "tm"."""
         return "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
 
 
@@ -121,9 +160,12 @@ def specular_reflectors(
     """The largest planes that face the radar.
 
     Args:
-        planes: flat faces of the room.
-        rough: whether their fine roughness scatters.
-        hidden: whether those right behind others are hidden by them.
+        planes: Flat faces of the room.
+        rough: Whether their fine roughness scatters.
+        hidden: Whether faces are hidden by others directly in front of them.
+
+    Returns:
+        At most MAX_REFLECTORS faces, the largest first.
     """
     facing = []
     for plane in planes:
@@ -136,7 +178,7 @@ def specular_reflectors(
 
 
 def layered_faces(faces: list[SpecularReflector]) -> list[SpecularReflector]:
-    """Faces, each hidden where another one lies right before it."""
+    """Faces, each hidden where another one lies directly in front of it."""
     return [replace(face, before=tuple(one for one in faces if one.is_before(face))) for face in faces]
 
 
@@ -144,19 +186,19 @@ def fresnel_radius_m(first_m: Values, second_m: Values, wavelength_m: float) -> 
     """Radius of the first Fresnel zone.
 
     Args:
-        first_m: length from the one end to the point.
-        second_m: length from the point to the other end.
-        wavelength_m: of the wave.
+        first_m: Length (...) from one end of the path to the point, in metres.
+        second_m: Length (...) from the point to the other end, in metres.
+        wavelength_m: Wavelength in metres.
 
     Returns:
-        Radius in m, 0 at either end.
+        Radius (...) in metres, 0 at either end.
     """
     return np.sqrt(wavelength_m * np.maximum(first_m * second_m, 0) / np.maximum(first_m + second_m, 1e-9))
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpecularPath:
-    """A path from the radar over some faces back to it."""
+    """A path from the radar over one or more faces back to it."""
 
     corners_m: np.ndarray  # (bounce, 3)
     rotation: np.ndarray  # (3, 3) and
@@ -165,20 +207,23 @@ class SpecularPath:
 
     @property
     def length_m(self) -> float:
-        """Over the fronts of the slabs."""
+        """Path length over the front surfaces of the slabs, in metres."""
         return float(np.linalg.norm(self.shift_m))
 
 
 def specular_paths(
     reflectors: list[SpecularReflector], wavelength_m: float, frequency_hz: float, most_echoes: int = SLAB_ECHOES
 ) -> list[SpecularPath]:
-    """All paths of one, two and three bounces from the radar to itself, each image once.
+    """All paths of one, two and three bounces from the radar to itself; each image counts once.
 
     Args:
-        reflectors: flat faces.
-        wavelength_m: at the centre of the band.
-        frequency_hz: the centre of the band.
-        most_echoes: of each slab; with one its reflection is that at the centre.
+        reflectors: Flat faces.
+        wavelength_m: Wavelength at the centre of the band.
+        frequency_hz: Centre frequency of the band.
+        most_echoes: Maximum number of echoes per slab; with 1 the reflection is that at the band's centre.
+
+    Returns:
+        Paths whose strongest echo has a coefficient of at least 1e-5.
     """
     paths: list[SpecularPath] = []
     seen: list[np.ndarray] = []
@@ -201,7 +246,7 @@ def specular_paths(
 def _path(
     faces: list[SpecularReflector], images: list[np.ndarray], wavelength_m: float, frequency_hz: float, most: int
 ) -> SpecularPath | None:
-    """The path over some faces with the radar's images in them (bounce + 1); None where it meets no face or is weak."""
+    """The path over some faces with the radar's images (bounce + 1) in them; None where it misses a face or is weak."""
     corners = _corners(faces, images)
     if corners is None:
         return None
@@ -226,7 +271,7 @@ def _path(
 
 
 def _corners(faces: list[SpecularReflector], images: list[np.ndarray]) -> list[np.ndarray] | None:
-    """Where a path back to the radar meets the faces, the last one first; None where it passes behind one."""
+    """Reflection points of a path back to the radar, the last one first; None where it passes behind a face."""
     corners, end = [], np.zeros(3)
     for face, image in zip(reversed(faces), reversed(images[1:]), strict=True):
         if face.side(end) < -1e-6 or face.side(image) >= 0:
@@ -237,10 +282,10 @@ def _corners(faces: list[SpecularReflector], images: list[np.ndarray]) -> list[n
 
 
 def _share_of_wave(corners_m: np.ndarray, taper: float, length_m: float) -> float:
-    """The share of the wave that takes this path.
+    """Share of the wave that takes this path.
 
-    Where right-angled faces meet, the image lies straight through their common edge, and half of the wave meets one
-    face first, half the other: all orders of such a corner make one image, counted once.
+    Where right-angled faces meet, the image lies straight behind their common edge; half of the wave meets one face
+    first, the other half the other. All orders of such a corner form one image, which is counted once.
     """
     steps = np.linalg.norm(np.diff(corners_m, axis=0), axis=1)
     orders = math.factorial(1 + int((steps < 1e-3 * length_m).sum()))

@@ -1,4 +1,4 @@
-"""Paths as points in the cells of a radar: where each appears, and how strong it is."""
+"""Paths as points in a radar's cells: apparent position and strength."""
 
 import numpy as np
 import torch
@@ -9,9 +9,16 @@ from mmweaver.signal.point_response import PointResponse, Points
 
 
 def apparent_direction(departure: Tensor, arrival: Tensor) -> Tensor:
-    """Unit directions (..., 3) in which paths appear, of vectors (..., 3) towards their departure and arrival.
+    """Apparent direction of paths whose departure and arrival differ.
 
-    An array of transmitter and receiver pairs sees such a path between its two ends.
+    An array of transmitter-receiver pairs sees such a path half way between its two ends.
+
+    Args:
+        departure: Vectors (..., 3) towards the departure point.
+        arrival: Vectors (..., 3) towards the arrival point.
+
+    Returns:
+        Unit vectors (..., 3).
     """
     towards = (_unit(departure) + _unit(arrival)) / 2
     ahead = (1 - towards[..., 0].square() - towards[..., 2].square()).clamp(0, 1).sqrt()
@@ -19,16 +26,31 @@ def apparent_direction(departure: Tensor, arrival: Tensor) -> Tensor:
 
 
 def static_points(paths: StaticPaths, response: PointResponse) -> Points:
-    """Static paths (path,) as points of real amplitude, in sqrt(mW)."""
+    """Static paths as points.
+
+    Args:
+        paths: Static paths, (path,).
+        response: Point response of the radar, which defines the bins.
+
+    Returns:
+        Points (path,) of real amplitude in sqrt(mW).
+    """
     towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m)
     range_m = paths.length_m.mean(dim=(-2, -1)) / 2
     return _points(range_m, torch.zeros_like(range_m), towards, paths.amplitude.abs(), response)
 
 
 def moving_points(paths: Paths, response: PointResponse) -> Points:
-    """Moving paths (..., path) as points of real amplitude at the middle of their segment, in sqrt(mW).
+    """Moving paths as points at the middle of their segment.
 
-    Both orders of a reciprocal path add up as far as the array cannot tell its ends apart.
+    Both directions of a reciprocal path add coherently as far as the array cannot resolve its two ends.
+
+    Args:
+        paths: Moving paths, (..., path).
+        response: Point response of the radar, which defines the bins.
+
+    Returns:
+        Points (..., path) of real amplitude in sqrt(mW).
     """
     towards = apparent_direction(paths.departure.position_m, paths.arrival.position_m)
     both = 2 + 2 * _agreement(paths, response)
@@ -37,7 +59,7 @@ def moving_points(paths: Paths, response: PointResponse) -> Points:
 
 
 def _agreement(paths: Paths, response: PointResponse) -> Tensor:
-    """Mean cosine (..., path) between both orders of a path over the array's pairs."""
+    """Mean cosine (..., path) of the phase between both directions of a path over the antenna pairs."""
     tx_m, rx_m = (
         torch.from_numpy(np.asarray(place)) for place in (response.config.tx_position_m, response.config.rx_position_m)
     )

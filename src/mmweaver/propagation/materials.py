@@ -1,4 +1,4 @@
-"""Materials of walls and furniture, and how much of a wave they reflect and transmit.
+"""Materials of walls and furniture, with their reflection and transmission coefficients.
 
 Reference: ITU-R P.2040-3, table 3 (permittivity, equation 28) and equations 31, 37 (half space and slab).
 """
@@ -12,12 +12,12 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Values
 
-MIN_ECHO_SHARE = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
+MIN_ECHO_SHARE = 0.01  # amplitude relative to the strongest echo below which an echo is negligible
 
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """epsilon = a f^b, sigma = c f^d with f in GHz; a slab so thick, rough in the sense of effective roughness."""
+    """A slab of a material with epsilon = a f^b and sigma = c f^d, f in GHz (ITU-R P.2040-3, equation 28)."""
 
     name: str
     a: float
@@ -32,15 +32,22 @@ class Material:
         """Share of the specular power that fine roughness scatters.
 
         Reference: Ament, "Toward a theory of reflection by a rough surface", 1953.
+
+        Args:
+            cos_incidence: Cosine (...) of the angle of incidence.
+            frequency_hz: Frequency in Hz.
+
+        Returns:
+            Share (...) from 0 to 1.
         """
         turn = 4 * np.pi * self.roughness_m * frequency_hz / SPEED_OF_LIGHT_MPS * np.asarray(cos_incidence)
         return 1 - np.exp(-(turn**2))
 
 
 # Thickness and scattering are choices of this project, not of the standard. P.2040 gives brick up to 40 GHz, marble
-# up to 60, plywood up to 40: their laws are carried on to 77. Fabric (upholstery) is not in the standard: foam and
-# cloth, after wood with a lower density. Roughness is that of plaster (0.05 and 0.15 mm on two samples, ingrain
-# wallpaper 0.13 mm), taken to be on concrete, brick, plasterboard and ceilings: Piesiewicz et al., "Scattering analysis
+# up to 60, plywood up to 40: their laws are extrapolated to 77. Fabric (upholstery) is not in the standard: foam and
+# cloth, derived from wood with a lower density. Roughness is that of plaster (0.05 and 0.15 mm on two samples, ingrain
+# wallpaper 0.13 mm), assumed on concrete, brick, plasterboard and ceilings: Piesiewicz et al., "Scattering analysis
 # for the modeling of THz communication systems", IEEE Trans. Antennas Propag. 55(11), 2007, table I.
 MATERIALS: Registry[Material] = Registry(
     "material",
@@ -67,6 +74,10 @@ MATERIALS: Registry[Material] = Registry(
 def relative_permittivity(material: Material, frequency_hz: float) -> complex:
     """Complex relative permittivity, eps' - j 17.98 sigma / f (f in GHz).
 
+    Args:
+        material: The material.
+        frequency_hz: Frequency in Hz.
+
     >>> eps = relative_permittivity(MATERIALS["glass"], 79e9)
     >>> round(eps.real, 2), round(eps.imag, 2)
     (6.31, -0.29)
@@ -78,14 +89,17 @@ def relative_permittivity(material: Material, frequency_hz: float) -> complex:
 def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
     """Complex reflection coefficient of a slab.
 
+    Reference: ITU-R P.2040-3, equations 31a, 31b and 37a, 37c.
+
     Args:
-        material: of the slab.
-        cos_incidence: cosine of the angle of incidence, in [0, 1].
-        frequency_hz: of the wave.
+        material: Material and thickness of the slab.
+        cos_incidence: Cosine (...) of the angle of incidence, in [0, 1].
+        frequency_hz: Frequency in Hz.
         polarisation: "te", the electric field parallel to the face (a vertically polarised radar and a wall), or "tm",
             the field in the plane of incidence (the same radar and the floor).
 
-    Reference: ITU-R P.2040-3, equations 31a, 31b and 37a, 37c.
+    Returns:
+        Amplitude coefficient (...).
     """
     face, through, _ = _slab(material, cos_incidence, frequency_hz, polarisation)
     return face * (1 - through) / (1 - face**2 * through)
@@ -94,17 +108,20 @@ def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *
 def transmission(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
     """Complex transmission coefficient of a slab, relative to free space in its place.
 
-    Args:
-        material: of the slab.
-        cos_incidence: cosine of the angle of incidence, in [0, 1].
-        frequency_hz: of the wave.
-        polarisation: see `reflection`.
+    Reference: ITU-R P.2040-3, equations 37b, 37d.
 
-    Reference: ITU-R P.2040-3, equation 37b, 37d.
+    Args:
+        material: Material and thickness of the slab.
+        cos_incidence: Cosine (...) of the angle of incidence, in [0, 1].
+        frequency_hz: Frequency in Hz.
+        polarisation: "te" or "tm", see `reflection`.
+
+    Returns:
+        Amplitude coefficient (...).
     """
     face, through, root = _slab(material, cos_incidence, frequency_hz, polarisation)
     cos_i = np.clip(np.asarray(cos_incidence, float), 0.0, 1.0)
-    # through = exp(-2jq): the slab's own phase minus that of as much air
+    # through = exp(-2jq): the phase of the slab minus that of the same thickness of air
     air = np.exp(2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * cos_i)
     once = np.exp(-2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * root)
     return (1 - face**2) * once * air / (1 - face**2 * through)
@@ -112,22 +129,22 @@ def transmission(material: Material, cos_incidence: Values, frequency_hz: float,
 
 @dataclass(frozen=True)
 class SlabEchoes:
-    """A slab's reflection as echoes of its front, its back and what goes to and fro within, the front first.
+    """A slab's reflection as echoes of its front, its back and its internal reflections, the front first.
 
-    In the phases of a beat signal, which grow with the path's length: with coefficients c and lengths x the reflection
+    Phases are those of a beat signal, which grow with path length: with coefficients c and lengths x the reflection
     at frequency f is sum_k c_k exp(2 pi j f x_k / c0), the complex conjugate of `reflection`.
     """
 
     coefficient: np.ndarray  # (echo, ...) complex
-    longer_m: np.ndarray  # (echo, ...) how much longer each echo's path is than the front's
+    longer_m: np.ndarray  # (echo, ...) excess path length of each echo over the front's
 
     def __iter__(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Coefficient and length of each echo."""
+        """Coefficient and excess length of each echo."""
         return zip(self.coefficient, self.longer_m, strict=True)
 
     @property
     def doubled(self) -> "SlabEchoes":
-        """Of a wave that meets the slab twice under the same angles; all echoes are one or more steps longer."""
+        """Echoes of a wave that meets the slab twice at the same angle; each is a whole number of steps longer."""
         count = len(self.coefficient)
         coefficients = [
             sum(
@@ -141,11 +158,16 @@ class SlabEchoes:
         return SlabEchoes(np.array(coefficients), np.multiply.outer(np.arange(2 * count - 1), step_m))
 
     def value(self, frequency_hz: float) -> Values:
-        """The sum (...) at a frequency."""
+        """The sum (...) of the echoes at a frequency in Hz."""
         return (self.coefficient * np.exp(2j * np.pi * frequency_hz * self.longer_m / SPEED_OF_LIGHT_MPS)).sum(axis=0)
 
     def combined(self, other: "SlabEchoes", frequency_hz: float) -> "SlabEchoes":
-        """Of one wave at two slabs, (echo,) each; echoes too faint to matter are counted with the strongest."""
+        """Echoes of one wave that meets two slabs; negligible ones are added to the strongest.
+
+        Args:
+            other: Echoes (echo,) of the other slab; these are (echo,), too.
+            frequency_hz: Frequency in Hz at which the sum stays exact.
+        """
         coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
         longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()
         strongest = np.abs(coefficient).argmax()
@@ -161,19 +183,22 @@ def slab_echoes(
     """A slab's reflection as a few echoes.
 
     Each echo is nearly flat over a radar's band, their sum is not: 12.5 mm of plasterboard reflect 0.19 to 0.28 of the
-    amplitude within 3.4 GHz. Of slabs that nothing comes back through there is the front alone.
+    amplitude within 3.4 GHz. A slab so lossy that nothing returns from its back has a front echo alone.
 
     Args:
-        material: of the slab.
-        cos_incidence: cosine of the angle of incidence.
-        frequency_hz: at which the sum is exact.
-        polarisation: see `reflection`.
-        most: number of echoes; the last stands for all later ones.
+        material: Material and thickness of the slab.
+        cos_incidence: Cosine (...) of the angle of incidence.
+        frequency_hz: Frequency in Hz at which the sum is exact.
+        polarisation: "te" or "tm", see `reflection`.
+        most: Maximum number of echoes; the last one contains all later ones.
+
+    Returns:
+        Echoes (echo, ...).
     """
     face, through, root = (np.conj(part) for part in _slab(material, cos_incidence, frequency_hz, polarisation))
     longer_m = 2 * material.thickness_m * root.real
     carrier = np.exp(2j * np.pi * frequency_hz * longer_m / SPEED_OF_LIGHT_MPS)
-    again = through / carrier  # what is lost on the way to the back and to the front again
+    again = through / carrier  # attenuation of one round trip through the slab
     coefficients = [face]
     for order in range(1, most):
         coefficients.append(-face * (1 - face**2) * face ** (2 * order - 2) * again**order)
@@ -186,7 +211,17 @@ def slab_echoes(
 def mean_reflectivity(
     material: Material, cos_incidence: Values, frequencies_hz: np.ndarray, polarisation: str
 ) -> Values:
-    """|reflection|^2, mean of some frequencies: what a rough face scatters into one range cell."""
+    """Mean of |reflection|^2 over frequencies: the reflectivity that applies to scattering by a rough face.
+
+    Args:
+        material: Material and thickness of the slab.
+        cos_incidence: Cosine (...) of the angle of incidence.
+        frequencies_hz: Frequencies in Hz.
+        polarisation: "te" or "tm", see `reflection`.
+
+    Returns:
+        Power share (...).
+    """
     each = [reflection(material, cos_incidence, one, polarisation=polarisation) for one in frequencies_hz]
     return np.mean(np.abs(each) ** 2, axis=0)
 
@@ -194,7 +229,7 @@ def mean_reflectivity(
 def _slab(
     material: Material, cos_incidence: Values, frequency_hz: float, polarisation: str
 ) -> tuple[Values, Values, Values]:
-    """Reflection of one face; what is left of a wave after its way through and back; sqrt(eps - sin^2)."""
+    """Reflection of one face, attenuation and phase of one round trip through the slab, and sqrt(eps - sin^2)."""
     eps = relative_permittivity(material, frequency_hz)
     cos_i = np.clip(np.asarray(cos_incidence, float), 0.0, 1.0)
     root = np.sqrt(eps - (1 - cos_i**2) + 0j)

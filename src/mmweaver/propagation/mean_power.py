@@ -1,6 +1,6 @@
-"""Mean power maps of echoes of unknown phase: what can be predicted of a radar signal.
+"""Mean power maps of echoes of unknown phase: the predictable part of a radar signal.
 
-Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman).
+Echoes of independent phase add in power. Reference: speckle statistics (Goodman).
 """
 
 import math
@@ -19,17 +19,22 @@ from mmweaver.signal.windows import noise_share
 
 @dataclass(frozen=True, kw_only=True)
 class PowerMaps(TensorRecord):
-    """Power in mW, as `signal.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
+    """Power in mW, scaled as by `signal.spectra`: (frame, range, doppler), (frame, range, azimuth), and so on."""
 
     range_doppler: Tensor
     range_azimuth: Tensor
-    range_elevation: Tensor  # no elevation cells where the array cannot tell elevation
+    range_elevation: Tensor  # without elevation cells where the array has no vertical aperture
 
 
 class MeanPower:
-    """Mean power maps of points for one radar; differentiable in everything the points hold."""
+    """Mean power maps of points for one radar; differentiable with respect to all properties of the points."""
 
     def __init__(self, config: RadarConfig):
+        """Prepares the cells and beams of a radar.
+
+        Args:
+            config: The radar.
+        """
         self.config = config
         self.response = PointResponse(config)
         self.axes: Axes = self.response.axes()
@@ -45,20 +50,20 @@ class MeanPower:
         self.noise *= float(config.tx_noise_gain.mean())
 
     def to(self, device: torch.device) -> "MeanPower":
-        """Itself, on a device."""
+        """Moves the tensors to a device, in place, and returns itself."""
         self.axes = self.axes.to(device)
         for name in ("_row_x", "_column_z", "_sin_azimuth", "_sin_elevation"):
             setattr(self, name, getattr(self, name).to(device))
         return self
 
     def maps(self, points: Points) -> PowerMaps:
-        """Mean power maps of points whose phases are independent.
+        """Mean power maps of points of independent phase.
 
         Args:
-            points: (..., point) in bins of the response; their amplitudes' absolute square is the mean power.
+            points: Points (..., point) in bins of the response; their squared magnitude is the mean power.
 
         Returns:
-            Power in mW (..., range, doppler), (..., range, azimuth), (..., range, elevation).
+            Power in mW: (..., range, doppler), (..., range, azimuth), (..., range, elevation).
         """
         power = points.amplitude.abs().square()
         at_range = self.response.range_kernel(self.axes.range_bin - points.range_bin[..., None])[0].square()
@@ -72,7 +77,7 @@ class MeanPower:
         )
 
     def noise_maps(self) -> tuple[float, float, float]:
-        """Mean power of the receiver's noise in a cell of each map."""
+        """Mean receiver noise in mW per cell of each map."""
         beam = self.noise * len(self.axes.doppler_bin)
         return self.noise, beam / len(self._row_x), beam / max(len(self._column_z), 1)
 
@@ -83,10 +88,10 @@ class MeanPower:
 
 
 def _beam(cosine: Tensor, place: Tensor, sine: Tensor) -> Tensor:
-    """Power pattern (..., point, angle) of a line of antennas at `place` (radians of phase) steered to each angle."""
+    """Power pattern (..., point, angle) of a line of antennas at `place` (phase in rad), steered to each angle."""
     own = cosine[..., None] * place
     steered = place[:, None] * sine
-    # the line's sum of exp(j steered - j own), by two products of matrices
+    # sum over the line of exp(j steered - j own), as two matrix products
     both = torch.cat([own.cos(), own.sin()], dim=-1)
     real = both @ torch.cat([steered.cos(), steered.sin()])
     imaginary = both @ torch.cat([steered.sin(), -steered.cos()])

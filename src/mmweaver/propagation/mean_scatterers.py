@@ -1,4 +1,4 @@
-"""The networks' output: mean echoes, independent of the radar, before phases are sampled (`speckle`)."""
+"""Output of the networks: mean echoes, independent of the radar, before phases are sampled (`speckle`)."""
 
 from dataclasses import dataclass
 
@@ -19,6 +19,6 @@ class MeanEchoes(TensorRecord):
 
 @dataclass(frozen=True, kw_only=True)
 class CellEchoes(MeanEchoes):
-    """Echoes that stand for resolution cells; a cell has one number in all frames, and so one phase."""
+    """Echoes that represent resolution cells; a cell keeps its number, and therefore its phase, in all frames."""
 
     cell: Tensor  # (..., echo) int64

@@ -1,6 +1,6 @@
-"""Several people at once: each occludes the others, their ghosts and the room as a body occludes itself.
+"""Several people: each occludes the others, their multipath and the room as a body occludes itself.
 
-Paths from one person over another to the radar are of second order: `second_order`; see docs/several_people.md.
+Paths over two people are of second order, see `second_order` and docs/several_people.md.
 """
 
 from itertools import combinations
@@ -18,9 +18,9 @@ from mmweaver.propagation.visible_body import hulls_of, occluded_by
 
 
 class PeoplePaths:
-    """Paths of all people in one room, frame by frame; without people an empty room.
+    """Paths of all people in one room, frame by frame; an empty room without people.
 
-    What two of them occlude of the room is taken away once.
+    A static path that two of them occlude is removed once.
     """
 
     def __init__(
@@ -31,7 +31,15 @@ class PeoplePaths:
         joints_m: list[np.ndarray],
         chests_m: list[np.ndarray] | None = None,
     ):
-        """`joints_m`: (frame, node, 22, 3) for each body; `chests_m`: how far its chest is raised (frame, node)."""
+        """Poses all people, and determines which paths are clear.
+
+        Args:
+            room: The room.
+            bodies: Skin points of each person; may be empty.
+            clock: Clock of the radar's frame.
+            joints_m: Joints (frame, node, 22, 3) in metres of each person, at the clock's nodes.
+            chests_m: Outward displacement of the chest (frame, node) in metres of each person; by default none.
+        """
         self.room, self.num_segments = room, len(clock.segments)
         self.hulls = hulls_of(bodies, joints_m) if bodies else []
         self.each = [
@@ -42,7 +50,11 @@ class PeoplePaths:
         self.between = [BodyBodyPaths(*pair) for pair in combinations(seconds, 2)]
 
     def scene(self, num_frames: int) -> ScenePaths:
-        """The paths of the room and of all people in so many frames."""
+        """All paths of the room and of the people.
+
+        Args:
+            num_frames: Number of frames, from the first.
+        """
         segments = [paths for frame in range(num_frames) for paths in self.paths(frame)]
         occluded = np.stack([self.occluded(frame) for frame in range(num_frames)])
         return ScenePaths(
@@ -50,7 +62,7 @@ class PeoplePaths:
         )
 
     def paths(self, frame: int) -> list[Paths]:
-        """All paths over people in one frame, a record (path,) for each time segment."""
+        """All paths over people in one frame, one record (path,) per time segment."""
         each = [one.paths(frame) for one in self.each]
         for between in self.between:
             paths = between.paths(slice(frame, frame + 1))
@@ -58,7 +70,7 @@ class PeoplePaths:
         return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
 
     def occluded(self, frame: int) -> np.ndarray:
-        """Which static paths a person occludes in one frame, bool (path,)."""
+        """Mask (path,) of the static paths that any person occludes in one frame."""
         found = np.zeros(len(self.room.paths), bool)
         if self.each:
             near = np.unique(np.concatenate([one.occludable(frame) for one in self.each]))

@@ -1,4 +1,4 @@
-"""What a body stands in front of, from joints alone: the average body's capsules, without a ray caster.
+"""Occlusion by a body from its joints alone: the average body's capsules, without a ray caster.
 
 Reference: docs/decisions/network-predicts-echoes.md.
 """
@@ -8,23 +8,23 @@ from torch import Tensor
 
 from mmweaver.propagation.body_model import average_body
 
-MAX_FLESH_M = 0.2  # from a bone to the skin at most
-BEHIND_M = 0.1  # farther than the body at least
-FRAMES_AT_ONCE = 5  # stay in the cache
-CORNERS = 0.93  # mean radius of a hull of six corners, by which the ray tracer's bodies occlude
+MAX_FLESH_M = 0.2  # maximum distance from bone to skin
+BEHIND_M = 0.1  # minimum distance behind the body of what it occludes
+FRAMES_AT_ONCE = 5  # fit into the cache
+CORNERS = 0.93  # mean over outer radius of a hexagon: the ray tracer's bodies occlude by six-sided hulls
 
 
 def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
-    """Whether a body blocks the line from the radar to places.
+    """Whether a body blocks the line of sight from the radar to places.
 
-    The body has the capsules of the ray tracer, about the bones of a person of average height.
+    The body consists of the ray tracer's capsules, around the bones of a person of average height.
 
     Args:
-        ends_m: places (path, 3), or (frame, path, 3).
-        joints_m: (frame, 22, 3).
+        ends_m: Places (path, 3) in metres, or (frame, path, 3).
+        joints_m: Joints (frame, 22, 3) in metres.
 
     Returns:
-        Bool (frame, path).
+        Bool (frame, path), on the device of the joints.
     """
     body = average_body()
     posed = body.posed(joints_m.double().cpu().numpy())
@@ -47,7 +47,7 @@ def occluded(ends_m: Tensor, joints_m: Tensor) -> Tensor:
 
 
 def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
-    """Which unit vectors (frame, ray, 3) may meet the body, flesh included, (frame, ray): a cone, within a wedge."""
+    """Which unit vectors (frame, ray, 3) may meet the body, (frame, ray): a cone, cut by a wedge."""
     ends = torch.cat(ends_m, dim=1)
     distance = ends.norm(dim=-1)
     unit = ends / distance[..., None]
@@ -59,7 +59,7 @@ def _towards(rays: Tensor, *ends_m: Tensor) -> Tensor:
 
 
 def _sides(ends_m: Tensor, middle: Tensor) -> Tensor:
-    """Inward normals (frame, 3, 2) of two vertical planes through the radar with the body between them.
+    """Inward normals (frame, 3, 2) of two vertical planes through the radar that enclose the body.
 
     Zero where the body fills half of the horizon or more.
     """
@@ -76,9 +76,9 @@ def _sides(ends_m: Tensor, middle: Tensor) -> Tensor:
 def _met(
     rays: Tensor, far_m: Tensor, radius_m: Tensor, width: Tensor, start_m: Tensor, axis_m: Tensor, right: Tensor
 ) -> Tensor:
-    """Whether each ray (frame, ray, 3) comes nearer to a capsule than its radius before it gets `far_m` (frame, ray).
+    """Whether each ray (frame, ray, 3) comes closer to a capsule than its radius within `far_m` (frame, ray).
 
-    Capsules (frame, capsule, 3), their radii (capsule, 2).
+    Capsules are (frame, capsule, 3), their radii (capsule, 2).
     """
     along, begun, across_m = (part @ rays.mT for part in (axis_m, start_m, right))  # (frame, capsule, ray)
 

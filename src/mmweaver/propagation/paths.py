@@ -1,7 +1,7 @@
-"""Propagation paths between a radar and itself: what both methods solve for, and what is rendered as a signal.
+"""Propagation paths from a radar back to itself: the output of both path solvers and the input of the renderers.
 
-The frame of reference is the radar's (x right, y away, z up, origin at the array's centre), units are SI, amplitudes
-those at the receiver's port in sqrt(mW). The carrier's phase, exp(j 2 pi length / wavelength), is not in the amplitude.
+Coordinates are the radar's (x right, y away, z up, origin at the array's centre) in SI units. Amplitudes are those at
+the receiver's port in sqrt(mW), without the phase of the carrier, exp(j 2 pi length / wavelength).
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from mmweaver.core.tensor_record import TensorRecord
 
 
 class Interaction(IntEnum):
-    """What a wave meets on its way."""
+    """What a wave interacts with along a path."""
 
     DIFFUSE = 0  # a rough surface of the room
     SPECULAR = 1  # one or more flat faces of the room
@@ -24,7 +24,7 @@ class Interaction(IntEnum):
     BODY_WALL = 4  # the body, and a face before or after it
     WALL_BODY_WALL = 5  # the body, and the same face before and after it
     BODY_ROOM = 6  # the body, and a rough surface before or after it
-    BODY_RADAR_BODY = 7  # the body, the radar itself, and the body again
+    BODY_RADAR_BODY = 7  # the body, the radar's own board, and the body again
     ROOM_ROOM = 8  # two surfaces of the room, at least one of them rough
     CLUTTER = 9  # something in the room that photo and mesh do not resolve
     BODY_BODY = 10  # two people, one after the other
@@ -35,9 +35,10 @@ STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # 
 
 @dataclass(frozen=True, kw_only=True)
 class ApparentPoint(TensorRecord):
-    """Where one end of a path seems to be, seen from the array: the scatterer, or its image in a face of the room.
+    """Apparent position of one end of a path as seen from the array: the scatterer, or its image in a face.
 
-    Quadratic in time about the middle of a time segment. Float64: float32 knows 4 m to 0.2 um, 1e-3 rad of phase.
+    Quadratic in time about the middle of a time segment. Float64, since float32 resolves 4 m to 0.2 um, 1e-3 rad of
+    phase.
     """
 
     position_m: Tensor  # (..., path, 3)
@@ -46,14 +47,21 @@ class ApparentPoint(TensorRecord):
 
     @classmethod
     def of(cls, motion: np.ndarray) -> "ApparentPoint":
-        """Position, velocity and acceleration (..., path, 3, 3), the last but one axis naming which."""
+        """From position, velocity and acceleration (..., path, 3, 3), which lie along the last but one axis."""
         position, velocity, acceleration = (
             torch.from_numpy(np.ascontiguousarray(motion[..., order, :], np.float64)) for order in range(3)
         )
         return cls(position_m=position, velocity_mps=velocity, acceleration_mps2=acceleration)
 
     def positions_m(self, time_s: Tensor) -> Tensor:
-        """Positions (..., time, 3, path) in metres, float64, at times (time,) since the segment's middle."""
+        """Positions over time.
+
+        Args:
+            time_s: Times (time,) since the middle of the segment.
+
+        Returns:
+            Positions (..., time, 3, path) in metres, float64.
+        """
         position, velocity, acceleration = (
             part.mT.contiguous()[..., None, :, :]
             for part in (self.position_m, self.velocity_mps, self.acceleration_mps2)
@@ -63,33 +71,33 @@ class ApparentPoint(TensorRecord):
 
     @property
     def distance_m(self) -> Tensor:
-        """(..., path) from the array's centre, float64."""
+        """Distance (..., path) from the array's centre, float64."""
         return self.position_m.norm(dim=-1)
 
     @property
     def direction(self) -> Tensor:
-        """(..., path, 3) unit vectors from the array's centre, float64."""
+        """Unit vectors (..., path, 3) from the array's centre, float64."""
         return self.position_m / self.distance_m.clamp(min=1e-9)[..., None]
 
     @property
     def rate_mps(self) -> Tensor:
-        """(..., path) how fast the distance grows."""
+        """Rate of change (..., path) of the distance."""
         return (self.direction * self.velocity_mps).sum(-1)
 
     @property
     def distance_acceleration_mps2(self) -> Tensor:
-        """(..., path) how fast that rate grows: by acceleration, and by moving past the array."""
+        """Second derivative (..., path) of the distance, with the contribution of tangential motion."""
         across2 = self.velocity_mps.square().sum(-1) - self.rate_mps.square()
         return (self.direction * self.acceleration_mps2).sum(-1) + across2 / self.distance_m.clamp(min=1e-9)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Paths(TensorRecord):
-    """Moving paths, one row for each time segment: of every frame, and of every part of a frame with long chirps.
+    """Moving paths, one row per time segment: one per frame, or several per frame with long chirp sequences.
 
-    The wave seems to go to `departure` and to come from `arrival`: the same place for a direct echo. A transmitter at t
-    and a receiver at r have a path length of |departure - t| + |arrival - r|. A path that is reciprocal is travelled in
-    the other order too, and both add up. Padding has an amplitude of zero.
+    The wave seems to travel to `departure` and to return from `arrival`, which coincide for a direct echo. Between a
+    transmitter at t and a receiver at r the path length is |departure - t| + |arrival - r|. A reciprocal path is
+    travelled in the opposite direction, too, and both add coherently. Padding has zero amplitude.
     """
 
     amplitude: Tensor  # (..., path) complex64
@@ -108,7 +116,15 @@ class Paths(TensorRecord):
         *,
         is_reciprocal: bool = False,
     ) -> "Paths":
-        """Paths of one kind, of amplitudes (path,) and of the motion of their ends (..., path, 3, 3)."""
+        """Paths of one kind, from arrays.
+
+        Args:
+            amplitude: Amplitudes (path,) in sqrt(mW).
+            departure: Position, velocity and acceleration (..., path, 3, 3) of the departure points.
+            arrival: The same of the arrival points.
+            interaction: Kind of all paths.
+            is_reciprocal: Whether the wave travels the paths in both directions.
+        """
         shape = departure.shape[:-2]
         return cls(
             amplitude=torch.from_numpy(amplitude.astype(np.complex64)).expand(shape),
@@ -120,7 +136,12 @@ class Paths(TensorRecord):
 
     @classmethod
     def direct(cls, amplitude: Tensor, scatterer: ApparentPoint) -> "Paths":
-        """Paths to moving scatterers and straight back."""
+        """Direct echoes of moving scatterers.
+
+        Args:
+            amplitude: Amplitudes (..., path) in sqrt(mW).
+            scatterer: The scatterers, (..., path).
+        """
         return cls(
             amplitude=amplitude.to(torch.complex64),
             departure=scatterer,
@@ -131,9 +152,13 @@ class Paths(TensorRecord):
 
     @staticmethod
     def padded(parts: list["Paths"]) -> "Paths":
-        """Paths (path,) of a segment each, or (segment, path) of several, as one record (segment, path).
+        """Stacks the paths of several segments, padded at the end with amplitudes of zero.
 
-        Padded at the end with amplitudes of zero.
+        Args:
+            parts: Paths (path,) of one segment each, or (segment, path) of several.
+
+        Returns:
+            Paths (segment, path).
         """
         longest = max((one.amplitude.shape[-1] for one in parts), default=0)
         axis = parts[0].amplitude.ndim - 1
@@ -157,17 +182,17 @@ class Paths(TensorRecord):
 
     @property
     def length_m(self) -> Tensor:
-        """(..., path) from the array's centre and back to it at the segment's middle, float64."""
+        """Path length (..., path) from the array's centre and back at the middle of the segment, float64."""
         return self.departure.distance_m + self.arrival.distance_m
 
     @property
     def rate_mps(self) -> Tensor:
-        """(..., path) how fast the length grows: twice the radial velocity of a direct echo."""
+        """Rate of change (..., path) of the path length: twice the radial velocity of a direct echo."""
         return self.departure.rate_mps + self.arrival.rate_mps
 
     @property
     def acceleration_mps2(self) -> Tensor:
-        """(..., path) how fast that rate grows."""
+        """Second derivative (..., path) of the path length."""
         return self.departure.distance_acceleration_mps2 + self.arrival.distance_acceleration_mps2
 
 
@@ -175,8 +200,8 @@ class Paths(TensorRecord):
 class StaticPaths(TensorRecord):
     """Paths of a room without people, the same in all frames.
 
-    They are few and rendered once, so the length is kept for every pair of antennas: exact for specular paths too,
-    whose images turn the array. A body before either vertex occludes the path.
+    The length is kept per antenna pair, which is exact for specular paths, too, whose images rotate the array. A body
+    in front of either vertex occludes the path.
     """
 
     amplitude: Tensor  # (..., path) complex128
@@ -194,7 +219,15 @@ class StaticPaths(TensorRecord):
         arrival_m: np.ndarray,
         interaction: Interaction,
     ) -> "StaticPaths":
-        """Paths of one kind from arrays: amplitude (path,), length (path, tx, rx), vertices (path, 3)."""
+        """Paths of one kind, from arrays.
+
+        Args:
+            amplitude: Amplitudes (path,) in sqrt(mW).
+            length_m: Path lengths (path, tx, rx) in metres.
+            departure_m: First vertices (path, 3) in metres.
+            arrival_m: Last vertices (path, 3) in metres.
+            interaction: Kind of all paths.
+        """
         return cls(
             amplitude=torch.from_numpy(np.asarray(amplitude, np.complex128)),
             length_m=torch.from_numpy(np.asarray(length_m, np.float64)),
@@ -207,13 +240,13 @@ class StaticPaths(TensorRecord):
         return len(self.amplitude)
 
     def select(self, kind: Interaction) -> "StaticPaths":
-        """Those of one kind."""
+        """The paths of one kind."""
         return self[self.interaction == int(kind)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ScenePaths:
-    """All paths of some frames: what a path solver gives."""
+    """All paths of some frames: the output of a path solver."""
 
     static: StaticPaths  # (path,)
     moving: Paths  # (frame * segment, path)

@@ -1,4 +1,4 @@
-"""Mean echoes as one radar sees them: the radar equation, and the units of its cells. Differentiable."""
+"""Mean echoes as received by one radar: the radar equation, in units of its cells. Differentiable."""
 
 import math
 
@@ -12,7 +12,15 @@ from mmweaver.signal.point_response import PointResponse, Points
 
 
 def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
-    """Scatterers in bins of the response, amplitudes real, in sqrt(mW). Reference: primer, equation 10."""
+    """Applies the radar equation to mean echoes. Reference: docs/radar_primer.md, equation 10.
+
+    Args:
+        echoes: Mean echoes, (..., echo).
+        response: Point response of the radar, which defines the bins.
+
+    Returns:
+        Points (..., echo) of real amplitude in sqrt(mW).
+    """
     config = response.config
     loss = direction_loss_db(echoes.direction, config)
     gain = scatterer_gain(config) * 10 ** (-loss / 10)  # out and back
@@ -27,14 +35,30 @@ def points_of(echoes: MeanEchoes, response: PointResponse) -> Points:
 
 
 def direction_loss_db(direction: Tensor, config: RadarConfig) -> Tensor:
-    """Loss of one antenna in dB towards direction cosines (..., 2) along x and z, ahead of the radar."""
+    """One-way antenna loss towards directions in front of the radar.
+
+    Args:
+        direction: Direction cosines (..., 2) along x and z.
+        config: The radar, for its beamwidths.
+
+    Returns:
+        Loss (...) in dB.
+    """
     x, z = direction.unbind(-1)
     ahead = (1 - x.square() - z.square()).clamp(min=1e-4).sqrt()
     return pattern_db(torch.stack([x, ahead, z], dim=-1), config)
 
 
 def carrier(range_m: Tensor, config: RadarConfig) -> Tensor:
-    """exp(j 4 pi R / wavelength), the phase of an echo from there; cycles are wrapped in double precision."""
+    """Two-way carrier phasor exp(j 4 pi R / wavelength); cycles are wrapped in double precision.
+
+    Args:
+        range_m: Ranges R (...) in metres.
+        config: The radar, for its wavelength.
+
+    Returns:
+        Phasors (...), complex64.
+    """
     cycles = 2 * range_m.double() / config.wavelength_m
     angle = (2 * math.pi * (cycles - cycles.round())).to(torch.float32)
     return torch.polar(torch.ones_like(angle), angle)

@@ -1,4 +1,4 @@
-"""The ray tracer: scene + poses -> paths -> ADC samples. The room is traced once, people frame by frame."""
+"""The ray tracer: scene and poses to paths and ADC samples. The room is traced once, people frame by frame."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ from mmweaver.propagation.static_paths import Propagation, RayTracedRoom
 from mmweaver.propagation.visibility import Visibility
 from mmweaver.signal.cube import static_samples
 
-CHUNK_FRAMES = 20  # frames of samples that exist at once, which bounds memory
+CHUNK_FRAMES = 20  # frames per chunk, which bounds memory
 
 _SENTENCES = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
@@ -51,16 +51,16 @@ SEVERAL_PEOPLE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Simulation:
-    """What the receivers recorded, and what was assumed to get there."""
+    """Recorded samples, and the assumptions behind them."""
 
     adc: AdcCube
     assumptions: tuple[str, ...]
 
 
 class Simulator:
-    """One radar in one room. Making it traces the room; `run` may then be called for many motions.
+    """One radar in one room. The room is traced on construction; `run` may then be called for many motions.
 
-    The room's and the body's micro-phases belong to the room and the person; the seed samples the receiver's noise.
+    Micro-phases belong to the room and to each person; the seed samples the receiver's noise.
     """
 
     def __init__(
@@ -78,17 +78,18 @@ class Simulator:
         """Traces the room.
 
         Args:
-            scene: room and place of the radar.
-            config: the radar.
-            impairments: of an ideal board's receiver; by default all.
-            micro_seed: samples the phases of the room's surfaces.
-            background: a recording by this radar without people, whose static clutter and noise are used.
-            board: whose errors all signals have; by default those of `impairments` alone.
-            propagation: which paths there are.
-            room: the scene as it was traced for another board with the same places of antennas.
+            scene: Room and position of the radar.
+            config: The radar.
+            impairments: Receiver impairments of an ideal board; by default all.
+            micro_seed: Seed of the phases of the room's surfaces.
+            background: Recording by this radar without people, whose static clutter and noise are used; by default both
+                are simulated.
+            board: Board whose errors apply to all signals; by default those of `impairments` alone.
+            propagation: Which paths are traced; by default `Propagation()`.
+            room: The scene as traced for another board with the same antenna positions, to save tracing it again.
 
         Raises:
-            InputError: for the recording of another radar.
+            InputError: If the background is from another radar.
         """
         self.config, self.radar_pose = config, scene.radar_pose
         self.impairments = impairments or Impairments()
@@ -111,26 +112,26 @@ class Simulator:
                 self._static = self.synthesis.static(self.room.paths)
                 self._static += self._leakage()
             self._static_rate = self.synthesis.static_rate(self.room.paths)
-            if self.board is not None:  # how static samples change with the carrier's relative error
+            if self.board is not None:  # derivative of static samples by the carrier's relative error
                 self._drift_rate = self._static_rate * (config.centre_frequency_hz / config.chirp_slope_hz_per_s)
                 if background is None:
                     self._drift_rate = self._drift_rate + self.synthesis.leakage(*self.board.leakage_rate)
 
     def _receiver(self, seed: int) -> Receiver:
-        """The radar's own, or that of the background recording."""
+        """The radar's receiver, with the noise of the background recording if there is one."""
         receiver = Receiver(self.room.config, self.impairments, self.radar_pose.noise_seed(seed), self.board)
         if self.background is None:
             return receiver
         return receiver.adopt_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
 
     def _leakage(self) -> torch.Tensor:
-        """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
+        """Samples (tx, rx, sample) of the board's leakage, or of a typical one."""
         if self.board is not None and len(self.board.board.leakage_range_m):
             return self.synthesis.leakage(*self.board.leakage)
         return self.synthesis.static(leakage_path(self.config, self.impairments))
 
     def _use(self, recording: RadarCube) -> BackgroundRecording:
-        """Gives the room's static paths the amplitudes that a recording makes most likely."""
+        """Conditions the amplitudes of the room's static paths on a recording."""
         check_recording(recording, self.config)
         radar, paths = MeanPower(self.room.config), self.room.paths
         expected = radar.maps(static_points(paths, radar.response)).range_azimuth
@@ -140,11 +141,19 @@ class Simulator:
 
     @property
     def room_adc(self) -> np.ndarray:
-        """Samples of the room without people and of the leakage, complex64 (tx, rx, sample), in sqrt(mW)."""
+        """Samples of the empty room with leakage, complex64 (tx, rx, sample), in sqrt(mW)."""
         return self._static.numpy()
 
     def run(self, pose: PoseSequence | Sequence[PoseSequence], **options: Any) -> Simulation:
-        """ADC samples of the posed people, all frames at once, with the options of `chunks`: mind the memory."""
+        """ADC samples of the posed people, all frames in memory at once.
+
+        Args:
+            pose: One person, several, or an empty tuple for the empty room.
+            **options: As those of `chunks`.
+
+        Returns:
+            Samples (frame, loop, tx, rx, sample), and the assumptions behind them.
+        """
         chunks = self.chunks(pose, **options)
         samples = np.concatenate([chunk.samples for chunk in chunks])
         scale = 1.0 if self.background is None else self.background.unit
@@ -161,19 +170,25 @@ class Simulator:
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
     ) -> Iterator[AdcCube]:
-        """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
+        """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time.
+
+        Samples do not depend on the chunking.
 
         Args:
-            pose: one person, several, or an empty tuple for the room alone.
-            num_frames: number of frames.
-            seed: of the receiver's noise and of micro-motion.
-            first_frame: number of the first one, in the time of the poses; noise and micro-motion continue from there.
-            num_points: skin points of each body.
-            echo: how skin scatters.
-            motions: sway, tremor and breathing, by default typical ones; STILL holds the joints alone.
+            pose: One person, several, or an empty tuple for the empty room.
+            num_frames: Number of frames.
+            seed: Seed of the receiver's noise and of micro-motion.
+            first_frame: Number of the first frame, in the time of the poses; noise and micro-motion continue from
+                there.
+            num_points: Skin points per body.
+            echo: How skin scatters; by default `SkinEcho()`.
+            motions: Sway, tremor and breathing, by default typical amounts; STILL moves the joints alone.
+
+        Yields:
+            Samples (frame, loop, tx, rx, sample) of consecutive frames.
 
         Raises:
-            InputError: where a pose does not cover the frames or holds values that are not finite.
+            InputError: If a pose does not cover the frames or contains values that are not finite.
         """
         poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
         for one in poses:
@@ -190,12 +205,12 @@ class Simulator:
             yield AdcCube(samples=samples, config=self.config, scale=unit)
 
     def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
-        """What the receiver records of paths.
+        """Renders paths and applies the receiver.
 
         Args:
-            paths: of the frames.
-            frames: their numbers (frame,), which noise and drift depend on.
-            receiver: noise and converter.
+            paths: Paths of the frames.
+            frames: Frame numbers (frame,), which noise and drift depend on.
+            receiver: Noise and converter.
 
         Returns:
             Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
@@ -208,7 +223,7 @@ class Simulator:
             return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
 
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
-        """What the carrier's drift adds to the static samples of frames: (frame, tx, rx, sample)."""
+        """Change of the static samples by the carrier's drift, (frame, tx, rx, sample)."""
         assert self.board is not None
         return torch.from_numpy(self.board.drift(frames, seed)).float()[:, None, None, None] * self._drift_rate
 
@@ -228,13 +243,18 @@ class Simulator:
         return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m)
 
     def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
-        """What `Resynthesis` needs of a motion.
+        """Casts the rays of a motion, for `Resynthesis`.
+
+        Args:
+            pose: Motion of one person.
+            num_frames: Number of frames.
+            seed: Seed of micro-motion.
 
         Returns:
-            Joints at the clock's nodes (frame, node, 22, 3) in m, and the visibility that rays decided.
+            Joints at the clock's nodes (frame, node, 22, 3) in metres, float32, and the visibility.
 
         Raises:
-            InputError: as `chunks` does.
+            InputError: As `chunks`.
         """
         self._check(pose, num_frames)
         frames = np.arange(num_frames)
@@ -244,9 +264,9 @@ class Simulator:
         return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
-        """(frame, node, 22, 3): slow time is interpolated, never held.
+        """Joints (frame, node, 22, 3), interpolated in slow time.
 
-        A frame that begins with the last pose continues at its velocity: held, it would be a person who freezes.
+        A frame that begins with the last pose continues at its velocity; holding the pose would freeze the person.
         """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
@@ -273,14 +293,14 @@ def add_micro_motion(
     """Adds a person's micro-motion.
 
     Args:
-        motion: of the person.
-        joints_m: at the nodes of frames (frame, node, 22, 3).
-        frames: their numbers (frame,).
-        clock: of the radar.
-        height_m: of the person.
+        motion: Micro-motion of the person.
+        joints_m: Joints (frame, node, 22, 3) in metres at the nodes of frames.
+        frames: Frame numbers (frame,).
+        clock: Clock of the radar's frame.
+        height_m: Body height in metres.
 
     Returns:
-        The joints with micro-motion, and by how much the chest is raised, (frame, node) in m.
+        Joints with micro-motion, and the outward displacement of the chest (frame, node) in metres.
     """
     time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
     moved = motion.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
@@ -288,7 +308,12 @@ def add_micro_motion(
 
 
 def leakage_path(config: RadarConfig, impairments: Impairments) -> StaticPaths:
-    """The transmitters' direct path into the receivers, (1,), which no one can occlude."""
+    """The direct path (1,) from transmitters to receivers, which cannot be occluded.
+
+    Args:
+        config: The radar.
+        impairments: The leakage level.
+    """
     length_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
     amplitude, nowhere = np.array([leakage(config, impairments)]), np.zeros((1, 3))
     return StaticPaths.of(amplitude, length_m, nowhere, nowhere, Interaction.SPECULAR)

@@ -1,4 +1,4 @@
-"""From the wave at the port to the converter's numbers: thermal and phase noise, jitter, quantisation.
+"""From the wave at the port to the converter's output: thermal noise, phase noise, jitter, quantisation.
 
 Reference: docs/radar_primer.md, section 6.
 """
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Impairments:
-    """What keeps a real receiver from the ideal; each can be switched off.
+    """Deviations of a real receiver from the ideal; each can be switched off.
 
-    Phase noise and the jitter of a chirp's start shift the beat signal in time by delta: s(t + delta). Phase noise of
-    L(1 MHz) that falls by 20 dB a decade is white in frequency, so delta is white; only static
-    paths, the strongest, are shifted.
+    Phase noise and the jitter of a chirp's start shift the beat signal in time by delta, s(t + delta). Phase noise of
+    L(1 MHz) that falls by 20 dB per decade is white in frequency, so delta is white. Only static paths, the
+    strongest, are shifted.
     """
 
     thermal_noise: bool = True
     leakage_db: float | None = -62.0  # transmitter to receiver, after the high-pass filter; None = none
     phase_noise_dbc_per_hz: float | None = -93.0  # at 1 MHz; None = none
-    chirp_jitter_s: float = 1.1e-9  # a chirp starts at one of two instants so far apart (TI SPRACV2: 0.4 deg at 1 MHz)
+    chirp_jitter_s: float = 1.1e-9  # between the two instants at which a chirp may start (TI SPRACV2: 0.4 deg at 1 MHz)
     quantise: bool = True
 
 
@@ -42,9 +42,17 @@ LEAKAGE_PATH_LENGTH_M = 0.05
 
 
 class Receiver:
-    """One receiver's noise and errors. Each frame has a random stream of its own, so frames may come in any order."""
+    """Noise and errors of one receiver. Every frame has its own random stream, so frames may come in any order."""
 
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int, board: "BoardEffects | None" = None):
+        """Computes noise levels.
+
+        Args:
+            config: The radar.
+            impairments: Which impairments apply.
+            seed: Seed of noise and clock errors.
+            board: Board whose IF filter shapes the noise and whose first chirp differs; by default none.
+        """
         self.config, self.impairments, self.seed, self.board = config, impairments, seed, board
         self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
@@ -57,7 +65,12 @@ class Receiver:
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
     def adopt_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
-        """The same with thermal noise of this power a sample and a converter of this count."""
+        """The same receiver with the noise and converter of a recording.
+
+        Args:
+            noise_power_mw: Thermal noise power per sample in mW.
+            count_sqrt_mw: Converter count in sqrt(mW).
+        """
         other = copy(self)
         other.count_sqrt_mw = count_sqrt_mw
         if self.impairments.thermal_noise:
@@ -67,15 +80,15 @@ class Receiver:
     def receive(
         self, moving: Tensor, static: Tensor, static_rate: Tensor, frames: Sequence[int], *, on_device: bool = False
     ) -> Tensor:
-        """Samples as recorded.
+        """Recorded samples: static and moving samples with clock errors, noise and quantisation.
 
         Args:
-            moving: samples of moving paths (frame, loop, tx, rx, sample) in sqrt(mW); they may be overwritten.
-            static: samples of static paths (frame, tx, rx, sample), the same in every loop.
-            static_rate: how fast these change within a chirp (tx, rx, sample), in sqrt(mW)/s.
-            frames: numbers of the frames.
-            on_device: noise from the tensors' device, which is faster on a GPU and gives other noise of the same kind;
-                by default from the seed's streams.
+            moving: Samples of moving paths (frame, loop, tx, rx, sample) in sqrt(mW); overwritten.
+            static: Samples of static paths (frame, tx, rx, sample), the same in every loop.
+            static_rate: Time derivative of the static samples within a chirp (tx, rx, sample), in sqrt(mW)/s.
+            frames: Frame numbers.
+            on_device: Whether noise is generated on the tensors' device, which is faster on a GPU and gives another
+                realization; by default it comes from the streams of the seed.
 
         Returns:
             Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
@@ -83,7 +96,7 @@ class Receiver:
         if on_device:
             self._add(moving, static, static_rate, *self._sampled(frames, moving))
             return moving
-        for index, frame in enumerate(map(int, frames)):  # one at a time: the caches hold it
+        for index, frame in enumerate(map(int, frames)):  # one at a time: a frame fits into the cache
             one, device = slice(index, index + 1), moving.device
             noise = None
             if self.impairments.thermal_noise:
@@ -93,7 +106,10 @@ class Receiver:
         return moving
 
     def _add(self, samples: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None) -> None:
-        """Makes recorded samples of those of moving paths, in place, with clock errors (loop, tx, sample) and noise."""
+        """Turns samples of moving paths into recorded ones, in place.
+
+        Clock errors are (loop, tx, sample) in seconds, noise has the shape of the samples.
+        """
         samples += static[:, None]
         if self.impairments.chirp_jitter_s or self.phase_noise_s:
             samples += delay_s[..., None, :] * static_rate
@@ -107,7 +123,7 @@ class Receiver:
             quantise(samples, self.count_sqrt_mw)
 
     def _sampled(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor]:
-        """Clock errors (frame, loop, tx, sample) and noise (frame, loop, tx, rx, sample) of the samples' device."""
+        """Clock errors (frame, loop, tx, sample) and noise (frame, loop, tx, rx, sample), generated on the device."""
         device = samples.device
         generator = torch.Generator(device)
         generator.manual_seed(int(stream(self.seed, "device noise", int(frames[0])).integers(2**62)))
@@ -119,7 +135,15 @@ class Receiver:
         return delay_s, torch.view_as_complex(noise)
 
     def noise(self, shape: tuple[int, ...], frame: int) -> np.ndarray:
-        """Thermal noise of one frame's samples, complex64."""
+        """Thermal noise of one frame.
+
+        Args:
+            shape: Shape of the frame's samples, (loop, tx, rx, sample).
+            frame: Frame number.
+
+        Returns:
+            Noise of that shape, complex64, in sqrt(mW).
+        """
         rng = stream(self.seed, "thermal noise", frame)
         if self.board is not None and self.board.has_filter:
             return filtered_noise(rng, shape, self.board) * np.float32(self.noise_sqrt_mw)
@@ -128,7 +152,14 @@ class Receiver:
         return noise
 
     def shift(self, frame: int) -> np.ndarray:
-        """Clock error delta (loop, tx, sample) of one frame in seconds: s(t + delta) is sampled."""
+        """Clock error of one frame: s(t + delta) is sampled.
+
+        Args:
+            frame: Frame number.
+
+        Returns:
+            Delta (loop, tx, sample) in seconds.
+        """
         config, jitter_s = self.config, self.impairments.chirp_jitter_s
         rng = stream(self.seed, "clock", frame)
         shift = np.zeros((config.num_loops, config.num_slots, config.num_samples), np.float32)
@@ -141,8 +172,17 @@ class Receiver:
 
 
 def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "BoardEffects") -> np.ndarray:
-    """Noise of power 2 before the IF filter, complex64 (..., sample): sampled in the spectrum, where the filter is."""
-    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
+    """Noise behind the IF filter, of power 2 before it; generated in the spectrum, where the filter is a product.
+
+    Args:
+        rng: Random stream.
+        shape: Shape of the samples, (..., sample).
+        board: Board whose IF response applies.
+
+    Returns:
+        Noise, complex64.
+    """
+    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times faster than numpy's
     spectrum = torch.view_as_complex(torch.empty(*shape, 2).normal_(generator=generator))
     gain = board.noise_gain(np.fft.fftfreq(shape[-1]) % 1.0) * np.sqrt(shape[-1])
     spectrum *= torch.from_numpy(gain.astype(np.float32))
@@ -150,12 +190,12 @@ def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "Boa
 
 
 def quantise(samples: Tensor, count: float) -> None:
-    """Makes samples those of a 16-bit converter, in place: whole multiples of `count` in either part, clipped."""
+    """Quantises samples as a 16-bit converter does, in place: either part to multiples of `count`, clipped."""
     torch.view_as_real(samples).div_(count).round_().clamp_(-32768, 32767).mul_(count)
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:
-    """Amplitude of the transmitter's direct path into the receiver, sqrt(mW)."""
+    """Amplitude of the direct path from transmitter to receiver in sqrt(mW); 0 without leakage."""
     if impairments.leakage_db is None:
         return 0j
     return complex(10 ** ((config.tx_power_dbm + impairments.leakage_db) / 20))

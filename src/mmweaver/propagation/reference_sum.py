@@ -1,6 +1,6 @@
-"""The sum that the separable synthesis approximates: every sample, chirp and antenna on its own, in float64.
+"""The exact sum that the separable synthesis approximates: every sample, chirp and antenna pair in float64.
 
-Slow, and the referee: tests and benchmarks compare against it.
+Slow; the reference for tests and benchmarks.
 """
 
 from collections.abc import Callable
@@ -15,17 +15,16 @@ from mmweaver.core.transmit_code import weights_of
 def exact_frame(
     position_m: Callable[[np.ndarray], np.ndarray], amplitude: np.ndarray, config: RadarConfig
 ) -> np.ndarray:
-    """ADC samples of one frame of moving point scatterers.
+    """ADC samples of one frame of moving point scatterers. Reference: docs/radar_primer.md, equation 7.
 
     Args:
-        position_m: maps times (time,) from the frame's start to positions (point, time, 3); called for every sample.
-        amplitude: (point,) complex.
-        config: the radar.
+        position_m: Maps times (time,) since the start of the frame to positions (point, time, 3) in metres; called for
+            every chirp.
+        amplitude: Amplitudes (point,), complex.
+        config: The radar.
 
     Returns:
         Samples (loop, slot, rx, sample), complex128.
-
-    Reference: docs/radar_primer.md, equation 7.
     """
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     ramp_s = config.adc_start_time_s + np.arange(config.num_samples) / config.sample_rate_hz

@@ -1,4 +1,4 @@
-"""Prepared rooms and traced motions -> ADC samples, without a ray caster: the `Simulator` again, on any device.
+"""ADC samples of prepared rooms and traced motions: the `Simulator` without a ray caster, on any device.
 
 Simulator.trace(pose) -> joints, Visibility -----.
 Room -> static_paths_store.room_arrays ----------+--> Resynthesis.samples
@@ -25,12 +25,12 @@ from mmweaver.propagation.static_paths import PreparedRoom
 from mmweaver.propagation.static_paths_store import resampled_phases
 from mmweaver.propagation.visibility import Visibility
 
-ROOM_REALIZATIONS = 4  # sets of phases of a room: each costs 30 ms and is kept
+ROOM_REALIZATIONS = 4  # sets of phases per room; each takes 30 ms and is cached
 
 
 @dataclass(frozen=True, kw_only=True)
 class TracedMotion:
-    """A motion whose rays were cast once: joints at the clock's nodes (frame, node, 22, 3), and their visibility."""
+    """A motion whose rays have been cast: joints at the clock's nodes (frame, node, 22, 3), and their visibility."""
 
     joints_m: np.ndarray
     visibility: Visibility
@@ -40,9 +40,16 @@ class TracedMotion:
 
 
 class Resynthesis:
-    """One prepared room for one radar: `samples` of any of its traced motions, any frames, and any realization."""
+    """One prepared room and one radar: samples of any traced motion, any frames, and any realization of phases."""
 
     def __init__(self, room: PreparedRoom, device: str | torch.device = "cpu", impairments: Impairments | None = None):
+        """Prepares the synthesis.
+
+        Args:
+            room: The room with its static paths.
+            device: Where samples are computed.
+            impairments: Receiver impairments; by default all.
+        """
         self.room, self.config = room, room.config
         self.impairments = impairments or Impairments()
         self.synthesis = _synthesis(self.config, str(device))
@@ -52,13 +59,13 @@ class Resynthesis:
         """ADC samples of a motion.
 
         Args:
-            motion: traced in this room.
-            frames: numbers of the frames.
-            realization: 0 is what the simulator gave when it traced, to single precision; any other has other
+            motion: Motion traced in this room.
+            frames: Frame numbers (frame,).
+            realization: 0 reproduces the simulator's samples to single precision; any other number has other
                 micro-phases of room and skin and other noise.
 
         Returns:
-            Samples (frame, loop, tx, rx, sample), complex64.
+            Samples (frame, loop, tx, rx, sample), complex64, in sqrt(mW).
         """
         room, static, rate = self._room(realization)
         body = _body(motion.subject, motion.height_m)
@@ -80,7 +87,12 @@ class Resynthesis:
         )
 
     def person(self, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
-        """The person's paths, and which static ones the person occludes, in frames of these numbers."""
+        """Paths of the person, and the static paths that the person occludes.
+
+        Args:
+            motion: Motion traced in this room.
+            frames: Frame numbers (frame,).
+        """
         return self._person(self.room, _body(motion.subject, motion.height_m), motion, frames)
 
     def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:

@@ -1,4 +1,4 @@
-"""The rough surfaces of a room in a few hundred patches: what second bounces are computed over."""
+"""The rough surfaces of a room as a few hundred patches, over which second bounces are computed."""
 
 from dataclasses import dataclass
 
@@ -6,13 +6,13 @@ import numpy as np
 
 from mmweaver.core.rotations import unit
 
-VOXEL_M = 0.25  # patches within a cube of this size are one
-GRAZING_COS = 0.02  # a face seen under less is taken as seen under so much
+VOXEL_M = 0.25  # patches within a voxel of this size are merged
+GRAZING_COS = 0.02  # lower bound of the cosine at which a face is seen
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoomPatches:
-    """Patches of rough surface that the radar sees, and pieces of edge, which scatter alike in all directions."""
+    """Patches of rough surface that the radar sees, and pieces of edge, which scatter isotropically."""
 
     place_m: np.ndarray  # (patch, 3)
     normal: np.ndarray  # (patch, 3) unit, on the radar's side; zero for edges
@@ -24,7 +24,14 @@ class RoomPatches:
         return len(self.place_m)
 
     def cross_sections(self, direction: np.ndarray) -> np.ndarray:
-        """Cross sections (..., patch) into unit directions (..., patch, 3), by Lambert's law."""
+        """Cross sections by Lambert's law.
+
+        Args:
+            direction: Unit vectors (..., patch, 3) of the scattered wave.
+
+        Returns:
+            Cross sections (..., patch) in m2.
+        """
         cos = (direction * self.normal).sum(axis=-1)
         is_edge = ~self.normal.any(axis=-1)
         return self.cross_section_m2 * np.where(is_edge, 1.0, np.maximum(cos, 0.0))
@@ -33,7 +40,15 @@ class RoomPatches:
     def surfaces(
         cls, place_m: np.ndarray, normal: np.ndarray, monostatic_m2: np.ndarray, phase: np.ndarray, material: np.ndarray
     ) -> "RoomPatches":
-        """Of patches (patch,) with their cross sections straight back; normals of either sign."""
+        """Patches of rough surface.
+
+        Args:
+            place_m: Centres (patch, 3) in metres.
+            normal: Unit normals (patch, 3), of either sign.
+            monostatic_m2: Monostatic cross sections (patch,) in m2.
+            phase: Unit phasors (patch,).
+            material: Index (patch,) into the scene's material names.
+        """
         cos = -(normal * unit(place_m)).sum(axis=1)
         upright = normal * np.where(cos < 0, -1.0, 1.0)[:, None]
         return cls(
@@ -48,24 +63,24 @@ class RoomPatches:
     def edges(
         cls, place_m: np.ndarray, cross_section_m2: np.ndarray, phase: np.ndarray, material: np.ndarray
     ) -> "RoomPatches":
-        """Of pieces of edge (patch,)."""
+        """Pieces of edge, with the same arguments as `surfaces`; the cross section holds for all directions."""
         normal = np.zeros_like(place_m)
         return cls(place_m=place_m, normal=normal, cross_section_m2=cross_section_m2, phase=phase, material=material)
 
     def joined(self, others: "RoomPatches") -> "RoomPatches":
-        """These and others."""
+        """These patches followed by others."""
         return RoomPatches(**{name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in FIELDS})
 
     def __getitem__(self, index: np.ndarray) -> "RoomPatches":
         return RoomPatches(**{name: getattr(self, name)[index] for name in FIELDS})
 
     def merged(self, rng: np.random.Generator) -> "RoomPatches":
-        """One patch per voxel, with the cross section of all in it, at a place sampled among them by cross section."""
+        """One patch per voxel with the total cross section, at the place of one of them, sampled by cross section."""
         if not len(self):
             return self
         _, voxel = np.unique(np.floor(self.place_m / VOXEL_M).astype(np.int64), axis=0, return_inverse=True)
         voxel = voxel.ravel()
-        # the largest of u^(1/w) is each with a probability as its weight w
+        # the largest u^(1/w) belongs to each with a probability proportional to its weight w
         key = np.log(rng.random(len(self))) / np.maximum(self.cross_section_m2, 1e-12)
         order = np.lexsort((key, voxel))
         last = np.flatnonzero(np.diff(voxel[order], append=-1))
@@ -78,17 +93,17 @@ FIELDS = tuple(RoomPatches.__dataclass_fields__)
 
 
 def roulette(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Fewer than `most` of some powers, chosen so that the mean power stays.
+    """Russian roulette: keeps fewer than `most` of some powers without changing their mean.
 
-    Each is kept with a probability as its power, the strong ones always.
+    Each is kept with a probability proportional to its power; the strongest are always kept.
 
     Args:
-        power: (n,).
-        luck: (n,) uniform in [0, 1), which decides, so that the same are kept from frame to frame.
-        most: limit.
+        power: Powers (n,).
+        luck: Uniform numbers (n,) in [0, 1) that decide, so that the same are kept from frame to frame.
+        most: Maximum number kept.
 
     Returns:
-        Indices of those kept, and how much power of its kind each stands for, 1 or more.
+        Indices of those kept, and the factor of power by which each is to be raised, at least 1.
     """
     least = power.sum() / most
     kept = np.flatnonzero(power > least * luck)
@@ -96,10 +111,15 @@ def roulette(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray
 
 
 def sampled_pairs(power: np.ndarray, luck: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Fewer than `most` pairs of powers (first, second) by `roulette`.
+    """Fewer than `most` pairs by `roulette`.
+
+    Args:
+        power: Powers (first, second) of all pairs.
+        luck: Uniform numbers in [0, 1) of the same size.
+        most: Maximum number of pairs.
 
     Returns:
-        Indices of first and second (pair,), and the amplitude (pair,) of all that each stands for.
+        Indices of first and second (pair,), and amplitudes (pair,) raised so that the mean power is that of all pairs.
     """
     pair, standing_for = roulette(power.ravel(), luck.ravel(), most)
     first, second = np.unravel_index(pair, power.shape)

@@ -1,7 +1,7 @@
-"""Second-order static paths: a rough surface and a flat face of the room, or two rough surfaces, in either order.
+"""Second-order static paths: a rough surface and a flat face of the room, or two rough surfaces.
 
-They fill the range cells between a room's strong echoes. Of all pairs so many are kept at random that the mean power
-stays (`room_patches.roulette`). Reference: docs/radar_primer.md, section 5.
+They fill the range cells between a room's strong echoes. A random subset of all pairs is kept, with the mean power of
+all (`room_patches.roulette`). Reference: docs/radar_primer.md, section 5.
 """
 
 from typing import TYPE_CHECKING
@@ -18,22 +18,29 @@ from mmweaver.propagation.room_patches import RoomPatches, roulette, sampled_pai
 if TYPE_CHECKING:
     from mmweaver.propagation.static_paths import RayTracedRoom
 
-MAX_FACE_PATHS = 600  # patch-face paths of each order
-MAX_PATCHES, MAX_PAIRS = 200, 300  # patches whose pairs are looked at, and pairs of each order
+MAX_FACE_PATHS = 600  # patch-face paths per direction of travel
+MAX_PATCHES, MAX_PAIRS = 200, 300  # patches whose pairs are considered, and pairs per direction of travel
 CLEAR_MARGIN_M = 0.06
-FACE_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
+FACE_MARGIN_M = 0.12  # largest distance between the mesh of a wall and its fitted plane
 MIN_RANGE_M = 0.2  # between two patches: nearer ones are one surface
 
 
 def room_room_paths(room: "RayTracedRoom") -> StaticPaths:
-    """Both kinds, in both orders."""
+    """Patch-face and patch-patch paths of a room, in both directions of travel.
+
+    Args:
+        room: The traced room, with its patches and reflectors.
+
+    Returns:
+        Static paths of kind ROOM_ROOM, (path,), amplitudes in sqrt(mW).
+    """
     patches = room.patches
     luck = stream(room.micro_seed, "room", "pairs of patches")
     return StaticPaths.cat([_face_paths(room, patches, luck), _patch_paths(room, patches, luck)])
 
 
 def _face_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
-    """Radar, patch, flat face, radar."""
+    """Paths radar - patch - flat face - radar."""
     found = [_face_amplitudes(room, patches, face) for face in room.reflectors]
     if not found or not len(patches):
         return _paths(room, np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, complex), np.zeros(0))
@@ -51,7 +58,7 @@ def _face_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Gen
 def _face_amplitudes(
     room: "RayTracedRoom", patches: RoomPatches, face: SpecularReflector
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Amplitudes (patch,), and the patches' images in a face and where their rays meet it (patch, 3)."""
+    """Amplitudes (patch,), the patches' images in a face and the reflection points (patch, 3)."""
     config, place_m = room.config, patches.place_m
     image_m = face.image(place_m)
     corner_m = face.crossing(np.zeros(3), image_m)
@@ -68,7 +75,7 @@ def _face_amplitudes(
 
 
 def _patch_paths(room: "RayTracedRoom", patches: RoomPatches, luck: np.random.Generator) -> StaticPaths:
-    """Radar, patch, another patch, radar."""
+    """Paths radar - patch - another patch - radar."""
     config, distance = room.config, np.linalg.norm(patches.place_m, axis=1)
     gain = pattern(unit(patches.place_m), config)
     level = patches.cross_section_m2 * (gain / np.maximum(distance, 1e-3) ** 2) ** 2
@@ -97,7 +104,10 @@ def _paths(
     amplitude: np.ndarray,
     between_m: np.ndarray,
 ) -> StaticPaths:
-    """Paths in both orders between apparent ends (path, 3), the second one seen at a vertex, so far between them."""
+    """Paths in both directions between apparent ends (path, 3), the second one seen at a vertex.
+
+    `between_m` (path,) is the length between the two ends.
+    """
     tx, rx = (np.asarray(place)[:, None] for place in (room.config.tx_position_m, room.config.rx_position_m))
     orders = []
     for (start_m, start_vertex_m), (end_m, end_vertex_m) in (

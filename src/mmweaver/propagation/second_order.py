@@ -1,9 +1,9 @@
 """Second-order paths of people: body and rough surfaces of the room, body-radar-body, and two bodies.
 
-Radar -> part of the body -> patch of the room -> radar and back, power gain^2 sigma_b sigma_q / (4 pi (d_b d_bq d_q)^2)
-of one order; both are coherent. Between two people a part of the other takes the patch's place. A part stands for its
-skin points, with their bistatic cross section. Of some thousand pairs so many are kept at random, the strong ones
-always, that the mean power stays. Reference: docs/radar_primer.md, section 5.
+The path radar - body part - patch of the room - radar has a power gain^2 sigma_b sigma_q / (4 pi (d_b d_bq d_q)^2)
+in either direction of travel; both are coherent. Between two people a part of the other body replaces the patch. A part
+represents its skin points with their bistatic cross section. Some thousand pairs are thinned by Russian roulette, which
+keeps the mean power. Reference: docs/radar_primer.md, section 5.
 """
 
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ from mmweaver.propagation.room_patches import roulette, sampled_pairs
 if TYPE_CHECKING:
     from mmweaver.propagation.visible_body import VisibleBody
 
-MIN_RANGE_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
+MIN_RANGE_M = 0.15  # minimum distance from a body part to a patch: the radar equation does not hold on contact
 ROOM_MARGIN_M = 0.06
-MAX_BODY_PAIRS = 32  # of parts of two people in a frame
-MIN_DIRECT_SHARE = 1e-6  # power of a frame's pairs, or of body-radar-body, that is left out
-# A radar as what a body's echo meets: an evaluation board of 7 cm by 7 cm, half of whose power comes back, diffusely.
+MAX_BODY_PAIRS = 32  # of parts of two people, per frame
+MIN_DIRECT_SHARE = 1e-6  # pairs of a frame, or body-radar-body, below this share of the direct power are omitted
+# The radar as a scatterer: an evaluation board of 7 cm by 7 cm that returns half of the power diffusely.
 BOARD_AREA_M2, BOARD_REFLECTIVITY = 0.07**2, 0.5
 
 
 def body_part_of_capsule() -> np.ndarray:
-    """Index of the body part, trunk parts first and limbs by side, of each capsule."""
+    """Index (capsule,) of the body part of each capsule; limbs are separate by side."""
     names = [_part_name(capsule) for capsule in CAPSULES]
     known = sorted(set(names))
     return np.array([known.index(name) for name in names])
@@ -45,16 +45,16 @@ def _part_name(capsule: Capsule) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class PairSampling:
-    """How many paths of second order stand for all. Mean powers do not depend on it."""
+    """How many second-order paths represent all. Mean powers do not depend on it."""
 
-    most_pairs: int = 48  # of body part and patch in a frame
-    most_patches: int = 200  # of which those are chosen
-    every: int = 1  # frames are amplitudes computed, and kept in between
+    most_pairs: int = 48  # of body part and patch, per frame
+    most_patches: int = 200  # from which those pairs are selected
+    every: int = 1  # amplitudes are computed every so many frames, and kept in between
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pairs:
-    """The chosen pairs of one frame."""
+    """The selected pairs of one frame."""
 
     first: np.ndarray  # (pair,) part of the body
     second: np.ndarray  # (pair,) patch of the room, or part of the other body
@@ -65,11 +65,17 @@ class BodyRoomPaths:
     """Second-order paths of one person, frame by frame."""
 
     def __init__(self, seen: "VisibleBody", sampling: PairSampling | None = None):
+        """Selects pairs and computes their amplitudes.
+
+        Args:
+            seen: The person as seen by the radar.
+            sampling: How many pairs are kept; by default `PairSampling()`.
+        """
         self.seen, self.room, self.sampling = seen, seen.traced, sampling or PairSampling()
         self.patches = self.room.patches_all_round
         _, group = np.unique(body_part_of_capsule()[seen.body.part], return_inverse=True)
         self._one_hot = np.eye(group.max() + 1)[:, group]
-        # a part is where its visible skin is, or all of its skin where none is visible; (frame, part, point)
+        # a part is at the mean of its visible skin, or of all its skin where none is visible; (frame, part, point)
         shown = self._one_hot * (seen.visible[:, None] + 1e-6)
         self._members = shown / shown.sum(axis=2, keepdims=True)
         self.phase = seen.body.micro_phase[self._one_hot.argmax(axis=1)]
@@ -83,11 +89,18 @@ class BodyRoomPaths:
         self.echoes = [self._radar_echoes(frame, power[frame]) for frame in range(0, seen.num_frames, every)]
 
     def paths(self, frames: slice) -> Paths:
-        """Paths (frame * segment, path) of frames between two at which amplitudes are computed."""
+        """All second-order paths of the person.
+
+        Args:
+            frames: Frames within one period of `PairSampling.every`.
+
+        Returns:
+            Paths (frame * segment, path).
+        """
         return Paths.cat([self.room_paths(frames), self.radar_paths(frames)], dim=1)
 
     def room_paths(self, frames: slice) -> Paths:
-        """Those over patches of the room, in either order."""
+        """Paths over patches of the room, in both directions of travel, (frame * segment, path)."""
         pairs = self.pairs[frames.start // self.sampling.every]
         body, place_m = self.parts(frames)[:, pairs.first], self.patches.place_m[pairs.second]
         leg = body.copy()
@@ -98,24 +111,24 @@ class BodyRoomPaths:
         return Paths.of(pairs.amplitude, body, arrival, Interaction.BODY_ROOM, is_reciprocal=True)
 
     def radar_paths(self, frames: slice) -> Paths:
-        """Body, radar, and body again."""
+        """Paths body - radar - body, (frame * segment, path)."""
         amplitude = self.echoes[frames.start // self.sampling.every]
         there = np.flatnonzero(amplitude)
         ends = 2 * self.parts(frames)[:, there]
         return Paths.of(amplitude[there], ends, ends, Interaction.BODY_RADAR_BODY)
 
     def parts(self, frames: slice) -> np.ndarray:
-        """Motion (frame * segment, part, 3, 3) of the parts: the mean of their skin points."""
+        """Motion (frame * segment, part, 3, 3) of the body parts: the mean over their skin points."""
         motion = self.seen.posed.motion[frames]
         parts = self._members[frames, None] @ motion.reshape(*motion.shape[:3], 9)
         return parts.reshape(-1, parts.shape[2], 3, 3)
 
     def middles_m(self, frame: int) -> np.ndarray:
-        """Places (part, 3) of the parts at the middle of a frame."""
+        """Positions (part, 3) of the body parts at the middle of a frame."""
         return self._members[frame] @ self.seen.posed.place_m[frame]
 
     def _pairs(self, frame: int, direct_power: float) -> Pairs:
-        """Those of one frame, chosen."""
+        """The selected pairs of one frame."""
         seen, parts_m = self.seen, self.middles_m(frame)
         middle_m = seen.posed.place_m[frame].mean(axis=0)
         gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * MIN_RANGE_M)
@@ -136,9 +149,17 @@ class BodyRoomPaths:
         return Pairs(first=part, second=near[patch], amplitude=amplitude)
 
     def bistatic(self, frame: int, place_m: np.ndarray) -> np.ndarray:
-        """Cross sections (part, place) of the body's parts from the radar's direction into those of places (place, 3).
+        """Bistatic cross sections of the body parts between the radar and places.
 
-        Of all skin: with lobes of 6 degrees a few dozen points leave most directions without one that shines there.
+        All skin points are summed: with lobes of 6 degrees a few dozen points would leave most directions without an
+        echo.
+
+        Args:
+            frame: Index of the frame.
+            place_m: Places (place, 3) in metres.
+
+        Returns:
+            Cross sections (part, place) in m2.
         """
         seen = self.seen
         shown = np.flatnonzero(seen.visible[frame])
@@ -158,9 +179,9 @@ class BodyRoomPaths:
         return (self._one_hot[:, shown] * area_m2) @ each
 
     def _radar_echoes(self, frame: int, direct_power: float) -> np.ndarray:
-        """Amplitudes (part,) of echoes that the radar's own board returns to the body; 0 where too faint."""
+        """Amplitudes (part,) of echoes that the radar's own board returns to the body; 0 where negligible."""
         seen, body = self.seen, self.seen.body
-        # skin as near as it is: within arm's reach the parts' middles would be half as strong
+        # with the distance of each skin point: within arm's reach those of the parts' centres halve the echo
         sigma = body.echo.monostatic(seen.cos[frame]) * body.area_m2 * body.brightness * seen.visible[frame]
         each = self._one_hot @ (sigma / seen.distance_m[frame] ** 4)
         towards = unit(self.middles_m(frame))
@@ -174,17 +195,30 @@ class BodyBodyPaths:
     """Paths over two people, frame by frame."""
 
     def __init__(self, first: BodyRoomPaths, second: BodyRoomPaths):
+        """Selects pairs of body parts.
+
+        Args:
+            first: Second-order paths of one person.
+            second: Those of the other, with the same room and frames.
+        """
         self.first, self.second = first, second
         rng = stream(first.room.micro_seed, "room", "between people")
         luck = rng.random((len(first.phase), len(second.phase)))
-        self._luck = np.triu(luck) + np.triu(luck, 1).T  # whoever is named first
+        self._luck = np.triu(luck) + np.triu(luck, 1).T  # symmetric, independent of the order of the people
         self.pairs = [self._pairs(frame) for frame in range(0, first.seen.num_frames, first.sampling.every)]
 
     def paths(self, frames: slice) -> Paths:
-        """Paths (frame * segment, path) of frames between two at which amplitudes are computed."""
+        """Paths over both people.
+
+        Args:
+            frames: Frames within one period of `PairSampling.every`.
+
+        Returns:
+            Paths (frame * segment, path), reciprocal.
+        """
         pairs = self.pairs[frames.start // self.first.sampling.every]
         a, b = self.first.parts(frames)[:, pairs.first], self.second.parts(frames)[:, pairs.second]
-        # from the one over the other's part to the radar
+        # apparent arrival: the leg between both bodies and on to the radar
         arrival = (radial_motion(b) + radial_motion(b - a))[..., None] * unit(b[:, :, 0])[..., None, :]
         return Paths.of(pairs.amplitude, a, arrival, Interaction.BODY_BODY, is_reciprocal=True)
 
@@ -204,7 +238,14 @@ class BodyBodyPaths:
 
 
 def radial_motion(motion: np.ndarray) -> np.ndarray:
-    """Length, rate and acceleration (..., 3) of vectors whose position, velocity, acceleration are (..., 3, 3)."""
+    """Length of moving vectors, and its first two derivatives.
+
+    Args:
+        motion: Position, velocity and acceleration (..., 3, 3), along the last but one axis.
+
+    Returns:
+        Length, rate and acceleration (..., 3).
+    """
     position, velocity, acceleration = (motion[..., order, :] for order in range(3))
     length_m = np.maximum(np.linalg.norm(position, axis=-1), 1e-6)
     along = position / length_m[..., None]

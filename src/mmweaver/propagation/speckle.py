@@ -1,8 +1,8 @@
-"""Mean echoes -> paths of one realization: unknown phases are sampled, the rest follows from geometry.
+"""One realization of mean echoes: unknown phases are sampled, everything else follows from geometry.
 
-A moving echo stands for several spots of skin that ride on one part of the body; their sum scintillates as the part
-turns, as real skin does. Spots belong to the person, static phases to the room, so that the same seed, person and room
-give the same signal, and a person's frames belong together.
+A moving echo represents several spots of skin that move with one part of the body; their sum scintillates as the part
+turns, as real skin does. Spots belong to the person and static phases to the room, so the same seed, person and room
+give the same signal, and a person's frames are coherent.
 Reference: docs/decisions/speckle-phases.md, docs/decisions/loss-on-mean-power.md.
 """
 
@@ -22,47 +22,50 @@ from mmweaver.propagation.radar_equation import carrier, points_of
 from mmweaver.propagation.static_paths import scattered_paths
 from mmweaver.signal.point_response import PointResponse
 
-SPOTS = 6  # of skin, for each echo
+SPOTS = 6  # of skin, per echo
 SPOT_SPREAD_M = 0.04
-MIN_SHARE = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
+MIN_SHARE = 1e-4  # amplitude relative to the strongest static path below which paths are omitted
 
 
 def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
-    """Static echoes with sampled phases.
+    """Samples the phases of static echoes.
 
     Args:
-        static: mean echoes (echo,).
-        config: the radar.
-        room_seed: of the phases.
+        static: Mean echoes, (echo,).
+        config: The radar.
+        room_seed: Seed of the phases.
+
+    Returns:
+        Static paths of kind DIFFUSE, (echo,), amplitudes in sqrt(mW).
     """
     rng = stream(room_seed, "weaver", "room")
     amplitude = points_of(static, _response(config)).amplitude
     cycles = rng.random(len(amplitude))
     place_m = place_of(static).numpy()
     delay_s = 2 * np.linalg.norm(place_m, axis=1) / SPEED_OF_LIGHT_MPS
-    # sampled is the phase at the receiver: the amplitude lacks what the renderers add along the path
+    # the phase at the receiver is sampled, so the phase that the renderers add along the path is removed here
     along = config.centre_frequency_hz * delay_s - config.chirp_slope_hz_per_s * delay_s**2 / 2
     sampled = amplitude.numpy() * np.exp(2j * np.pi * (cycles - along))
     return scattered_paths(place_m, sampled, Interaction.DIFFUSE, config)
 
 
 def strongest_first(paths: StaticPaths) -> StaticPaths:
-    """Static paths in the order of their strength; those too faint to matter are left out."""
+    """Static paths sorted by amplitude, without negligible ones."""
     size = paths.amplitude.abs()
     return paths[size.argsort(descending=True)[: int((size > MIN_SHARE * size.max()).sum())]]
 
 
 def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Moving echoes with sampled phases.
+    """Samples the phases of moving echoes.
 
     Args:
-        moving: mean echoes (frame, echo).
-        aspect: (frame, 3), twice the line of sight that the body sees.
-        config: the radar.
-        subject: whose spots of skin scintillate.
+        moving: Mean echoes, (frame, echo).
+        aspect: Twice the line of sight in the body's frame of reference, (frame, 3).
+        config: The radar.
+        subject: Person whose spots of skin scintillate.
 
     Returns:
-        Paths (frame, echo).
+        Direct paths (frame, echo), amplitudes in sqrt(mW).
     """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
@@ -74,20 +77,20 @@ def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subje
 def sample_moving_segments(
     moving: MeanEchoes, aspect: Tensor, time_s: Tensor, config: RadarConfig, subject: int
 ) -> Paths:
-    """Moving echoes of frames with long chirps, a path for each spot of skin.
+    """Samples the phases of moving echoes of frames with long chirp sequences, one path per spot of skin.
 
-    Spots are paths of their own, whose phases follow the turning body: a sum of them, constant within a segment, would
-    jump from one to the next. All are at their echo's range.
+    Each spot is a path of its own, whose phase follows the turning body: a sum over spots that is constant within a
+    segment would jump at its end. All spots are at the range of their echo.
 
     Args:
-        moving: mean echoes (frame, segment, echo).
-        aspect: (frame, segment, 3), twice the line of sight that the body sees.
-        time_s: (segment,), the middles of the segments.
-        config: the radar.
-        subject: whose spots of skin scintillate.
+        moving: Mean echoes, (frame, segment, echo).
+        aspect: Twice the line of sight in the body's frame of reference, (frame, segment, 3).
+        time_s: Middles of the segments, (segment,), in seconds.
+        config: The radar.
+        subject: Person whose spots of skin scintillate.
 
     Returns:
-        Paths (frame * segment, echo * spot).
+        Direct paths (frame * segment, echo * spot), amplitudes in sqrt(mW).
     """
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("gtc,esc->gtes", aspect, offset_m)
@@ -103,19 +106,19 @@ def sample_moving_segments(
 
 
 def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:
-    """Cells with sampled phases.
+    """Samples the phases of cells.
 
-    A cell is one scatterer at its place that moves with its velocity. It has one random phase, which turns with that
-    velocity from frame to frame as it does from chirp to chirp; at rest it stays.
+    A cell is one scatterer at its place with the cell's velocity. It has one random phase, which advances with that
+    velocity from frame to frame as from chirp to chirp; at rest it is constant.
 
     Args:
-        cells: (frame, segment, cell).
-        time_s: (frame, segment).
-        config: the radar.
-        subject: whose phases they are.
+        cells: Mean echoes of cells, (frame, segment, cell).
+        time_s: Middle of each segment, (frame, segment), in seconds.
+        config: The radar.
+        subject: Person whose phases they are.
 
     Returns:
-        Paths (frame * segment, cell).
+        Direct paths (frame * segment, cell), amplitudes in sqrt(mW).
     """
     amplitude = points_of(cells, _response(config)).amplitude
     turned = carrier(cells.velocity_mps.double() * time_s[..., None], config)
@@ -126,7 +129,7 @@ def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject
 
 
 def _cell_phases(cell: Tensor, subject: int) -> Tensor:
-    """exp(j phase) of each cell's number; a hash, for most cells of a room are never looked at (splitmix64)."""
+    """Unit phasor of each cell's number, by a hash (splitmix64), since most cells of a room are never used."""
     mixed = cell.numpy().astype(np.uint64) + stream(subject, "power field", "cells").integers(2**63, dtype=np.uint64)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
         mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)
@@ -140,7 +143,7 @@ def _response(config: RadarConfig) -> PointResponse:
 
 
 def place_of(echoes: MeanEchoes) -> Tensor:
-    """Where echoes lie, (..., echo, 3) in metres, float64."""
+    """Positions of echoes, (..., echo, 3) in metres, float64."""
     return echoes.range_m.double()[..., None] * _unit(echoes.direction)
 
 
@@ -162,7 +165,7 @@ def _unit(direction: Tensor) -> Tensor:
 
 
 def _spots(count: int, subject: int) -> tuple[Tensor, Tensor]:
-    """Of each echo's spots of skin: place on the body (echo, spot, 3) in metres, and complex amplitude (echo, spot)."""
+    """Each echo's spots of skin: offset on the body (echo, spot, 3) in metres, and complex amplitude (echo, spot)."""
     rng = stream(subject, "weaver", "skin")
     offset_m = torch.from_numpy(rng.standard_normal((count, SPOTS, 3)) * SPOT_SPREAD_M).to(torch.float32)
     level = torch.from_numpy(rng.standard_normal((count, SPOTS, 2)) / math.sqrt(2 * SPOTS)).to(torch.float32)

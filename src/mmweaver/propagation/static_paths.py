@@ -23,29 +23,29 @@ from mmweaver.propagation.room_room_paths import room_room_paths
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
 AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
-EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
-EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
+EDGE_RADIUS_M = 0.008  # radius of curvature of table rims and legs
+EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe ends
 MIN_RANGE_M = 0.15
-THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is the whole wall: furniture has other faces behind
-SAME_WALL_M = 0.3  # nearer behind a wall lies the same one: a photo's bumps, the other face of a scan
+THIN = ("plasterboard", "ceiling_board", "glass")  # a face of these is a whole wall; furniture has more faces behind
+SAME_WALL_M = 0.3  # a hit closer behind a wall is the same wall: bumps of a photo's mesh, the other face of a scan
 
 
 @dataclass(frozen=True, kw_only=True)
 class Propagation:
-    """Which paths a room has."""
+    """Which paths of a room are traced."""
 
     bounces: int = 2  # 1: off rough surfaces once, off the body once; 2: body and room, room and room, body-radar-body
     clutter: bool = False  # whether there is static clutter that photo and mesh do not resolve
-    slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
-    straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
-    through_walls: bool = True  # whether what lies behind a thin wall returns through it
+    slab_echoes: int = SLAB_ECHOES  # per face; 1: the reflection at the band's centre is used for the whole band
+    straight_edges: bool = True  # whether pieces of edge are aligned with their neighbourhood
+    through_walls: bool = True  # whether surfaces behind a thin wall return echoes through it
     fine_roughness: bool = True  # whether plaster, concrete and brick scatter by their fine roughness, too
-    hidden_faces: bool = True  # whether a face right before another, as a locker's door or a window, takes its place
+    hidden_faces: bool = True  # whether a face directly in front of another (a locker's door, a window) hides it
 
 
-ALL_PATHS = Propagation(clutter=True)  # what a radar receives, as far as we know
-FIRST_ORDER = Propagation(bounces=1)  # what the network learns, and what data sets with geometry keep
-# What studies published before there was a second order were computed with, and data sets kept.
+ALL_PATHS = Propagation(clutter=True)  # everything that is modelled
+FIRST_ORDER = Propagation(bounces=1)  # what the network learns, and what data sets with geometry contain
+# The propagation of studies and data sets that were published before second-order paths were modelled.
 AS_PUBLISHED = replace(
     FIRST_ORDER, slab_echoes=1, straight_edges=False, through_walls=False, fine_roughness=False, hidden_faces=False
 )
@@ -53,7 +53,7 @@ AS_PUBLISHED = replace(
 
 @dataclass(frozen=True, kw_only=True)
 class _Struck:
-    """Rays of the radar and the faces that they meet."""
+    """Rays of the radar and the faces that they hit."""
 
     direction: np.ndarray  # (ray, 3) unit
     distance_m: np.ndarray  # (ray,)
@@ -88,11 +88,11 @@ class _Struck:
 
     @property
     def cross_section_m2(self) -> np.ndarray:
-        """(ray,) of perfectly diffuse patches, by Lambert's law."""
+        """Cross section (ray,) of perfectly diffuse patches, by Lambert's law."""
         return 4 * self.cos * self.distance_m**2 * self.solid_angle
 
     def share(self, names: tuple[str, ...], of_material: Callable[[Material, np.ndarray, str], Values]) -> np.ndarray:
-        """Shares of power (ray,), a function of the material, the cosine of incidence and the polarisation."""
+        """Power shares (ray,), a function of the material, the cosine of incidence and the polarisation."""
         is_flat, share = np.abs(self.normal[:, 2]) > 0.7, np.zeros(len(self.cos))
         for index, name in enumerate(names):
             for flat, polarisation in ((True, "tm"), (False, "te")):
@@ -102,20 +102,28 @@ class _Struck:
 
 
 class PreparedRoom:
-    """What of a room needs no more rays: its specular reflectors and its static paths, for one radar.
+    """Specular reflectors and static paths of a room for one radar, without its mesh.
 
-    The paths are in the order of STATIC_KINDS, then those of second order. `static_paths_store` keeps the first as
-    arrays.
+    The paths are in the order of STATIC_KINDS, followed by those of second order. `static_paths_store` stores the
+    first-order ones as arrays.
     """
 
     def __init__(
         self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths, propagation: Propagation
     ):
+        """Takes the results of a ray-traced room.
+
+        Args:
+            config: The radar.
+            reflectors: Specular reflectors.
+            paths: Static paths, (path,).
+            propagation: Which paths were traced.
+        """
         self.config, self.reflectors, self.paths, self.propagation = config, reflectors, paths, propagation
 
     @cached_property
     def counts(self) -> dict[Interaction, int]:
-        """How many static paths of first order are of which kind."""
+        """Number of first-order static paths per kind."""
         return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
 
     @property
@@ -125,7 +133,7 @@ class PreparedRoom:
 
     @property
     def frequencies_hz(self) -> np.ndarray:
-        """Those over which the power is averaged that faces and edges throw back."""
+        """Frequencies over which the power scattered by faces and edges is averaged."""
         centre_hz, reach_hz = self.config.centre_frequency_hz, 0.4 * self.config.bandwidth_hz  # the window's weight
         if self.propagation.slab_echoes == 1:
             return np.array([centre_hz])
@@ -138,12 +146,17 @@ class PreparedRoom:
 
 
 class RayTracedRoom(PreparedRoom):
-    """A scene prepared for one radar: its ray caster, its specular reflectors and its static paths.
-
-    `micro_seed` samples the phases of its surfaces: another seed is another realization of the same room.
-    """
+    """A scene prepared for one radar: its ray caster, specular reflectors and static paths."""
 
     def __init__(self, scene: Scene, config: RadarConfig, micro_seed: int = 0, propagation: Propagation | None = None):
+        """Traces the static paths.
+
+        Args:
+            scene: The room, in the radar's coordinates.
+            config: The radar.
+            micro_seed: Seed of the phases of rough surfaces; another seed is another realization of the same room.
+            propagation: Which paths are traced; by default `Propagation()`.
+        """
         self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.config, self._scene = config, scene
@@ -156,17 +169,17 @@ class RayTracedRoom(PreparedRoom):
             self.paths = StaticPaths.cat([paths, room_room_paths(self)])
 
     def for_radar(self, config: RadarConfig) -> "RayTracedRoom":
-        """The same rays for a radar that differs in its noise figure alone; its paths may be replaced."""
+        """The same room for a radar that differs in its noise figure alone; the paths of the copy may be replaced."""
         other = copy(self)
         other.config = config
         return other
 
     @cached_property
     def patches_all_round(self) -> RoomPatches:
-        """`patches`, and those left, right, above, below and behind the radar, outside the rays of the static paths.
+        """`patches`, and those to the sides, above, below and behind the radar, outside the rays of the static paths.
 
-        Their own echoes are suppressed by two antenna patterns; a body's wave over them is by one only, appears at the
-        body's own velocity, and they are near.
+        Their own echoes are suppressed by two antenna patterns. A body's echo over them is suppressed by one only,
+        appears at the body's velocity, and they are near.
         """
         rng = stream(self.micro_seed, "room", "patches all round")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
@@ -184,17 +197,17 @@ class RayTracedRoom(PreparedRoom):
 
     @cached_property
     def patches(self) -> RoomPatches:
-        """What second bounces of the static paths are computed over."""
+        """Patches over which second bounces of the static paths are computed."""
         all_of_them = self._patches.joined(self._edge_patches)
         return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
-        """Whether nothing of the room lies between two points.
+        """Whether no part of the room lies between two points.
 
         Args:
-            start_m: (..., 3).
-            end_m: (..., 3).
-            margin_m: at either end, within which faces do not count.
+            start_m: Start points (..., 3) in metres.
+            end_m: End points (..., 3) in metres.
+            margin_m: Distance from either end within which faces are ignored.
 
         Returns:
             Bool (...).
@@ -205,7 +218,7 @@ class RayTracedRoom(PreparedRoom):
         return self.caster.is_clear(start, end, margin_m).reshape(shape[:-1])
 
     def _diffuse(self) -> list[StaticPaths]:
-        """One path for each cell of a grid of rays: a patch that scatters by Lambert's law; and those behind walls."""
+        """One path per cell of a grid of rays: a patch that scatters by Lambert's law; and those behind thin walls."""
         rng = stream(self.micro_seed, "room", "diffuse")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
         step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
@@ -221,13 +234,13 @@ class RayTracedRoom(PreparedRoom):
         return [*paths, self._behind_walls(struck)] if self.propagation.through_walls else paths
 
     def _struck(self, direction: np.ndarray, solid_angle: np.ndarray) -> tuple["_Struck", np.ndarray]:
-        """The first faces that rays (ray, 3) from the radar meet, and the mask (ray,) of those that meet one."""
+        """The first faces that rays (ray, 3) from the radar hit, and the mask (ray,) of rays that hit one."""
         distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
         hit = (face >= 0) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         return _Struck.of(self._scene, direction[hit], distance[hit], face[hit], solid_angle[hit]), hit
 
     def _behind_walls(self, struck: "_Struck") -> StaticPaths:
-        """Patches that rays meet behind the first thin wall, fainter by the way through it and back."""
+        """Patches that rays hit behind the first thin wall, attenuated by the way through it and back."""
         names = np.array(self._scene.material_names)
         wall = struck[np.isin(names[struck.material], THIN)]
         distance, face = self.caster.first_hit(wall.place_m + SAME_WALL_M * wall.direction, wall.direction)
@@ -240,7 +253,7 @@ class RayTracedRoom(PreparedRoom):
         return self._scattered(behind.place_m, cross_section, cycles, Interaction.DIFFUSE)
 
     def _passed(self, wall: "_Struck") -> np.ndarray:
-        """Share of the power (ray,) that passes a wall once."""
+        """Share of the power (ray,) that a wall transmits one way."""
 
         def passed(material: Material, cos: np.ndarray, polarisation: str) -> Values:
             each = [transmission(material, cos, one, polarisation=polarisation) for one in self.frequencies_hz]
@@ -249,7 +262,7 @@ class RayTracedRoom(PreparedRoom):
         return wall.share(self._scene.material_names, passed)
 
     def _diffuse_share(self, struck: "_Struck") -> np.ndarray:
-        """Power of each patch that is not reflected as by a mirror: |S Gamma|^2 (effective roughness), or more."""
+        """Diffusely scattered share of the power of each patch: |S Gamma|^2 (effective roughness), or more."""
 
         def scattered(material: Material, cos: np.ndarray, polarisation: str) -> Values:
             part: Values = np.float64(material.scattering**2)
@@ -260,7 +273,7 @@ class RayTracedRoom(PreparedRoom):
         return struck.share(self._scene.material_names, scattered)
 
     def _specular(self) -> StaticPaths:
-        """One path for each echo of each specular reflection that nothing blocks."""
+        """One path per echo of each unobstructed specular reflection."""
         config, found = self.config, []
         tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
         for path in specular_paths(
@@ -285,7 +298,10 @@ class RayTracedRoom(PreparedRoom):
         )
 
     def _edges(self) -> StaticPaths:
-        """One path for each piece of rim or leg; sigma = k a L^2 |Gamma|^2 where it lies across the line of sight."""
+        """One path per piece of rim or leg.
+
+        Sigma = k a L^2 |Gamma|^2 where it is perpendicular to the line of sight.
+        """
         edges = find_edges(self._scene, self.caster, straight=self.propagation.straight_edges)
         rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
@@ -300,7 +316,7 @@ class RayTracedRoom(PreparedRoom):
         cycles = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > MIN_RANGE_M) & (distance < self.config.max_range_m)
         place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
-        # into other directions than straight back an edge scatters as if it were seen from the side
+        # bistatically an edge scatters as if seen from the side
         level = cross_section / lobe[keep] * EDGE_LOBE
         self._edge_patches = RoomPatches.edges(place_m, level, np.exp(2j * np.pi * cycles), edges.material[keep])
         return self._scattered(place_m, cross_section, cycles, Interaction.EDGE)
@@ -308,7 +324,7 @@ class RayTracedRoom(PreparedRoom):
     def _scattered(
         self, place_m: np.ndarray, cross_section_m2: np.ndarray, cycles: np.ndarray, kind: Interaction
     ) -> StaticPaths:
-        """Paths to scatterers (path, 3) and back, of cross section and phase (path,)."""
+        """Direct echoes of scatterers (path, 3) with cross section and phase (path,)."""
         distance = np.linalg.norm(place_m, axis=1)
         gain = pattern(unit(place_m), self.config) ** 2
         amplitude = scatterer_gain(self.config) * gain * np.sqrt(cross_section_m2) / np.maximum(distance, 1e-3) ** 2
@@ -316,13 +332,16 @@ class RayTracedRoom(PreparedRoom):
 
 
 def scattered_paths(place_m: np.ndarray, amplitude: np.ndarray, kind: Interaction, config: RadarConfig) -> StaticPaths:
-    """Static paths to scatterers and straight back.
+    """Direct echoes of static scatterers.
 
     Args:
-        place_m: (path, 3).
-        amplitude: (path,) complex, in sqrt(mW).
-        kind: of all paths.
-        config: the radar, for its antennas.
+        place_m: Positions (path, 3) in metres.
+        amplitude: Amplitudes (path,), complex, in sqrt(mW).
+        kind: Kind of all paths.
+        config: The radar, for its antenna positions.
+
+    Returns:
+        Static paths, (path,).
     """
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     out = np.linalg.norm(place_m[:, None] - tx, axis=-1)

@@ -1,7 +1,7 @@
-"""Prepared rooms as arrays: what a machine without a ray caster needs of them.
+"""Prepared rooms as arrays, for machines without a ray caster.
 
-Kept are each static path's vertex and complex amplitude (float32: 0.3 micrometres of path length, a phase of 1e-3 rad),
-the lengths of specular paths, and the reflectors as they are. The rest follows.
+Stored are each static path's vertex and complex amplitude (float32: 0.3 micrometres of path length, a phase of 1e-3
+rad), the lengths of specular paths, and the reflectors. Everything else follows.
 """
 
 from dataclasses import replace
@@ -20,7 +20,14 @@ VECTORS = ("centre_m", "normal", "axis_u", "axis_v")
 
 
 def room_arrays(room: PreparedRoom) -> dict[str, np.ndarray]:
-    """A room as numbers, without its reflectors' kinds and materials (`room_words`)."""
+    """A room as named arrays, without the kinds and materials of its reflectors (`room_words`).
+
+    Args:
+        room: The room; its paths must be of first order.
+
+    Returns:
+        Arrays by name, the inverse of `room_of`.
+    """
     paths, specular = room.paths, room.paths.select(Interaction.SPECULAR)
     planes = [reflector.plane for reflector in room.reflectors]
     return {
@@ -35,20 +42,20 @@ def room_arrays(room: PreparedRoom) -> dict[str, np.ndarray]:
 
 
 def room_words(room: PreparedRoom) -> list[list[str]]:
-    """Kind and material of each reflector."""
+    """Kind and material of each reflector, [[kind, material], ...]."""
     return [[reflector.plane.kind, reflector.plane.material] for reflector in room.reflectors]
 
 
 def room_of(
     arrays: dict[str, np.ndarray], words: list[list[str]], config: RadarConfig, propagation: Propagation
 ) -> PreparedRoom:
-    """The room again, with its paths of first order.
+    """Restores a room with its first-order paths.
 
     Args:
-        arrays: as `room_arrays` gives them.
-        words: as `room_words` gives them.
-        config: the radar that the room was prepared for.
-        propagation: with which it was.
+        arrays: As given by `room_arrays`.
+        words: As given by `room_words`.
+        config: The radar that the room was prepared for.
+        propagation: The propagation that it was prepared with.
     """
     place_m, amplitude = arrays["place_m"].astype(float), arrays["amplitude"].astype(float) @ np.array([1, 1j])
     parts, first = [], 0
@@ -76,7 +83,14 @@ def room_of(
 
 
 def resampled_phases(room: PreparedRoom, seed: int) -> PreparedRoom:
-    """Another realization of the room: other phases of rough surfaces and edges, which geometry does not determine."""
+    """Another realization of the room: other phases of rough surfaces and edges.
+
+    Phases of specular paths follow from geometry and are kept.
+
+    Args:
+        room: The room.
+        seed: Seed of the phases.
+    """
     cycles = stream(seed, "room", "other phases").random(len(room.paths))
     cycles[room.paths.interaction.numpy() == int(Interaction.SPECULAR)] = 0.0
     amplitude = room.paths.amplitude * torch.from_numpy(np.exp(2j * np.pi * cycles))

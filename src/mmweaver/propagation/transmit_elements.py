@@ -1,7 +1,7 @@
-"""Simultaneous transmitters as a sum over elements: one element is one transmitter in one chirp of the loop.
+"""Simultaneous transmission as a sum over elements: one element is one transmitter in one chirp of the loop.
 
-Everything that computes signals of TDM-MIMO computes those of the elements, which share the chirps' times; the
-elements of a slot are then summed with their weights.
+Code that computes TDM-MIMO signals computes those of the elements, which share the times of the chirps; the elements
+of a slot are then summed with their weights.
 Reference: `core.transmit_code`.
 """
 
@@ -20,22 +20,29 @@ from mmweaver.core.transmit_code import weights_of
 class ElementRadar(RadarConfig):
     """A radar whose transmitters are the elements of a coded one; several of them share a slot."""
 
-    slot: tuple[int, ...] = ()  # of each element
-    slots: int = 1  # of a loop
+    slot: tuple[int, ...] = ()  # per element
+    slots: int = 1  # per loop
 
     @property
     def loop_period_s(self) -> float:
+        """Duration of a loop in seconds."""
         return self.slots * self.chirp_period_s + self.loop_gap_s
 
     @cached_property
     def tx_delay_s(self) -> np.ndarray:
+        """Start of each element's chirp within the loop, (element,), in seconds."""
         return np.asarray(self.slot) * self.chirp_period_s
 
 
 class TransmitElements:
-    """The elements of a radar, and what is made of their signals. Of a TDM radar: its transmitters themselves."""
+    """The elements of a radar, and the conversion of their signals. Those of a TDM radar are its transmitters."""
 
     def __init__(self, config: RadarConfig):
+        """Derives the elements.
+
+        Args:
+            config: The radar, with or without a transmit code.
+        """
         self.is_coded = config.is_coded
         self.config = config
         if not self.is_coded:
@@ -56,28 +63,35 @@ class TransmitElements:
         self._into_tx = torch.from_numpy(config.tx_decoder @ into).to(torch.complex64)
 
     def lengths(self, length_m: Tensor) -> Tensor:
-        """Path lengths (path, tx, rx) of physical transmitters -> of elements (path, element, rx)."""
+        """Path lengths (path, tx, rx) of physical transmitters to those of elements (path, element, rx)."""
         return length_m[:, self._tx] if self.is_coded else length_m
 
     def slots(self, samples: Tensor, axis: int) -> Tensor:
-        """Sums elements, on an axis of samples, into slots."""
+        """Sums the elements along an axis of samples into slots."""
         return _summed(self._into_slots, samples, axis) if self.is_coded else samples
 
     def decoded(self, values: Tensor) -> Tensor:
-        """Values (..., element * rx), each compensated for its slot's delay -> (..., antenna) of the coded radar."""
+        """Separates the transmitters of a coded radar.
+
+        Args:
+            values: Values (..., element * rx), each compensated for the delay of its slot.
+
+        Returns:
+            Values (..., antenna).
+        """
         if not self.is_coded:
             return values
         apart = values.unflatten(-1, (len(self._tx), -1))
         return _summed(self._into_tx, apart, -2).flatten(-2)
 
     def pair_values(self, values: Tensor) -> Tensor:
-        """Values (..., tx, rx) of physical transmitters -> of elements (..., element, rx)."""
+        """Values (..., tx, rx) of physical transmitters to those of elements (..., element, rx)."""
         return values[..., self._tx, :] if self.is_coded else values
 
     def mixing(self, channels: Tensor) -> Tensor:
-        """What mixes physical antennas (tx * rx, tx * rx) -> the same of elements (element * rx, element * rx).
+        """Antenna errors of physical antennas (tx * rx, tx * rx) to those of elements (element * rx, element * rx).
 
-        All elements of a transmitter see the same wave, so what comes from it is taken from its first one.
+        All elements of a transmitter see the same wave, so its contribution is taken from the first one.
         """
         if not self.is_coded:
             return channels

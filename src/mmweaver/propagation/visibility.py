@@ -1,4 +1,4 @@
-"""The visibility of one motion in one room, kept as bits: no ray need be cast for it again."""
+"""Visibility of one motion in one room, stored as bits, so that its rays need not be cast again."""
 
 from dataclasses import dataclass
 
@@ -7,24 +7,32 @@ import numpy as np
 
 @dataclass(frozen=True, kw_only=True)
 class Visibility:
-    """What rays decide about one person: visible skin, clear paths over the room's faces, occluded static paths."""
+    """Results of ray casting for one person: visible skin, clear paths over faces, occluded static paths."""
 
     skin: np.ndarray  # (frame, point) bool: faces the radar, and nothing lies between
-    over_faces: np.ndarray  # (frame, face, ghost point) bool: the path over the face is clear, where it was asked
-    occluded: np.ndarray  # (frame, static path) bool: the person stands before it
+    over_faces: np.ndarray  # (frame, face, ghost point) bool: the path over the face is clear, where it was tested
+    occluded: np.ndarray  # (frame, static path) bool: the person is in the way
 
     def frames(self, chosen: np.ndarray) -> "Visibility":
-        """That of some frames."""
+        """The visibility in selected frames (indices or a mask)."""
         return Visibility(skin=self.skin[chosen], over_faces=self.over_faces[chosen], occluded=self.occluded[chosen])
 
     def packed(self) -> np.ndarray:
-        """Eight bits per byte, uint8 (frame, byte)."""
+        """Eight values per byte, uint8 (frame, byte)."""
         frames = len(self.skin)
         return np.packbits(np.concatenate([self.skin, self.over_faces.reshape(frames, -1), self.occluded], 1), axis=1)
 
     @classmethod
     def unpacked(cls, packed: np.ndarray, *, points: int, faces: int, ghosts: int, static_paths: int) -> "Visibility":
-        """The inverse of `packed`, for so many skin points, faces, ghost points and static paths."""
+        """The inverse of `packed`.
+
+        Args:
+            packed: Bytes (frame, byte).
+            points: Number of skin points.
+            faces: Number of faces of the room.
+            ghosts: Number of ghost points.
+            static_paths: Number of static paths.
+        """
         bits = np.unpackbits(packed, axis=1, count=points + faces * ghosts + static_paths).astype(bool)
         skin, over_faces, occluded = np.split(bits, [points, points + faces * ghosts], axis=1)
         return cls(skin=skin, over_faces=over_faces.reshape(len(packed), faces, ghosts), occluded=occluded)

@@ -1,4 +1,4 @@
-"""One person's skin as the radar sees it, frame by frame: posed, with its hull, its distances and its echoes."""
+"""One person's skin as seen by the radar, frame by frame: posed, with hull, distances and echoes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +20,7 @@ class BodyAtFrames:
     motion: np.ndarray  # (frame, segment, point, 3, 3) position, velocity, acceleration of the skin; m, m/s, m/s2
     place_m: np.ndarray  # (frame, point, 3)
     normal: np.ndarray  # (frame, point, 3)
-    hulls: list[RayCaster]  # one per frame, of all people who may occlude
+    hulls: list[RayCaster]  # one per frame, with all people who may occlude
 
     @classmethod
     def of(
@@ -31,9 +31,15 @@ class BodyAtFrames:
         chest_m: np.ndarray | None,
         hulls: list[RayCaster] | None = None,
     ) -> "BodyAtFrames":
-        """Joints (frame, node, 22, 3) and chest (frame, node) at the clock's nodes.
+        """Poses a body.
 
-        `hulls` stand for this body and all others that may occlude it; the body's own if None, and no rays if empty.
+        Args:
+            body: The skin points.
+            clock: Clock of the radar's frame.
+            joints_m: Joints (frame, node, 22, 3) in metres at the clock's nodes.
+            chest_m: Outward displacement of the chest (frame, node) in metres; None for none.
+            hulls: Meshes of this body and all others that may occlude it, one per frame; by default the body's own.
+                With an empty list no rays are cast.
         """
         frames, nodes = joints_m.shape[:2]
         skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
@@ -47,7 +53,17 @@ class BodyAtFrames:
         )
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float, wanted: np.ndarray) -> np.ndarray:
-        """Bool (frame, point): wanted, and no body lies between start (frame, point, 3) or (3,) and end."""
+        """Whether no body lies between two points.
+
+        Args:
+            start_m: Start points (frame, point, 3) in metres, or one (3,).
+            end_m: End points (frame, point, 3) in metres.
+            margin_m: Distance from either end within which faces are ignored.
+            wanted: Mask (frame, point) of the pairs to test.
+
+        Returns:
+            Bool (frame, point), False where not wanted.
+        """
         clear = wanted.copy()
         for frame, hull in enumerate(self.hulls):
             ask = np.flatnonzero(wanted[frame])
@@ -57,9 +73,15 @@ class BodyAtFrames:
 
 
 def motion_through(nodes_m: np.ndarray, clock: FrameClock) -> np.ndarray:
-    """Positions (frame, segment * node, point, 3) -> the quadratics through them, (frame, segment, point, 3, 3).
+    """Quadratics through positions at the nodes of each segment.
 
-    The last but one axis is position, velocity and acceleration at the middle of the segment.
+    Args:
+        nodes_m: Positions (frame, segment * node, point, 3) in metres.
+        clock: Clock of the radar's frame.
+
+    Returns:
+        Position, velocity and acceleration at the middle of each segment, (frame, segment, point, 3, 3), along the last
+        but one axis.
     """
     frames, _, points, _ = nodes_m.shape
     out = np.empty((frames, len(clock.segments), points, 3, 3))
@@ -73,7 +95,12 @@ def motion_through(nodes_m: np.ndarray, clock: FrameClock) -> np.ndarray:
 
 
 def hulls_of(bodies: list[ScatteringBody], joints_m: list[np.ndarray]) -> list[RayCaster]:
-    """One mesh per frame of all bodies together, posed at the frame's middle; joints (frame, node, 22, 3) of each."""
+    """One mesh per frame of all bodies together, posed at the middle of the frame.
+
+    Args:
+        bodies: The bodies.
+        joints_m: Joints (frame, node, 22, 3) in metres of each.
+    """
     posed = [body.hull(own[:, own.shape[1] // 2]) for body, own in zip(bodies, joints_m, strict=True)]
     first = np.cumsum([0, *(vertices.shape[1] for vertices, _ in posed)])
     faces = np.concatenate([faces + at for (_, faces), at in zip(posed, first, strict=False)])
@@ -82,12 +109,12 @@ def hulls_of(bodies: list[ScatteringBody], joints_m: list[np.ndarray]) -> list[R
 
 
 def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.ndarray:
-    """Which static paths a body blocks before the first or after the last vertex.
+    """Static paths that a body blocks before the first or after the last vertex.
 
     Args:
-        hull: of the body.
-        paths: static paths.
-        asked: indices of those that are tested.
+        hull: Mesh of the body.
+        paths: Static paths, (path,).
+        asked: Indices of the paths that are tested.
 
     Returns:
         Indices of the blocked ones.
@@ -100,13 +127,20 @@ def occluded_by(hull: RayCaster, paths: StaticPaths, asked: np.ndarray) -> np.nd
 
 
 class VisibleBody:
-    """One person in one room. Without a ray, as here, all skin that faces the radar is visible."""
+    """One person in one room. Without rays, as here, all skin that faces the radar is visible."""
 
     def __init__(self, room: PreparedRoom, body: ScatteringBody, posed: BodyAtFrames):
+        """Computes distances and angles of incidence.
+
+        Args:
+            room: The room.
+            body: The person's skin points.
+            posed: The body in every frame.
+        """
         self.room, self.body, self.config, self.posed = room, body, room.config, posed
         self.num_frames = len(posed.place_m)
         self.distance_m = np.linalg.norm(posed.place_m, axis=-1)  # (frame, point)
-        self.towards = -posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]  # (frame, point, 3) the radar
+        self.towards = -posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]  # (frame, point, 3) to the radar
         self.cos = (posed.normal * self.towards).sum(-1)
         self.visible = self.cos > body.echo.least_cos
         self.gain = scatterer_gain(self.config)
@@ -119,7 +153,7 @@ class VisibleBody:
 
     @cached_property
     def direct(self) -> np.ndarray:
-        """Amplitudes (frame, point) of direct echoes, were all skin visible, complex, in sqrt(mW)."""
+        """Amplitudes (frame, point) of direct echoes as if all skin were visible, complex, in sqrt(mW)."""
         cross_section = self.body.echo.monostatic(self.cos) * self.body.area_m2 * self.body.brightness
         level = self.gain * self.pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return level * self.body.micro_phase
@@ -130,5 +164,5 @@ class VisibleBody:
         return (np.abs(self.direct) ** 2 * self.visible).sum(axis=1)
 
     def pattern(self, direction: np.ndarray) -> np.ndarray:
-        """Amplitude of one antenna in unit directions (..., 3)."""
+        """Amplitude pattern (...) of one antenna in unit directions (..., 3)."""
         return pattern(direction.reshape(-1, 3), self.config).reshape(direction.shape[:-1])

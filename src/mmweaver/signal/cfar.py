@@ -21,16 +21,20 @@ POWER_CORRELATION = np.outer(HANN_CORRELATION, HANN_CORRELATION)  # (range bins,
 
 @dataclass(frozen=True, kw_only=True)
 class CfarCells:
-    """Half extents (range, doppler) of the guard area around the cell under test and of the training ring around it.
+    """Guard area around the cell under test, and the training ring around it, as half extents (range, doppler) in bins.
 
-    By default wide enough that a body, which fills some 8 by 8 cells of 4.4 cm and 0.27 m/s, does not mask itself.
+    The defaults are wide enough that a body, which covers some 8 by 8 cells of 4.4 cm and 0.27 m/s, does not mask
+    itself.
     """
 
     guard: tuple[int, int] = (4, 4)
     training: tuple[int, int] = (12, 8)
 
     def within(self, num_doppler: int) -> "CfarCells":
-        """These areas for a Doppler axis of so many bins, which is cyclic: no cell is its own training cell."""
+        """The same areas, limited to a Doppler axis of `num_doppler` bins.
+
+        The axis is cyclic, so the limit prevents a cell from being its own training cell.
+        """
         most = (num_doppler - 1) // 2
         if num_doppler >= 2 * self.training[1]:
             return self
@@ -39,7 +43,10 @@ class CfarCells:
         )
 
     def half_extents(self, num_doppler: int) -> tuple[tuple[int, int], tuple[int, int]]:
-        """Half extents (range, doppler) of the guard area and of all; limited so that no cell occurs twice."""
+        """Half extents (range, doppler) in bins of the guard area, and of guard area and ring together.
+
+        They are limited so that no cell occurs twice on a Doppler axis of `num_doppler` bins.
+        """
         limit = (num_doppler - 1) // 2
         guard = min(self.guard[1], limit)
         whole = min(guard + self.training[1], limit)
@@ -48,7 +55,12 @@ class CfarCells:
 
 @dataclass(frozen=True, kw_only=True)
 class CfarResult:
-    """Detections, and the noise power estimated around each cell, (frame, range, doppler)."""
+    """Detections and noise estimates.
+
+    Attributes:
+        is_detected: Mask (frame, range, doppler).
+        noise_power: Mean power of the training cells of each cell, (frame, range, doppler).
+    """
 
     is_detected: RangeDopplerMask
     noise_power: RangeDopplerMap
@@ -61,18 +73,21 @@ def ca_cfar(
     num_looks: int = 1,
     cells: CfarCells = CfarCells(),
 ) -> CfarResult:
-    """Cell averaging: a cell is detected where it exceeds a factor times the mean of its training cells.
+    """Cell-averaging CFAR: a cell is detected where it exceeds a factor times the mean of its training cells.
 
     Doppler is cyclic; near the ends of range the ring is truncated.
 
     Args:
-        power: under Hann windows.
-        false_alarm_rate: of a cell of noise, between 0 and 1.
-        num_looks: antennas averaged in `power`.
-        cells: guard area and training ring.
+        power: Power (frame, range, doppler) under Hann windows, in any linear unit.
+        false_alarm_rate: Probability that a cell of noise is detected, between 0 and 1.
+        num_looks: Number of antennas averaged in `power`.
+        cells: Guard area and training ring.
+
+    Returns:
+        Detections and noise estimates of all cells.
 
     Raises:
-        InputError: for an impossible rate or a map too small for any training cell.
+        InputError: For an impossible rate, or a map too small for any training cell.
     """
     if not 0 < false_alarm_rate < 1:
         raise InputError(f"the false alarm rate must lie between 0 and 1, not {false_alarm_rate}")
@@ -88,12 +103,18 @@ def ca_cfar(
 
 
 def ca_factor(false_alarm_rate: float, num_training: float, num_looks: int) -> float:
-    """Threshold over the mean of the training cells, exact for independent gamma cells (an F distribution).
+    """Threshold relative to the mean of the training cells.
 
-    For one look it is the textbook's N (rate^(-1/N) - 1):
+    Exact for independent gamma-distributed cells (F distribution). For one look it equals the textbook's
+    N (rate^(-1/N) - 1):
 
     >>> round(ca_factor(1e-4, 16.0, 1), 6) == round(16 * (1e-4 ** (-1 / 16) - 1), 6)
     True
+
+    Args:
+        false_alarm_rate: Probability that a cell of noise is detected.
+        num_training: Number of independent training cells.
+        num_looks: Number of antennas averaged.
     """
     from scipy.special import betaincinv
 
@@ -103,7 +124,7 @@ def ca_factor(false_alarm_rate: float, num_training: float, num_looks: int) -> f
 
 @lru_cache(maxsize=32)
 def _independent_cells(num_range: int, num_doppler: int, cells: CfarCells) -> list[float]:
-    """Effective number of independent training cells of each range bin: N^2 over the sum of their correlations."""
+    """Effective number of independent training cells per range bin: N^2 over the sum of their correlations."""
     guard, whole = cells.half_extents(num_doppler)
     in_doppler = np.abs(np.arange(-whole[1], whole[1] + 1)) > guard[1]
     known: dict[tuple[int, int], float] = {}
@@ -124,7 +145,7 @@ def _independent_cells(num_range: int, num_doppler: int, cells: CfarCells) -> li
 
 
 def _box_sum(power: RangeDopplerMap, half_range: int, half_doppler: int) -> tuple[RangeDopplerMap, np.ndarray]:
-    """Sums over (2 half + 1)^2 boxes, wrapped in Doppler, cut in range; and the number of cells for each range bin."""
+    """Sums over (2 half + 1)^2 boxes, wrapped in Doppler, cut in range; and the number of cells per range bin."""
     num_range = power.shape[1]
     padded = np.pad(power, ((0, 0), (0, 0), (half_doppler + 1, half_doppler)), mode="wrap")
     running = np.cumsum(padded, axis=2, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Clusters of points of one frame: DBSCAN on position and radial velocity.
+"""Clustering of the points of a frame by DBSCAN on position and radial velocity.
 
 Reference: Ester et al., "A density-based algorithm for discovering clusters", KDD 1996.
 """
@@ -13,15 +13,18 @@ NOISE = -1
 
 
 def dbscan(places: Float[np.ndarray, "point axis"], *, distance: float, fewest: int = 3) -> Int[np.ndarray, " point"]:
-    """The cluster of each point, from 0 on; -1 for noise.
+    """Density-based clustering.
 
-    A point with `fewest` points within `distance` (itself counted) is a core; cores within reach of each other are one
-    cluster, and other points belong to the cluster of their nearest core within reach.
+    A point with at least `fewest` points within `distance`, itself included, is a core. Cores within reach of each
+    other form one cluster; other points belong to the cluster of their nearest core within reach.
 
     Args:
-        places: (point, axis).
-        distance: reach.
-        fewest: points of a core.
+        places: Coordinates (point, axis).
+        distance: Reach, in the unit of the coordinates.
+        fewest: Minimum number of points within reach of a core.
+
+    Returns:
+        Cluster (point,) of each point, from 0; -1 for noise.
 
     >>> dbscan(np.array([[0.0], [0.1], [0.2], [5.0]]), distance=0.3, fewest=2).tolist()
     [0, 0, 0, -1]

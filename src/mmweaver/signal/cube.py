@@ -1,4 +1,4 @@
-"""ADC samples <-> range-Doppler cube."""
+"""Conversion between ADC samples and the range-Doppler cube."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -12,9 +12,9 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.signal.windows import MIN_HANN_LOOPS, doppler_window, hann
 
-# Singular values below this share of the largest carry nothing but rounding.
+# Singular values below this share of the largest are rounding errors.
 MIN_SINGULAR_VALUE = 1e-9
-FRAMES_A_BLOCK = 5  # stay in the cache
+FRAMES_A_BLOCK = 5  # fit into the cache
 STATIC_REMOVALS = ("auto", "mean_chirp", "mean_frame", "none")
 
 
@@ -22,18 +22,20 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     """Range FFT, Doppler FFT and TDM phase compensation, both FFTs under a Hann window.
 
     Normalised so that a tone of amplitude a peaks at a (for a radar with real samples: a cosine of amplitude a).
-    Keeps the configuration's range bins; Doppler bins rise with radial velocity.
+    Keeps the configuration's range bins; Doppler bins increase with radial velocity.
+    Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
 
     Args:
-        adc: samples.
-        compensate_tdm: the antennas of one transmitter are turned back by the phase that the cell's velocity gathers
-            until that transmitter fires; without it a moving target shows at a wrong angle.
+        adc: Samples (frame, loop, slot, rx, sample).
+        compensate_tdm: Whether the phase that the velocity of a cell accumulates until each transmitter's chirp is
+            removed; otherwise a moving target appears at a wrong angle.
 
-    Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
+    Returns:
+        Cube (frame, range, doppler, antenna), complex64, with the scale of the samples.
     """
     config = adc.config
     values = np.empty((len(adc.samples), config.num_range_bins, config.num_loops, config.num_antennas), np.complex64)
-    # in blocks: also, a long recording needs little more memory than its samples and its cube
+    # in blocks, so that a long recording needs little more memory than its samples and its cube
     for start in range(0, len(values), FRAMES_A_BLOCK):
         block = slice(start, start + FRAMES_A_BLOCK)
         values[block] = cube_values(adc.samples[block], config, compensate_tdm=compensate_tdm)
@@ -41,9 +43,15 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
 
 
 def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = True) -> Any:
-    """The values of `radar_cube`, complex64 (frame, range, doppler, antenna), of samples (frame, loop, tx, rx, sample).
+    """Values of `radar_cube`, for numpy arrays or torch tensors on any device.
 
-    Takes and gives numpy arrays, or torch tensors on any device.
+    Args:
+        samples: Samples (frame, loop, slot, rx, sample).
+        config: The radar.
+        compensate_tdm: As in `radar_cube`.
+
+    Returns:
+        Values (frame, range, doppler, antenna), complex64.
     """
     window = hann(config.num_samples)
     weight = (window / window.sum()).astype(np.float32)
@@ -61,14 +69,17 @@ def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = Tru
 
 
 def cropped(cube: RadarCube, config: RadarConfig) -> RadarCube:
-    """The range bins of a cube that another range window of its radar keeps.
+    """The part of a cube within another range window of its radar.
 
     Args:
-        cube: of the radar.
-        config: the same radar with another range window.
+        cube: The cube.
+        config: The same radar with another range window.
+
+    Returns:
+        The cube with that window, labelled with `config`.
 
     Raises:
-        InputError: where the cube does not hold all of them.
+        InputError: If the cube does not contain the whole window.
     """
     own = cube.config
     first = config.first_range_bin - own.first_range_bin
@@ -85,9 +96,15 @@ def cropped(cube: RadarCube, config: RadarConfig) -> RadarCube:
 def adc_from_cube(cube: RadarCube) -> AdcCube:
     """The ADC samples of least energy whose `radar_cube` is this cube.
 
-    What the cube does not hold comes out as zero: the range bins it left out, and sample 0 and loop 0, where a Hann
-    window is zero. A cube that no samples can give (a Doppler spectrum with energy in loop 0) is met as closely as
-    can be (least squares).
+    What the cube does not contain is zero: range bins outside its window, and sample 0 and loop 0, where a Hann
+    window is zero. A cube that no samples produce (a Doppler spectrum with energy in loop 0) is approximated in the
+    least-squares sense.
+
+    Args:
+        cube: Cube with TDM compensation.
+
+    Returns:
+        Samples (frame, loop, slot, rx, sample), complex64.
     """
     config = cube.config
     turned = encoded(cube.values.astype(np.complex128), config) * slot_compensation(config).conj()
@@ -99,7 +116,15 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
-    """One frame of static clutter, of its value (range, antenna) at zero Doppler."""
+    """One frame of static clutter, from its values at zero Doppler.
+
+    Args:
+        still: Values (range, antenna) at zero Doppler, complex.
+        config: The radar.
+
+    Returns:
+        Cube of one frame, with a scale of 1.
+    """
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     response = _fft(weight, 0)[:, None] * slot_compensation(config)
     slots = encoded(still.astype(np.complex128), config)
@@ -108,12 +133,20 @@ def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
 
 
 def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
+    """Samples of least energy of static clutter, from its values at zero Doppler.
+
+    Args:
+        static: Values (range, antenna), complex.
+        config: The radar.
+
+    Returns:
+        Samples (slot, rx, sample), complex64, the same in every loop.
+    """
     return _samples_of_ranges(encoded(static.astype(np.complex128), config).T, config)
 
 
 def _samples_of_ranges(spectrum: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Range bins (..., slot * rx, range) -> samples (..., slot, rx, sample) of least energy, complex64."""
+    """Range bins (..., slot * rx, range) to samples (..., slot, rx, sample) of least energy, complex64."""
     if not config.complex_samples:
         spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
     inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
@@ -122,18 +155,31 @@ def _samples_of_ranges(spectrum: np.ndarray, config: RadarConfig) -> np.ndarray:
 
 
 def remove_static_adc(adc: AdcCube) -> AdcCube:
-    """Takes the mean over the loops of each frame away: what does not move vanishes, for every antenna and sample."""
+    """Subtracts the mean over the loops of each frame, which removes static clutter per antenna and sample.
+
+    Args:
+        adc: Samples (frame, loop, slot, rx, sample).
+    """
     still = adc.samples.mean(axis=1, keepdims=True, dtype=np.complex128)
     return AdcCube(samples=(adc.samples - still).astype(np.complex64), config=adc.config, scale=adc.scale)
 
 
 def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
-    """Static clutter removal on a cube: "mean_chirp" takes each frame's mean over its loops away, "mean_frame" the mean
-    over all frames, "none" gives the cube back; "auto" is mean_frame for radars of fewer than four loops per frame.
+    """Removes static clutter from a cube.
 
-    The mean over loops is that of the samples before the Doppler window, found from the Doppler spectrum, so it equals
-    `remove_static_adc` before `radar_cube`, but for the first loop, to which a Hann window is blind: with it left
-    out of the mean the two agree. A body that stands still goes too. Raises InputError for another `how`.
+    "mean_chirp" subtracts the mean over the loops of each frame, "mean_frame" the mean over all frames, "none" returns
+    the cube unchanged; "auto" is mean_frame for radars with fewer than four loops per frame, otherwise mean_chirp. A
+    person who stands still is removed, too.
+
+    The mean over loops is that of the samples before the Doppler window, derived from the Doppler spectrum. It equals
+    `remove_static_adc` before `radar_cube` except for the first loop, which a Hann window weights with zero.
+
+    Args:
+        cube: The cube.
+        how: "auto", "mean_chirp", "mean_frame" or "none".
+
+    Raises:
+        InputError: For any other `how`.
     """
     if how not in STATIC_REMOVALS:
         raise InputError(f"unknown static removal {how!r}; known: {', '.join(STATIC_REMOVALS)}")
@@ -146,7 +192,7 @@ def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
     compensation = slot_compensation(config)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     seen = np.abs(weight) > MIN_SINGULAR_VALUE
-    # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
+    # mean of the loops with non-zero weight = sum over doppler of (mean_of_doppler * spectrum)
     share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
     mean_of_doppler = _inverse_fft(share, 0)
     slots = encoded(cube.values, config)
@@ -157,12 +203,22 @@ def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
 
 
 def tdm_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler antenna"]:
-    """Turns each virtual antenna back to the start of the loop: exp(-j 2 pi f_doppler delay of its transmitter)."""
+    """Refers each virtual antenna's phase to the start of the loop: exp(-j 2 pi f_doppler delay of its transmitter).
+
+    Args:
+        config: The radar.
+
+    Returns:
+        Factors (doppler, antenna), complex64.
+    """
     return _compensation(config, config.antenna_delay_s)
 
 
 def slot_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler channel"]:
-    """The same of each slot and receiver before decoding; of a TDM radar the virtual antennas themselves."""
+    """The same per slot and receiver before decoding, (doppler, slot * rx).
+
+    Equal to `tdm_compensation` for TDM radars.
+    """
     return _compensation(config, np.repeat(config.tx_delay_s, config.num_rx))
 
 
@@ -172,12 +228,20 @@ def _compensation(config: RadarConfig, delay_s: np.ndarray) -> np.ndarray:
 
 
 def decoded(values: Any, config: RadarConfig) -> Any:
-    """Slots and receivers (..., slot * rx) -> virtual antennas (..., antenna); of a TDM radar the same."""
+    """Separates simultaneous transmitters.
+
+    Args:
+        values: Values (..., slot * rx), an array or a tensor.
+        config: The radar; those of a TDM radar are returned unchanged.
+
+    Returns:
+        Values (..., antenna).
+    """
     return _through(config.tx_decoder, values, config) if config.is_coded else values
 
 
 def encoded(values: Any, config: RadarConfig) -> Any:
-    """The inverse of `decoded`, virtual antennas -> slots (least squares where there are more slots)."""
+    """The inverse of `decoded`, in the least-squares sense where there are more slots than transmitters."""
     return _through(np.linalg.pinv(config.tx_decoder), values, config) if config.is_coded else values
 
 
@@ -190,9 +254,9 @@ def _through(matrix: np.ndarray, values: Any, config: RadarConfig) -> Any:
 
 
 def _fft(values: Any, axis: int) -> Any:
-    """The transform of real or complex values, of which `values` may be lost.
+    """FFT of complex values or real FFT of real ones; `values` may be overwritten.
 
-    scipy's keeps single precision and is several times faster than numpy's.
+    scipy keeps single precision and is several times faster than numpy.
     """
     if isinstance(values, np.ndarray):
         from scipy import fft
@@ -206,7 +270,7 @@ def _fft(values: Any, axis: int) -> Any:
 
 
 def _like(values: np.ndarray, samples: Any) -> Any:
-    """An array where the samples are one, else a tensor on their device."""
+    """The array itself for array samples, otherwise a tensor on their device."""
     if isinstance(samples, np.ndarray):
         return values
     import torch
@@ -221,10 +285,10 @@ def _inverse_fft(values: np.ndarray, axis: int) -> np.ndarray:
 
 
 def doppler_weight(num_loops: int) -> Complex[np.ndarray, " loop"]:
-    """The Doppler window, normalised, with the turn that moves zero Doppler to bin num_loops // 2."""
+    """Normalised Doppler window with the phase ramp that moves zero Doppler to bin num_loops // 2, (loop,)."""
     window = doppler_window(num_loops)
     loop = np.arange(num_loops)
-    # exact integers under the 2 pi: an FFT of it has then true zeros to rounding
+    # reduced to exact integers before the 2 pi, so that zeros of its FFT are zero to rounding
     turn = np.exp(2j * np.pi * ((loop * (num_loops // 2)) % num_loops) / num_loops)
     return (window / window.sum() * turn).astype(np.complex64)
 

@@ -1,4 +1,4 @@
-"""Point detectors by name: this project's own CFAR, that of TI's firmware, and registered ones."""
+"""Point detectors by name: CFAR, the emulated firmware of TI, and registered ones."""
 
 from typing import Protocol, runtime_checkable
 
@@ -12,9 +12,9 @@ from mmweaver.signal.points import point_cloud
 
 @runtime_checkable
 class Detector(Protocol):
-    """A function from a cube, and its ADC samples where there are some, to points.
+    """Maps a cube, and its ADC samples if available, to points.
 
-    One that cannot do without samples has an attribute `needs_adc` that is true.
+    A detector that requires samples has a true attribute `needs_adc`.
     """
 
     def __call__(self, cube: RadarCube, adc: AdcCube | None, /) -> PointCloud: ...
@@ -34,28 +34,46 @@ DETECTORS: Registry[Detector] = Registry(
 
 
 def needs_adc(points: str) -> bool:
-    """Whether a point cloud is made from ADC samples. Raises InputError for one that is not known."""
+    """Whether a detector works on ADC samples.
+
+    Args:
+        points: "cfar", "firmware" or a registered detector.
+
+    Raises:
+        InputError: For an unknown detector.
+    """
     return points == "firmware" or bool(getattr(DETECTORS[points], "needs_adc", False))
 
 
 def check_points(points: str, config: RadarConfig) -> None:
-    """Raises InputError for an unknown kind of point cloud, or one that this radar does not support."""
+    """Checks that a detector exists and supports a radar.
+
+    Args:
+        points: "cfar", "firmware" or a registered detector.
+        config: The radar.
+
+    Raises:
+        InputError: For an unknown detector, or a radar that the firmware does not support.
+    """
     detector = DETECTORS[points]
     if detector is _firmware:
         check_firmware_radar(config)
 
 
 def detect(cube: RadarCube, adc: AdcCube | None, points: str, firmware: FirmwareSettings | None = None) -> PointCloud:
-    """Points of a cube.
+    """Detects points.
 
     Args:
-        cube: of any radar that the detector supports.
-        adc: its samples, which the firmware's detector uses if given.
+        cube: Cube of a radar that the detector supports.
+        adc: Its samples, which the firmware's detector uses if given.
         points: "cfar", "firmware" or a registered detector.
-        firmware: settings of the firmware's detector.
+        firmware: Settings of the firmware's detector; by default `FirmwareSettings()`.
+
+    Returns:
+        Points of all frames.
 
     Raises:
-        InputError: for an unknown kind of point cloud, or a radar that the firmware does not support.
+        InputError: For an unknown detector, or a radar that the firmware does not support.
     """
     check_points(points, cube.config)
     detector = DETECTORS[points]

@@ -1,7 +1,7 @@
 """Micro-Doppler: the Doppler spectrum over time, by short-time Fourier transforms over the chirps.
 
-Frequencies reach as far as the chirps of one transmitter allow, and the time step is a fraction of a frame; a spectrum
-over frames has neither. Where chirps follow each other from frame to frame without a pause, windows run on over them.
+The velocity range is that of the chirps of one transmitter, and the time step is a fraction of a frame; a spectrum
+over frames has neither. Where frames follow each other without a pause, windows continue across frames.
 Reference: Chen, "The Micro-Doppler Effect in Radar", 2nd ed., ch. 2.
 """
 
@@ -21,8 +21,8 @@ from mmweaver.signal.windows import MIN_HANN_LOOPS, doppler_window, hann
 
 MAX_WINDOW = 64  # loops
 OVERLAP = 4  # windows per window length
-MIN_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
-SIGNAL_DB = 15.0  # range bins this far below the strongest still count
+MIN_WEIGHT = 1e-3  # lower bound when a Doppler window is undone: a Hann window is zero at the first loop
+SIGNAL_DB = 15.0  # range bins down to this level below the strongest are used
 FRAMES_A_BLOCK = 20
 
 
@@ -37,16 +37,19 @@ class MicroDoppler:
 
 
 def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDoppler:
-    """The spectrogram of a recording minus its static clutter, over the radar's range window.
+    """Spectrogram of a recording without its static clutter, over the range bins that contain motion.
 
-    Clutter is the mean chirp of each frame, or of the recording where windows run on over frames.
+    Clutter is the mean chirp of each frame, or of the recording where windows continue across frames.
 
     Args:
-        adc: the samples.
-        window_loops: length of a window; by default the loops of a frame, at most 64.
+        adc: Samples (frame, loop, slot, rx, sample).
+        window_loops: Window length in loops; by default the loops of a frame, at most 64.
+
+    Returns:
+        Power in the squared unit of the samples; windows overlap by three quarters.
 
     Raises:
-        InputError: for radars of fewer than four loops per frame that pause between frames (see `signal.slow_time`).
+        InputError: For radars with fewer than four loops per frame and a pause between frames (see `signal.slow_time`).
     """
     config = adc.config
     pause_s = config.frame_period_s - config.active_time_s
@@ -71,15 +74,15 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
 
 
 def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
-    """Short-time spectra within each frame, mean of the antennas. The cube's own Doppler window is undone first.
+    """Short-time spectra within each frame, averaged over the antennas. The cube's own Doppler window is undone first.
 
     Args:
-        cube: of any radar.
-        width: loops of a window.
-        hop: loops from one window to the next.
+        cube: The cube.
+        width: Window length in loops.
+        hop: Step between windows in loops.
 
     Returns:
-        Power (frame, window, range, doppler); a windowed tone of amplitude a shows a^2.
+        Power (frame, window, range, doppler); a windowed tone of amplitude a gives a^2.
     """
     loops = cube.values.shape[2]
     if width == loops:
@@ -91,9 +94,10 @@ def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray,
 
 
 def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
-    """The spectrogram of a cube, of the strongest range bin at each time and velocity; windows as `micro_doppler` has.
+    """Spectrogram of a cube: the strongest range bin at each time and velocity, with the windows of `micro_doppler`.
 
-    Clutter is taken away beforehand (`signal.cube.remove_static`).
+    Args:
+        cube: Cube without static clutter (`signal.cube.remove_static`).
     """
     width = min(cube.config.num_loops, MAX_WINDOW)
     power = cube_spectrogram(cube, width, max(1, width // OVERLAP)).max(axis=2)
@@ -101,7 +105,7 @@ def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
 
 
 def _window_powers(chirps: np.ndarray, width: int, hop: int) -> Iterator[np.ndarray]:
-    """Power (first, doppler, ...) of each window over chirps (first, loop, antenna, ...), mean of the antennas."""
+    """Power (first, doppler, ...) of each window over chirps (first, loop, antenna, ...), mean over the antennas."""
     window = (doppler_window(width) / doppler_window(width).sum()).astype(np.float32)
     window = window.reshape(-1, *[1] * (chirps.ndim - 2))
     for start in range(0, chirps.shape[1] - width + 1, hop):
@@ -110,7 +114,7 @@ def _window_powers(chirps: np.ndarray, width: int, hop: int) -> Iterator[np.ndar
 
 
 def _spectrogram(power: np.ndarray, frame_s: np.ndarray, config: RadarConfig, range_m: np.ndarray) -> MicroDoppler:
-    """Of power (frame, window, doppler) of frames that begin at these times, over ranges from first to last."""
+    """Spectrogram of power (frame, window, doppler) of frames that begin at `frame_s`."""
     _, windows, width = power.shape
     middle_s = (np.arange(windows) * max(1, width // OVERLAP) + width / 2) * config.loop_period_s
     step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
@@ -125,7 +129,7 @@ def _spectrogram(power: np.ndarray, frame_s: np.ndarray, config: RadarConfig, ra
 def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, int]:
     """Range profiles of every chirp (frame, loop, slot * rx, range) where something moves, and the first range bin.
 
-    `still` (slot, rx, sample) is taken away; without it each frame's mean chirp.
+    `still` (slot, rx, sample) is subtracted; without it the mean chirp of each frame.
     """
     config = adc.config
     window = hann(config.num_samples)

@@ -1,7 +1,7 @@
-"""Features of a radar cube as recognisers take them: maps in decibels, range-angle images, micro-Doppler, points.
+"""Features of a radar cube for recognition: maps in decibels, range-angle images, micro-Doppler, points.
 
 The same functions serve generated sequences, recordings and data sets. Power is that at the receiver's port, in dBm,
-where the cube's scale is known (|cube * scale|^2 in mW), else in dB relative to a value of 1. Equations:
+where the cube's scale is known (|cube * scale|^2 in mW), otherwise in dB relative to a value of 1. Equations:
 docs/features.md.
 """
 
@@ -29,14 +29,31 @@ LOWEST_DB = -300.0  # of empty cells
 
 
 def range_doppler_db(cube: RadarCube, *, moving: bool = False) -> Float[Array, "frame range doppler"]:
-    """Mean power of the antennas, float32 (frame, range, doppler); `moving` removes each frame's mean chirp."""
+    """Range-Doppler power, averaged over the antennas.
+
+    Args:
+        cube: The cube.
+        moving: Whether the mean chirp of each frame is removed.
+
+    Returns:
+        Power in dB, float32 (frame, range, doppler).
+    """
     return _decibels(range_doppler_power(remove_static(cube) if moving else cube), cube)
 
 
 def range_azimuth_db(
     cube: RadarCube, *, num_azimuths: int = 91, moving: bool = False
 ) -> Float[Array, "frame range azimuth"]:
-    """Beamformed power summed over Doppler, float32 (frame, range, azimuth), azimuths evenly from -60 to 60 degrees."""
+    """Beamformed range-azimuth power, summed over Doppler.
+
+    Args:
+        cube: The cube.
+        num_azimuths: Number of angles, evenly spaced from -60 to 60 degrees.
+        moving: Whether the mean chirp of each frame is removed.
+
+    Returns:
+        Power in dB, float32 (frame, range, azimuth).
+    """
     source = remove_static(cube) if moving else cube
     return _decibels(range_azimuth_power(source, azimuth_axis_rad(num_azimuths)), cube)
 
@@ -44,20 +61,35 @@ def range_azimuth_db(
 def range_elevation_db(
     cube: RadarCube, *, num_elevations: int = 61, moving: bool = False
 ) -> Float[Array, "frame range elevation"]:
-    """As `range_azimuth_db` over elevations from -40 to 40 degrees.
+    """Beamformed range-elevation power, summed over Doppler.
 
-    Raises InputError for an array without elevation.
+    Args:
+        cube: Cube of a radar with elevation.
+        num_elevations: Number of angles, evenly spaced from -40 to 40 degrees.
+        moving: Whether the mean chirp of each frame is removed.
+
+    Returns:
+        Power in dB, float32 (frame, range, elevation).
+
+    Raises:
+        InputError: For an array without elevation.
     """
     source = remove_static(cube) if moving else cube
     return _decibels(range_elevation_power(source, elevation_axis_rad(num_elevations)), cube)
 
 
 def dynamic_range_angle(cube: RadarCube, size: int = DRAI_SIZE) -> Float[Array, "frame range azimuth"]:
-    """Dynamic range-angle images (DRAI), float32 (frame, `size`, `size`), linear power, mean chirp removed.
+    """Dynamic range-angle images (DRAI): beamformed power without the mean chirp, in a square grid.
 
-    Rows are means over equal spans of the range bins, columns azimuths evenly from -60 to 60 degrees.
-
+    Rows are means over equal spans of the range bins, columns azimuths evenly spaced from -60 to 60 degrees.
     Reference: Li et al., Towards Domain-Independent and Real-Time Gesture Recognition Using mmWave Signal (TMC 2023).
+
+    Args:
+        cube: The cube.
+        size: Number of rows and of columns.
+
+    Returns:
+        Linear power, float32 (frame, size, size).
     """
     power = range_azimuth_power(remove_static(cube), azimuth_axis_rad(size))
     edges = np.linspace(0, power.shape[1], size + 1)
@@ -66,12 +98,20 @@ def dynamic_range_angle(cube: RadarCube, size: int = DRAI_SIZE) -> Float[Array, 
 
 
 def micro_doppler_db(cube: RadarCube, *, window_loops: int | None = None) -> Float[Array, "window doppler"]:
-    """Short-time Fourier transform over the chirps, summed over range, float32 (window, doppler).
+    """Short-time Fourier transform over the chirps, summed over range.
 
-    Each frame is cut into windows of `window_loops` loops (default: all of its loops), every half a window; Doppler
-    bins rise with radial velocity up to the radar's own limit. The mean chirp of each frame is removed. Slow time is
-    recovered from the cube by the inverse Doppler FFT. Raises InputError for windows of fewer than 4 loops or of more
-    than the frame has.
+    Windows overlap by half; Doppler bins increase with radial velocity up to the radar's own limit. The mean chirp of
+    each frame is removed. Slow time is recovered from the cube by the inverse Doppler FFT.
+
+    Args:
+        cube: The cube.
+        window_loops: Window length in loops; by default all loops of a frame.
+
+    Returns:
+        Power in dB, float32 (window, doppler).
+
+    Raises:
+        InputError: For windows of fewer than four loops, or of more than the frame has.
     """
     loops = cube.values.shape[2]
     width = loops if window_loops is None else window_loops
@@ -82,7 +122,15 @@ def micro_doppler_db(cube: RadarCube, *, window_loops: int | None = None) -> Flo
 
 
 def point_table(points: PointCloud, frame: int | None = None) -> Float[Array, "point 5"]:
-    """x, y, z in metres, radial velocity in m/s and SNR in dB, float32 (point, 5); of one frame, or of all."""
+    """Points as a table of x, y, z in metres, radial velocity in m/s and SNR in dB.
+
+    Args:
+        points: The points.
+        frame: Frame to select; by default all frames.
+
+    Returns:
+        Table, float32 (point, 5).
+    """
     own = points if frame is None else points.select(points.frame == frame)
     return np.stack([getattr(own, name) for name in POINT_COLUMNS], axis=-1).astype(np.float32).reshape(-1, 5)
 

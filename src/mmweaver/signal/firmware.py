@@ -1,7 +1,7 @@
 """Emulation of the point cloud of TI's out-of-box demo: windows, fixed-point arithmetic, CFAR, grouping and angles.
 
 Based on the behaviour that TI documents (mmWave SDK User Guide; demo documentation of xWR14xx and xWR16xx); what is
-known and what is assumed: docs/decisions/firmware-points.md.
+known and what is assumed is listed in docs/decisions/firmware-points.md.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from mmweaver.signal.firmware_cfar import cfar_detections, detection_matrix, is_
 
 AZIMUTH_BINS = 64
 BLACKMAN = (0.42, 0.5, 0.08)
-RANGE_SCALING = 4  # the last two stages of the range FFT halve
+RANGE_SCALING = 4  # the last two stages of the range FFT divide by two
 INT16 = 32767
 FRAMES_A_BLOCK = 10
 
@@ -29,18 +29,22 @@ Spectrum = Complex[np.ndarray, "frame range doppler antenna"]
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class FirmwareCloud(PointCloud):
-    """A PointCloud with the further outputs of the firmware: `intensity` in the device's counts (mean of antennas).
+    """Points with the additional outputs of the firmware.
 
-    `snr_db`: the detection relative to the noise estimated by its range CFAR (Doppler CFAR if there is none in range).
+    Attributes:
+        intensity: Magnitude in the device's counts, averaged over the antennas.
+        snr_db: Level over the noise estimate of the range CFAR (of the Doppler CFAR if there is none in range).
+        range_bin: Bin of the device's range FFT.
+        doppler_bin: Doppler bin; num_loops // 2 is zero velocity.
     """
 
     intensity: PerPoint
     range_bin: Int[np.ndarray, " point"]
-    doppler_bin: Int[np.ndarray, " point"]  # num_loops // 2 is zero velocity
+    doppler_bin: Int[np.ndarray, " point"]
 
 
 def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = FirmwareSettings()) -> FirmwareCloud:  # noqa: B008
-    """Points of each frame, as the demo's firmware would report them.
+    """Points of each frame, as the firmware of TI's demo would report them.
 
     1. Range FFT (Blackman window, next power of two of the samples, 16-bit results); `static_removal` subtracts the
        mean over the loops; Doppler FFT (Hann window, 16-bit results).
@@ -49,9 +53,19 @@ def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = Fi
        filled column by column from Doppler zero upwards.
     4. Azimuth: the highest of 64 bins of the FFT over the horizontal row, with Doppler compensation by the bin;
        elevation from the phase of the row above; a second azimuth peak where the settings allow.
-    Nothing is interpolated between bins. A cube is first converted back to samples; bins it does not contain are zero.
-    Samples of a recording are taken as ADC counts. Raises InputError for a radar with real samples or fewer than four
-    loops.
+
+    Nothing is interpolated between bins.
+
+    Args:
+        signal: Samples, or a cube, which is converted back to samples; bins that it does not contain are zero. Samples
+            without an absolute scale are taken as ADC counts.
+        settings: Settings of the firmware.
+
+    Returns:
+        Points in the order of the device's list, with the firmware's additional outputs.
+
+    Raises:
+        InputError: For a radar with real samples, simultaneous transmitters, or fewer than four loops.
     """
     adc = adc_from_cube(signal) if isinstance(signal, RadarCube) else signal
     config = adc.config
@@ -67,7 +81,14 @@ def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = Fi
 
 
 def check_firmware_radar(config: RadarConfig) -> None:
-    """Raises InputError for a radar that the firmware does not support."""
+    """Checks that the firmware supports a radar.
+
+    Args:
+        config: The radar.
+
+    Raises:
+        InputError: For a radar with real samples, simultaneous transmitters, or fewer than four loops.
+    """
     if not config.complex_samples or config.num_loops < 4 or config.is_coded:
         raise InputError(
             f"firmware points are for TI radars with complex samples, four loops or more and TDM-MIMO; radar"
@@ -81,7 +102,7 @@ def num_range_bins(config: RadarConfig) -> int:
 
 
 def range_step_m(config: RadarConfig) -> float:
-    """Distance between the device's range bins: finer than the resolution where the FFT is padded."""
+    """Spacing of the device's range bins in metres: finer than the resolution where the FFT is zero-padded."""
     return config.range_resolution_m * config.num_samples / num_range_bins(config)
 
 
@@ -89,12 +110,12 @@ def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = 
     """Range-Doppler spectrum in integer counts of the device.
 
     Args:
-        adc: samples.
-        settings: of the firmware.
-        frames: which, by default all.
+        adc: Samples (frame, loop, tx, rx, sample).
+        settings: Settings of the firmware.
+        frames: Frames to process; by default all.
 
     Returns:
-        (frame, range, doppler, antenna); Doppler bin num_loops // 2 is zero velocity.
+        Spectrum (frame, range, doppler, antenna), complex64; Doppler bin num_loops // 2 is zero velocity.
     """
     config = adc.config
     counts = adc.samples[frames]
@@ -108,13 +129,13 @@ def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = 
     loops = config.num_loops
     slow = one.reshape(len(one), loops, config.num_antennas, size).transpose(0, 3, 1, 2)
     weight = _symmetric_window(loops, (0.5, 0.5, 0.0)).astype(np.float32)[:, None]
-    # every stage but the first halves; the Hann window already halves once
+    # every stage but the first divides by two; the Hann window already does once
     two = _fft(slow * weight, loops, 2) / np.float32(1 << max((loops - 1).bit_length() - 1, 0))
     return _whole(np.fft.fftshift(two, axes=2))
 
 
 def _fft(values: np.ndarray, size: int, axis: int) -> np.ndarray:
-    """FFT of scipy, which preserves single precision."""
+    """FFT by scipy, which preserves single precision."""
     from scipy import fft
 
     return np.asarray(fft.fft(values, n=size, axis=axis))
@@ -138,7 +159,7 @@ def _objects(
     config: RadarConfig,
     settings: FirmwareSettings,
 ) -> dict[str, np.ndarray]:
-    """Objects of one frame in the order of the device's list; `up`: direction cosine in its half wavelengths."""
+    """Objects of one frame in the order of the device's list; `up` is the direction cosine in its half wavelengths."""
     passed, snr = cfar_detections(level, settings, counts_per_octave)
     passed &= is_local_peak(level, settings)
     # the list is filled in FFT order: zero and positive velocities, then negative ones

@@ -1,4 +1,4 @@
-"""Detection matrix of TI's demo, its CFAR along range and Doppler in integer logarithms, and its peak grouping."""
+"""Detection matrix of TI's demo, its CFAR in range and Doppler on integer logarithms, and its peak grouping."""
 
 from dataclasses import dataclass
 
@@ -14,8 +14,13 @@ Level = Int[np.ndarray, "range doppler"]
 
 @dataclass(frozen=True, kw_only=True)
 class DetectionMatrix:
-    """`level` (frame, range, doppler), integers: log2 of the magnitudes' geometric mean, times
-    `counts_per_octave`."""
+    """Detection matrix in the device's integer format.
+
+    Attributes:
+        level: (frame, range, doppler), log2 of the geometric mean of the antennas' magnitudes times
+            `counts_per_octave`.
+        counts_per_octave: Counts per factor of two in magnitude.
+    """
 
     level: Int[np.ndarray, "frame range doppler"]
     counts_per_octave: float
@@ -23,6 +28,10 @@ class DetectionMatrix:
 
 def counts_per_db(device: str, num_antennas: int) -> float:
     """Threshold counts per dB.
+
+    Args:
+        device: "xwr14xx" or "xwr16xx".
+        num_antennas: Number of virtual antennas.
 
     >>> round(1280 / counts_per_db("xwr14xx", 8), 1), round(1280 / counts_per_db("xwr14xx", 12), 1)
     (15.1, 20.1)
@@ -34,7 +43,12 @@ def counts_per_db(device: str, num_antennas: int) -> float:
 
 
 def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:
-    """Sum of the antennas' log2 magnitudes: Q8 ("xwr16xx"), or Q9 divided by a power of two ("xwr14xx")."""
+    """Sum of the antennas' log2 magnitudes: Q8 ("xwr16xx"), or Q9 divided by a power of two ("xwr14xx").
+
+    Args:
+        spectrum: Range-Doppler spectrum in counts, (frame, range, doppler, antenna).
+        device: "xwr14xx" or "xwr16xx".
+    """
     num = spectrum.shape[-1]
     octaves = np.log2(np.maximum(np.abs(spectrum), 1))  # the device's logarithm of 0 is 0
     if device == "xwr16xx":
@@ -48,7 +62,17 @@ def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"
 def cfar_detections(
     level: Level, settings: FirmwareSettings, counts_per_octave: float
 ) -> tuple[Bool[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"]]:
-    """Cells that pass every CFAR of the settings, and their level over the noise of the first CFAR in dB."""
+    """Applies every CFAR stage of the settings.
+
+    Args:
+        level: Detection matrix (range, doppler) of one frame.
+        settings: Settings of the firmware.
+        counts_per_octave: As in `DetectionMatrix`.
+
+    Returns:
+        Mask (range, doppler) of the cells that pass all stages, and their level in dB over the noise of the first
+        stage.
+    """
     passed = np.ones(level.shape, bool)
     over: np.ndarray | None = None
     for cfar, is_doppler in ((settings.range_cfar, False), (settings.doppler_cfar, True)):
@@ -69,9 +93,17 @@ def cfar_detections(
 def noise_level(level: Int[np.ndarray, "along across"], cfar: FirmwareCfar, half: int) -> Int[np.ndarray, "along _"]:
     """Noise level at each cell along the first axis, from `half` cells on either side beyond the guard cells.
 
-    "ca" shifts the sum of both sides right by `noise_shift`, "caso" and "cago" the smaller or greater side by one
+    "ca" shifts the sum of both sides right by `noise_shift`, "caso" and "cago" the smaller or greater side by one bit
     less. Without `cyclic`, a cell near one end uses the other side only; if both sides are missing, its noise is
     infinite.
+
+    Args:
+        level: Detection matrix (along, across).
+        cfar: Settings of the stage.
+        half: Number of training cells on either side.
+
+    Returns:
+        Noise level (along, across), integers.
     """
     num = len(level)
     reach = cfar.guard + half
@@ -104,8 +136,15 @@ def _padded(level: np.ndarray, reach: int, cyclic: bool) -> np.ndarray:
 def is_local_peak(level: Level, settings: FirmwareSettings) -> Bool[np.ndarray, "range doppler"]:
     """Cells within the configured range bins that no neighbour exceeds.
 
-    Neighbours: the eight around with grouping in range and Doppler, the two along the one direction that is grouped,
+    Neighbours are the eight around with grouping in range and Doppler, the two along the one direction that is grouped,
     none without grouping. Doppler is cyclic; cells outside the configured range bins are ignored.
+
+    Args:
+        level: Detection matrix (range, doppler) of one frame.
+        settings: Settings of the firmware.
+
+    Returns:
+        Mask (range, doppler).
     """
     rows = np.arange(len(level))
     inside = (rows >= settings.first_range_bin) & (rows <= settings.last_range_bin)

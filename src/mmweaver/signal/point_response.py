@@ -1,15 +1,15 @@
-"""What one point echo leaves in a radar's cube, as a product of three short factors.
+"""Response of a radar's cube to one point echo, as a product of three short factors.
 
-In a cube whose phase is counted from the middle of the chirp and of the frame (`PointResponse.phasor` removed), a
+In a cube whose phase refers to the middle of the chirp and of the frame (`PointResponse.phasor` removed), a
 point of amplitude a at range bin b and Doppler bin f gives
 
     K_r(r - b) K_d(d - f) a S[antenna]                      (the point itself)
     - j M/(2 pi) m K_r'(r - b) K_d'(d - f) a S[antenna]     (its migration through range bins, m bins per loop)
-    + q[antenna] K_r'(r - b) K_d(d - f) a S[antenna]        (an antenna off the middle is q bins nearer to it)
+    + q[antenna] K_r'(r - b) K_d(d - f) a S[antenna]        (an antenna off the centre is q bins closer to it)
 
-with S = exp(-j 2 pi u.p / wavelength + j 2 pi f s + near field), s the delay of the antenna's transmitter over the
-frame's length: the cube's TDM compensation is made for a bin's velocity, so a point between bins keeps
-exp(j 2 pi (f - d) s). The near field is the wavefront's curvature at the range of the point, to second order.
+with S = exp(-j 2 pi u.p / wavelength + j 2 pi f s + near field), s the delay of the antenna's transmitter relative to
+the length of the frame: the TDM compensation of the cube assumes the velocity of a bin, so a point between bins keeps
+exp(j 2 pi (f - d) s). The near field is the curvature of the wavefront at the range of the point, to second order.
 K_r and K_d are the spectra of the windows. Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
@@ -26,7 +26,7 @@ from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.signal import windows
 from mmweaver.signal.window_kernels import WindowKernel
 
-FLAT_WAVELENGTHS = 0.05  # an array lower than this cannot tell elevation
+FLAT_WAVELENGTHS = 0.05  # an aperture below this cannot resolve direction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,12 +37,12 @@ class Axes(TensorRecord):
     doppler_bin: Tensor  # (doppler,) bins of the Doppler transform, zero at rest
     place: Tensor  # (antenna, 2) x and z in wavelengths
     delay: Tensor  # (antenna,) delay of the transmitter, in lengths of the frame
-    parts: Tensor  # (2, antenna, 2) the transmitter's and the receiver's share of the place
+    parts: Tensor  # (2, antenna, 2) x and z of the transmitter and of the receiver, in wavelengths
 
 
 @dataclass(frozen=True, kw_only=True)
 class Points(TensorRecord):
-    """Parameters of scatterers, float tensors (..., point); units of the response they are used with."""
+    """Scatterers as float tensors (..., point), in the units of the response they are used with."""
 
     range_bin: Tensor
     doppler_bin: Tensor
@@ -51,12 +51,23 @@ class Points(TensorRecord):
 
 
 class PointResponse:
-    """The response of one radar, or of one of its frames of other length.
+    """Response of one radar to point echoes, in bins of range and Doppler.
 
-    `doppler_window` replaces the Hann window over loops; its length is the number of loops then.
+    Attributes:
+        velocity_a_bin_mps: Velocity per Doppler bin in m/s.
+        range_a_bin_m: Range per range bin in metres.
+        migration: Range migration in bins per loop and Doppler bin.
+        coupling: Range-Doppler coupling: shift in range bins per Doppler bin.
+        num_directions: Number of direction cosines that the array resolves.
     """
 
     def __init__(self, config: RadarConfig, doppler_window: np.ndarray | None = None):
+        """Tabulates the window spectra.
+
+        Args:
+            config: The radar.
+            doppler_window: Window (loop,) over the loops, which also sets their number; by default that of the cube.
+        """
         window = windows.doppler_window(config.num_loops) if doppler_window is None else doppler_window
         self.config = config
         self.num_loops = len(window)
@@ -66,10 +77,9 @@ class PointResponse:
         length_s = self.num_loops * config.loop_period_s
         self.velocity_a_bin_mps = config.wavelength_m / (2 * length_s)
         self.range_a_bin_m = config.range_resolution_m
-        # migration through range bins, in bins per loop for each Doppler bin
         self.migration = self.velocity_a_bin_mps * config.loop_period_s / self.range_a_bin_m
         self.delay = config.antenna_delay_s / length_s
-        # a Doppler shift moves the beat frequency too
+        # a Doppler shift changes the beat frequency, too
         self.coupling = config.num_samples / config.sample_rate_hz / length_s
         place = config.antenna_position_m[:, [0, 2]] / config.wavelength_m
         self.num_directions = 1 if np.ptp(place[:, 1]) < FLAT_WAVELENGTHS else 2
@@ -77,7 +87,7 @@ class PointResponse:
             self.num_directions = 0
 
     def axes(self, grid: CubeGrid | None = None) -> Axes:
-        """The cells of a grid of this radar; without one, the radar's own."""
+        """The cells of a grid of this radar; by default those of the radar's own cube."""
         config = self.config
         if grid is None:
             range_bin = config.first_range_bin + np.arange(config.num_range_bins)
@@ -97,9 +107,15 @@ class PointResponse:
         )
 
     def phasor(self, axes: Axes) -> Tensor:
-        """exp(-j pi (r + 2 m d) - j 2 pi d s) (range, doppler, antenna): centred, compensated phase -> the cube's.
+        """Phase of the cube relative to centred, compensated phase, exp(-j pi (r + 2 m d) - j 2 pi d s).
 
-        m is the middle of the Doppler window in lengths of the frame.
+        m is the middle of the Doppler window relative to the length of the frame.
+
+        Args:
+            axes: Cells to render.
+
+        Returns:
+            Phasors (range, doppler, antenna), complex64.
         """
         late = self._doppler_middle + axes.delay.double()  # (antenna,)
         turns = -0.5 * axes.range_bin[:, None, None].double() - axes.doppler_bin[None, :, None].double() * late
@@ -107,7 +123,15 @@ class PointResponse:
         return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
 
     def factors(self, points: Points, axes: Axes) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
-        """K_r, K_r' (..., point, range), K_d, K_d' (..., point, doppler), S (..., point, antenna)."""
+        """Separable factors of points.
+
+        Args:
+            points: Points (..., point).
+            axes: Cells to render.
+
+        Returns:
+            K_r and K_r' (..., point, range), K_d and K_d' (..., point, doppler), S (..., point, antenna).
+        """
         at_range, range_slope = self.range_kernel(axes.range_bin - points.range_bin[..., None])
         at_doppler, doppler_slope = self.doppler_kernel(axes.doppler_bin - points.doppler_bin[..., None])
         turns = points.doppler_bin[..., None] * axes.delay - points.direction @ axes.place.T
@@ -115,7 +139,16 @@ class PointResponse:
         return at_range, range_slope, at_doppler, doppler_slope, torch.complex(torch.cos(angle), torch.sin(angle))
 
     def render(self, points: Points, axes: Axes, base: Tensor | None = None) -> Tensor:
-        """Sum of the points in centred phase, complex (..., range, doppler, antenna), added to `base` if given."""
+        """Sum of the responses of points, in centred phase.
+
+        Args:
+            points: Points (..., point).
+            axes: Cells to render.
+            base: Cube to add to; by default zero.
+
+        Returns:
+            Values (..., range, doppler, antenna), complex64.
+        """
         at_range, range_slope, at_doppler, doppler_slope, steer = self.factors(points, axes)
         echo = points.amplitude[..., None] * steer
         along = self.num_loops / (2 * math.pi) * self.migration * points.doppler_bin[..., None]
@@ -130,16 +163,16 @@ class PointResponse:
         return torch.view_as_complex(flat.reshape(shape))
 
     def _curvature(self, points: Points, axes: Axes) -> Tensor:
-        """Turns (..., point, antenna) by which a spherical wavefront lags a flat one: (|x|^2 - (u.x)^2) / (2 R)."""
+        """Near-field phase in cycles (..., point, antenna) relative to a plane wave: (|x|^2 - (u.x)^2) / (2 R)."""
         range_wavelengths = points.range_bin.clamp(min=1.0) * (self.range_a_bin_m / self.config.wavelength_m)
         square = (axes.parts**2).sum(dim=(0, 2))
         along = sum((points.direction @ part.T) ** 2 for part in axes.parts)
         return (square - along) / (2 * range_wavelengths[..., None])
 
     def _nearest(self, place_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Delay (antenna,) and places (2, antenna, 3) of transmitter and receiver, those of the nearest own antenna.
+        """Delay (antenna,) and positions (2, antenna, 3) of transmitter and receiver of the nearest own antenna.
 
-        What a place lies off its antenna is shared by its two ends.
+        The offset of a place from its antenna is split evenly between both.
         """
         config = self.config
         gap = np.linalg.norm(place_m[:, None] - config.antenna_position_m[None], axis=-1)

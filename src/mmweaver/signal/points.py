@@ -14,9 +14,9 @@ from mmweaver.signal.cfar import CfarCells, CfarResult, ca_cfar
 from mmweaver.signal.spectra import moving_doppler, range_doppler_power, steering
 from mmweaver.signal.windows import MIN_HANN_LOOPS
 
-LAST_SHARE = 0.95  # of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
-AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; in a cell
-NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
+LAST_SHARE = 0.95  # usable share of the range axis of complex samples; TI's receivers pass 0.9 of the sampling rate
+AZIMUTH_PEAK_DB, MAX_AZIMUTH_PEAKS = 6.0, 3  # below the highest peak of a cell; per cell
+NUM_DIRECTION_COSINES = 129  # spaced by a sixteenth of the beamwidth of eight antennas
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,21 +37,24 @@ def point_cloud(
     max_points_per_frame: int = 128,
     moving_only: bool = False,
 ) -> PointCloud:
-    """Detections in the radar's frame of reference, range, velocity and azimuth interpolated between bins.
+    """Detections in the radar's coordinates, with range, velocity and azimuth interpolated between bins.
 
     1. Cell-averaging CFAR on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
-    2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the cell's highest is a point of its own,
-       three at most.
+    2. Azimuth by beamforming on the horizontal row: every peak within 6 dB of the highest of the cell is a separate
+       point, up to three.
     3. Elevation from the phase between two rows, 0 where the array has none.
 
     Args:
-        cube: of any radar.
-        false_alarm_rate: of a cell of noise.
-        max_points_per_frame: the strongest (by SNR) are kept.
-        moving_only: without the Doppler bins of static clutter.
+        cube: The cube.
+        false_alarm_rate: Probability that a cell of noise is detected.
+        max_points_per_frame: Limit; the points of highest SNR are kept.
+        moving_only: Whether the Doppler bins of static clutter are omitted.
+
+    Returns:
+        Points of all frames, in each frame by decreasing SNR.
 
     Raises:
-        InputError: for a limit below 1.
+        InputError: For a limit below 1.
     """
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
@@ -113,14 +116,19 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
 
 
 def _is_wrapped(config: RadarConfig) -> Bool[np.ndarray, " range"]:
-    """The end of the range axis of complex samples: it follows on range 0, whose leakage it shows again, and lies
-    beyond the receiver's passband."""
+    """The end of the range axis of complex samples.
+
+    It is adjacent to range 0 by aliasing, repeats its leakage, and lies outside the receiver's passband.
+    """
     bins = config.first_range_bin + np.arange(config.num_range_bins)
     return (bins >= LAST_SHARE * config.num_samples) & config.complex_samples
 
 
 def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
-    """Local maxima along range, or along Doppler (cyclic); with fewer than four loops the strongest of each range."""
+    """Local maxima along range or along Doppler (cyclic).
+
+    With fewer than four loops the strongest of each range bin.
+    """
     padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
     along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
     if power.shape[2] < MIN_HANN_LOOPS:
@@ -148,7 +156,7 @@ def _azimuth_peaks(
         return np.arange(len(signal)), np.zeros(len(signal)), np.zeros(len(signal))
     cosine = np.linspace(-1, 1, NUM_DIRECTION_COSINES)
     direction = np.stack([cosine, np.zeros_like(cosine), np.zeros_like(cosine)])
-    # Not BLAS: on some processors a row of its product depends on how many rows there are.
+    # Not BLAS: on some processors a row of its product depends on the number of rows.
     spectrum = np.abs(np.einsum("ca,ad->cd", signal[:, row], steering(cube, row, direction))) ** 2
     inner = spectrum[:, 1:-1]
     is_peak = (inner >= spectrum[:, :-2]) & (inner > spectrum[:, 2:])

@@ -1,7 +1,7 @@
-"""Slow time over frames: Doppler, phase and displacement where a frame has too few loops, or where motion is slow.
+"""Slow time across frames, for radars with few loops per frame or for slow motion: Doppler, phase and displacement.
 
-Each frame gives one complex value per range bin and antenna, its zero-Doppler value. A movement by less than a range
-bin turns the phase of its cell by 4 pi / wavelength per metre; displacement is positive = moving away.
+Each frame gives one complex value per range bin and antenna, its value at zero Doppler. A displacement within a range
+bin changes the phase of its cell by 4 pi / wavelength per metre; displacement is positive away from the radar.
 Reference: docs/radar_primer.md, equation 7; Taubin, "Estimation of planar curves...", IEEE PAMI 13, 1991 (circle fit).
 """
 
@@ -18,30 +18,36 @@ MIN_FRAMES = 8
 MIN_BINS = 2.5
 MIN_MOVING_SHARE = 1e-3  # moving power of a cell relative to the strongest
 MAX_RESIDUAL = 0.35  # of a circle fit, relative to the radius
-MAX_RADIUS = 10.0  # relative to the spread of the points: beyond, the arc is too short to have a centre
+MAX_RADIUS = 10.0  # relative to the spread of the points; on a larger circle the arc is too short to fit
 
 
 @dataclass(frozen=True, kw_only=True)
 class SlowTimeCell:
-    """A range bin over the frames of a recording, its antennas combined for the strongest movement in it."""
+    """One range bin over the frames of a recording, with its antennas combined for the strongest motion."""
 
     range_m: float
-    moving_power: float  # mean over the frames, minus the mean value, in units of the cube squared
+    moving_power: float  # mean power after subtraction of the mean, in squared units of the cube
     signal: Complex[np.ndarray, " frame"]
     phase_rad: Float[np.ndarray, " frame"]  # unwrapped, about the centre of its circle
     displacement_m: Float[np.ndarray, " frame"]  # relative to its mean, positive = away
-    has_centre: bool  # whether a circle was found; else the phase is about zero or the mean
+    has_centre: bool  # whether a circle was found; otherwise the phase is about zero or the mean
 
 
 def zero_doppler(cube: RadarCube) -> Complex[np.ndarray, "frame range antenna"]:
-    """One value per frame: that of zero Doppler, the windowed mean of its loops."""
+    """Values at zero Doppler, the windowed mean over the loops of each frame, (frame, range, antenna)."""
     return cube.values[:, :, cube.config.num_loops // 2]
 
 
 def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler"], Float[np.ndarray, " doppler"]]:
-    """Power (range, doppler) of all frames at once, mean of the antennas, and its velocities in m/s, ascending.
+    """Doppler spectrum over all frames of a recording, averaged over the antennas.
 
     The mean over the frames is removed first. Velocities reach +- wavelength / (4 frame period).
+
+    Args:
+        cube: The cube.
+
+    Returns:
+        Power (range, doppler), and its velocities (doppler,) in m/s, increasing.
     """
     still = zero_doppler(cube)
     moving = still - still.mean(axis=0)
@@ -53,11 +59,11 @@ def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler
 
 
 def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
-    """The range bins with the most movement over the frames, strongest first, each a local maximum along range.
+    """The range bins with the strongest motion across frames, strongest first, each a local maximum along range.
 
     Args:
-        cube: of at least 8 frames; of fewer there are none.
-        count: at most so many.
+        cube: Cube of at least 8 frames; shorter ones give no cells.
+        count: Maximum number of cells.
     """
     still = zero_doppler(cube)
     if len(still) < MIN_FRAMES:
@@ -65,7 +71,7 @@ def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
     moving = still - still.mean(axis=0)
     power = (np.abs(moving) ** 2).mean(axis=(0, 2))
     padded = np.pad(power, 1)
-    # the first bins hold the transmitters' leakage, and at zero beat frequency real samples have no phase
+    # the first bins contain the TX-RX leakage, and at zero beat frequency real samples have no phase
     is_far = cube.grid.range_m >= MIN_BINS * cube.config.range_resolution_m
     is_peak = (
         is_far
@@ -79,7 +85,7 @@ def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
 
 
 def _cell(cube: RadarCube, values: np.ndarray, index: int, power: float) -> SlowTimeCell:
-    """Of one range bin's values (frame, antenna)."""
+    """The cell of one range bin's values (frame, antenna)."""
     moving = (values - values.mean(axis=0)).astype(np.complex128)
     _, vectors = np.linalg.eigh(moving.conj().T @ moving)
     signal = values @ vectors[:, -1]
@@ -98,14 +104,20 @@ def _cell(cube: RadarCube, values: np.ndarray, index: int, power: float) -> Slow
 
 
 def _steadier(signal: np.ndarray) -> complex:
-    """Zero or the mean, whichever the values keep a steadier distance from."""
+    """Zero or the mean of the values, whichever they keep the steadier distance from."""
     mean = complex(signal.mean())
     spread = [np.abs(signal - one).std() / max(float(np.abs(signal - one).mean()), 1e-30) for one in (0.0, mean)]
     return mean if spread[1] < spread[0] else 0j
 
 
 def circle_centre(signal: Complex[np.ndarray, " sample"]) -> complex | None:
-    """Centre of the circle on which complex values lie, by Taubin's fit; None where they lie on none.
+    """Centre of the circle on which complex values lie, by Taubin's fit.
+
+    Args:
+        signal: Values (sample,).
+
+    Returns:
+        The centre; None where the values do not lie on a circle.
 
     >>> turn = np.exp(1j * np.linspace(0, 2, 50))
     >>> complex(np.round(circle_centre(3 + 1j + 2 * turn), 6))

@@ -1,4 +1,4 @@
-"""Power maps of a cube: range-Doppler, range-azimuth, range-elevation, averaged over the antennas used."""
+"""Power maps of a cube: range-Doppler, range-azimuth and range-elevation."""
 
 import math
 
@@ -23,7 +23,14 @@ __all__ = [
 
 
 def range_doppler_power(cube: RadarCube) -> RangeDopplerMap:
-    """Mean over the antennas of |cube|^2, (frame, range, doppler)."""
+    """Range-Doppler power, averaged over the antennas.
+
+    Args:
+        cube: The cube.
+
+    Returns:
+        |value|^2, float64 (frame, range, doppler), in squared units of the cube.
+    """
     values = cube.values
     real, imaginary = np.real(values), np.imag(values)
     power = np.einsum("frda,frda->frd", real, real, dtype=np.float64)
@@ -32,17 +39,27 @@ def range_doppler_power(cube: RadarCube) -> RangeDopplerMap:
 
 
 def azimuth_axis_rad(num: int = 91, limit_deg: float = 60.0) -> PerAngle:
-    """Angles from -limit to +limit, for azimuth (positive = right)."""
+    """Azimuth angles in rad, positive to the right.
+
+    Args:
+        num: Number of angles.
+        limit_deg: Largest angle in degrees; the axis is symmetric.
+    """
     return np.linspace(-math.radians(limit_deg), math.radians(limit_deg), num)
 
 
 def elevation_axis_rad(num: int = 61, limit_deg: float = 40.0) -> PerAngle:
-    """Angles from -limit to +limit, for elevation (positive = up)."""
+    """Elevation angles in rad, positive upwards.
+
+    Args:
+        num: Number of angles.
+        limit_deg: Largest angle in degrees; the axis is symmetric.
+    """
     return np.linspace(-math.radians(limit_deg), math.radians(limit_deg), num)
 
 
 def moving_doppler(cube: RadarCube) -> Bool[np.ndarray, " doppler"]:
-    """Mask of the Doppler bins without Hann-windowed static clutter: all but zero and its two neighbours.
+    """Mask (doppler,) of the Doppler bins without Hann-windowed static clutter: all but zero and its two neighbours.
 
     With fewer than five loops, only bin zero is excluded.
     """
@@ -51,21 +68,21 @@ def moving_doppler(cube: RadarCube) -> Bool[np.ndarray, " doppler"]:
 
 
 def noise_power(cube: RadarCube) -> float | None:
-    """Noise power per cell: the median outside static Doppler bins. None for a radar of one loop."""
+    """Noise power per cell: the median outside the Doppler bins of static clutter; None for a radar with one loop."""
     moving = moving_doppler(cube)
     return float(np.median(range_doppler_power(cube)[:, :, moving])) if moving.any() else None
 
 
 def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:
-    """Beamforming on the array's horizontal row, power summed over Doppler.
+    """Beamforming on the array's horizontal row, with power summed over Doppler.
 
     Args:
-        cube: of any radar.
-        azimuth_rad: angles, positive to the right.
-        moving_only: without the Doppler bins of static clutter.
+        cube: The cube.
+        azimuth_rad: Angles (azimuth,), positive to the right.
+        moving_only: Whether the Doppler bins of static clutter are omitted.
 
     Returns:
-        Power (frame, range, azimuth): a lone scatterer that gives amplitude a at every antenna shows a^2 (summed over
+        Power (frame, range, azimuth): a single scatterer of amplitude a at every antenna gives a^2 (summed over
         its Doppler cells) at its angle.
     """
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
@@ -74,21 +91,21 @@ def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: 
 
 
 def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:
-    """Beamforming within columns, power summed over Doppler and averaged over columns.
+    """Beamforming within columns, with power summed over Doppler and averaged over columns.
 
-    Each of the tallest columns is beamformed by itself, so the target's azimuth does not matter; columns of two
+    Each of the tallest columns is beamformed separately, so the target's azimuth does not matter; columns of two
     antennas give a wide beam.
 
     Args:
-        cube: of a radar with elevation.
-        elevation_rad: angles, positive upwards.
-        moving_only: without the Doppler bins of static clutter.
+        cube: Cube of a radar with elevation.
+        elevation_rad: Angles (elevation,), positive upwards.
+        moving_only: Whether the Doppler bins of static clutter are omitted.
 
     Returns:
         Power (frame, range, elevation).
 
     Raises:
-        InputError: for an array without elevation (see `has_elevation`).
+        InputError: For an array without elevation (see `has_elevation`).
     """
     columns = elevation_columns(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     if not columns:
@@ -103,22 +120,25 @@ def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_on
 def steering(
     cube: RadarCube, antennas: PerIndex, direction: Float[np.ndarray, "3 angle"]
 ) -> Complex[np.ndarray, "_ angle"]:
-    """Steering phasors exp(+j 2 pi / wavelength u.p), which align a far target.
+    """Steering phasors exp(+j 2 pi / wavelength u.p), which align the signal of a far target.
 
     Args:
-        cube: of the radar.
-        antennas: indices.
-        direction: unit vectors u (3, angle).
+        cube: The cube, for its antenna positions.
+        antennas: Indices of the antennas.
+        direction: Unit vectors u (3, angle).
 
     Returns:
-        (antenna, angle), complex.
+        Phasors (antenna, angle), complex.
     """
     path_m = cube.grid.antenna_position_m[antennas] @ direction
     return np.exp(2j * np.pi / cube.grid.wavelength_m * path_m)
 
 
 def _beam_power(cube: RadarCube, groups: list[PerIndex], direction: np.ndarray, moving_only: bool) -> RangeAngleMap:
-    """Each group beamformed coherently, groups averaged in power; by covariance over Doppler, so cheap in angles."""
+    """Power beamformed coherently within each group and averaged over groups.
+
+    Uses the covariance summed over Doppler, so the cost per angle is small.
+    """
     bins = moving_doppler(cube) if moving_only else slice(None)
     power = np.zeros((*cube.values.shape[:2], direction.shape[1]))
     for antennas in groups:

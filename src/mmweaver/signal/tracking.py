@@ -1,8 +1,8 @@
-"""People over time: clusters of moving points, followed by one Kalman filter each.
+"""Tracking of people: clusters of moving points, followed by one Kalman filter each.
 
-The state is place and velocity on the floor plane; a cluster is its points' median place and radial velocity. Clusters
-and tracks are matched by least total distance (Hungarian method) within a gate. A track counts once it was seen in
-several frames, and ends where it has not been seen for a while: a person who stops is lost.
+The state is position and velocity on the floor plane; a measurement is the median position of a cluster. Clusters
+and tracks are assigned by least total distance (Hungarian method) within a gate. A track counts once it has been
+observed in several frames, and ends when it has not been observed for a while, so a person who stops is lost.
 Reference: Blackman and Popoli, "Design and Analysis of Modern Tracking Systems", 1999, ch. 3 and 6.
 """
 
@@ -17,19 +17,19 @@ from mmweaver.core.shapes import PerFrame
 from mmweaver.signal.clustering import NOISE, dbscan
 
 REACH_M = 0.5  # between points of one person
-VELOCITY_WEIGHT_S = 0.2  # metres that a difference of 1 m/s counts
+VELOCITY_WEIGHT_S = 0.2  # distance in metres that corresponds to a difference of 1 m/s
 MIN_POINTS = 4
 GATE = 9.2  # 99 % of a chi-square with two degrees of freedom
 PLACE_SD_M = 0.15
 ACCELERATION_SD_MPS2 = 2.0
 FIRST_VELOCITY_SD_MPS = 1.0
-SEEN_FRAMES = 4  # of a track that counts
-LOST_S = 0.7
+SEEN_FRAMES = 4  # minimum number of observations of a track
+LOST_S = 0.7  # time without observations after which a track ends
 
 
 @dataclass(frozen=True, kw_only=True)
 class PersonTrack:
-    """One person's path on the floor plane, smoothed, at the frames from first to last sight."""
+    """One person's smoothed path on the floor plane, from the first to the last observation."""
 
     frame: Int[np.ndarray, " step"]
     time_s: Float[np.ndarray, " step"]
@@ -40,6 +40,7 @@ class PersonTrack:
 
     @property
     def mean_speed_mps(self) -> float:
+        """Mean speed on the floor plane in m/s."""
         return float(np.linalg.norm(self.velocity_mps, axis=1).mean())
 
 
@@ -54,7 +55,14 @@ class _Track:
 
 
 def cluster_points(points: PointCloud) -> Int[np.ndarray, " point"]:
-    """The cluster of each point within its frame (position in 3-D and radial velocity); -1 for noise."""
+    """Clusters of points within each frame, by 3-D position and radial velocity.
+
+    Args:
+        points: Points of all frames.
+
+    Returns:
+        Cluster (point,) of each point, numbered per frame from 0; -1 for noise.
+    """
     labels = np.full(len(points.frame), NOISE)
     where = np.stack([points.x_m, points.y_m, points.z_m, VELOCITY_WEIGHT_S * points.radial_velocity_mps], axis=1)
     for frame in np.unique(points.frame):
@@ -67,8 +75,8 @@ def track_people(points: PointCloud, frame_time_s: PerFrame) -> list[PersonTrack
     """Tracks of people, the longest first.
 
     Args:
-        points: moving ones (`point_cloud(..., moving_only=True)`).
-        frame_time_s: of all frames.
+        points: Moving points (`point_cloud(..., moving_only=True)`).
+        frame_time_s: Times (frame,) of all frames in seconds.
     """
     labels = cluster_points(points)
     tracks: list[_Track] = []
@@ -96,7 +104,7 @@ def _predict(track: _Track, step_s: float) -> None:
 
 
 def _assign(tracks: list[_Track], points: PointCloud, labels: np.ndarray, frame: int) -> None:
-    """Updates tracks by the clusters of a frame, and starts new ones."""
+    """Updates tracks by the clusters of a frame, and starts new tracks."""
     own = points.frame == frame
     clusters = [own & (labels == label) for label in range(int(labels[own].max(initial=NOISE)) + 1)]
     places = [np.array([np.median(points.x_m[one]), np.median(points.y_m[one])]) for one in clusters]

@@ -1,7 +1,7 @@
 """Breathing and heart rate from the displacement of a cell over time.
 
-A rate is the strongest frequency in its band; it counts where it stands clear of the rest of the band and the recording
-is long enough. Harmonics of the breathing are left out of the search for the heart.
+A rate is the strongest frequency in its band; it is valid where it stands out from the rest of the band and the
+recording is long enough. Harmonics of the breathing are excluded from the search for the heart rate.
 Reference: Alizadeh et al., "Remote monitoring of human vital signs using mm-wave FMCW radar", IEEE Access 7, 2019.
 """
 
@@ -13,17 +13,17 @@ from scipy import signal as scipy_signal
 
 BREATHING_HZ = (0.1, 0.7)
 HEART_HZ = (0.8, 2.5)
-CLEAR_DB = 8.0  # peak over the band's median; the heart is fainter among more harmonics
+CLEAR_DB = 8.0  # peak over the band's median; the heart is weaker, among more harmonics
 CLEAR_HEART_DB = 12.0
 MIN_PERIODS = 2.0
-PAD = 8  # times longer spectra: a grid to find the peak on
+PAD = 8  # zero-padding factor of the spectra
 HARMONICS = 12
-MAX_BREATHING_M, MIN_BREATHING_M = 40e-3, 0.1e-3  # peak to peak: more is walking, less is noise
+MAX_BREATHING_M, MIN_BREATHING_M = 40e-3, 0.1e-3  # peak to peak: more is walking, anything below is noise
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rate:
-    """A rate of a vital sign; `is_clear` where it can be believed."""
+    """Rate of a vital sign; `is_clear` where it is reliable."""
 
     frequency_hz: float
     per_minute: float
@@ -32,14 +32,14 @@ class Rate:
 
 
 def breathing_rate(displacement_m: Float[np.ndarray, " frame"], period_s: float) -> Rate | None:
-    """The breathing rate.
+    """Breathing rate from the displacement of a chest.
 
     Args:
-        displacement_m: (frame,), of a chest.
-        period_s: between frames.
+        displacement_m: Displacement (frame,) in metres.
+        period_s: Frame period in seconds.
 
     Returns:
-        The rate; None for a recording shorter than two of the slowest breaths that would count.
+        The rate; None for a recording too short for two periods of the fastest breathing.
     """
     detrended = scipy_signal.detrend(displacement_m)
     found = _rate(detrended, period_s, BREATHING_HZ)
@@ -53,15 +53,15 @@ def breathing_rate(displacement_m: Float[np.ndarray, " frame"], period_s: float)
 def heart_rate(
     displacement_m: Float[np.ndarray, " frame"], period_s: float, breathing: Rate | None = None
 ) -> Rate | None:
-    """The heart rate, from the velocity of the skin, away from the harmonics of the breathing.
+    """Heart rate from the velocity of the skin, outside the harmonics of the breathing.
 
     Args:
-        displacement_m: (frame,), of a chest.
-        period_s: between frames.
-        breathing: its rate, if known.
+        displacement_m: Displacement (frame,) of a chest in metres.
+        period_s: Frame period in seconds.
+        breathing: The breathing rate, if known.
 
     Returns:
-        The rate; None where frames are too far apart (fewer than 5 per second) or too few.
+        The rate; None where there are fewer than 5 frames per second, or too few frames.
     """
     if 1 / period_s < 2 * HEART_HZ[1]:
         return None
@@ -100,7 +100,7 @@ def _rate(
 
 
 def _band(values: np.ndarray, period_s: float, band_hz: tuple[float, float]) -> np.ndarray:
-    """What lies within a band."""
+    """The components within a frequency band."""
     spectrum = np.fft.rfft(values)
     frequency_hz = np.fft.rfftfreq(len(values), period_s)
     spectrum[(frequency_hz < band_hz[0]) | (frequency_hz > band_hz[1])] = 0

@@ -1,4 +1,4 @@
-"""The spectrum of a window that is symmetric about its middle: real, even, and smooth."""
+"""Spectrum of a window that is symmetric about its middle: real, even and smooth."""
 
 import numpy as np
 import torch
@@ -6,11 +6,11 @@ from jaxtyping import Float
 from torch import Tensor
 
 STEPS_A_BIN = 32
-PHASES = 16  # pieces per bin of the table for bins one apart, accurate to 3e-6
+PHASES = 16  # pieces per bin of the table for whole-bin steps, accurate to 3e-6
 
 
 class WindowKernel:
-    """Response K(x) of a window at x bins from a tone, counted from the window's middle m; K(0) = 1.
+    """Response K(x) of a window at x bins from a tone, with phase relative to the window's middle m; K(0) = 1.
 
     K(x) = sum_n w[n] cos(2 pi x (n - m) / N) / sum(w). m is N/2 for windows with w[n] = w[N - n] and w[0] = 0 (a
     periodic Hann), (N - 1)/2 for those with w[n] = w[N - 1 - n] (a rectangle). Piecewise cubic, accurate to 1e-6. The
@@ -18,6 +18,14 @@ class WindowKernel:
     """
 
     def __init__(self, window: Float[np.ndarray, " num"]):
+        """Tabulates the spectrum.
+
+        Args:
+            window: Window (num,), symmetric about its middle.
+
+        Raises:
+            ValueError: For a window that is not symmetric.
+        """
         num = len(window)
         if np.allclose(window[1:], window[1:][::-1]) and abs(window[0]) <= 1e-9 * window.max():
             self.middle = num / 2
@@ -31,11 +39,18 @@ class WindowKernel:
         self._changes_sign = round(2 * self.middle) % 2 == 1  # from one period to the next
         place = np.arange(0, num * STEPS_A_BIN // 2 + 2 * STEPS_A_BIN) / STEPS_A_BIN
         value, slope = _spectrum(self._window, self.middle, place)
-        # (coefficient, piece): four short lookups are four times as fast as one long one
+        # (coefficient, piece): four short lookups are four times faster than one long one
         self._pieces = torch.from_numpy(_cubics(value, slope / STEPS_A_BIN).T.copy()).to(torch.float32)
 
     def __call__(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Value and slope (per bin) at any x; differentiable."""
+        """Value and slope (per bin) of K; differentiable.
+
+        Args:
+            x: Offsets (...) in bins, of any size.
+
+        Returns:
+            Values and slopes, (...) each.
+        """
         periods = torch.round(x / self.num)
         folded = x - periods * self.num
         even = 1 - 2 * (periods % 2) if self._changes_sign else 1.0
@@ -50,9 +65,17 @@ class WindowKernel:
         return value * even, slope * sign
 
     def bin_values(self, first: float, num: int, place: Float[np.ndarray, "*tone"]) -> Float[np.ndarray, "2 *tone bin"]:
-        """Values and slopes (per bin) at the bins first, first + 1, ... of tones at `place` in bins, float32.
+        """Values and slopes (per bin) of tones at consecutive bins.
 
-        All bins of a tone have the same place within their pieces, and these follow each other in the table.
+        All bins of a tone have the same position within their pieces, and the pieces are consecutive in the table.
+
+        Args:
+            first: First bin.
+            num: Number of bins.
+            place: Positions (*tone) in bins.
+
+        Returns:
+            Values and slopes (2, *tone, bin), float32.
         """
         period = 2 * self.num  # with its change of sign
         if self._by_phase.shape[2] < period + num:
@@ -89,7 +112,7 @@ class WindowKernel:
 def _spectrum(
     window: np.ndarray, centre: float, place: np.ndarray, steps: int = STEPS_A_BIN
 ) -> tuple[np.ndarray, np.ndarray]:
-    """K and dK/dx at places k / steps, from one long FFT each."""
+    """K and dK/dx at x = k / steps, from one long FFT each."""
     num = len(window)
     middle = np.arange(num) - centre
     long = num * steps

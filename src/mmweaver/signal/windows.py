@@ -1,13 +1,13 @@
-"""Windows for FFTs."""
+"""FFT windows and their noise bandwidth."""
 
 import numpy as np
 from jaxtyping import Float
 
-MIN_HANN_LOOPS = 4  # loops; a shorter Hann window would leave out a third of the chirps or more, and resolve nothing
+MIN_HANN_LOOPS = 4  # loops; a shorter Hann window would discard a third of the chirps or more, and resolve nothing
 
 
 def doppler_window(num_loops: int) -> Float[np.ndarray, " num_loops"]:
-    """The window over the loops of a frame: Hann; of fewer than four loops rectangular, which keeps all chirps.
+    """Window over the loops of a frame: Hann, or rectangular for fewer than four loops, which keeps all chirps.
 
     >>> doppler_window(2).tolist()
     [1.0, 1.0]
@@ -16,18 +16,21 @@ def doppler_window(num_loops: int) -> Float[np.ndarray, " num_loops"]:
 
 
 def doppler_window_middle(num_loops: int) -> float:
-    """The loop about which `doppler_window` is symmetric: a periodic Hann window counts its zero at both ends."""
+    """Loop about which `doppler_window` is symmetric; a periodic Hann window has its zero at both ends."""
     return num_loops / 2 if num_loops >= MIN_HANN_LOOPS else (num_loops - 1) / 2
 
 
 def noise_share(num_samples: int, num_loops: int) -> float:
-    """Power of white noise of power 1 a sample in a cell of the cube, after both normalised windows."""
+    """Noise power per cell of the cube, for white noise of unit power per sample, after both normalised windows."""
     windows = hann(num_samples), doppler_window(num_loops)
     return float(np.prod([(window**2).sum() / window.sum() ** 2 for window in windows]))
 
 
 def hann(num: int) -> Float[np.ndarray, " num"]:
-    """The periodic Hann window, 0.5 - 0.5 cos(2 pi n / num): its spectrum is three bins, 1 and twice -1/2.
+    """Periodic Hann window, 0.5 - 0.5 cos(2 pi n / num); its spectrum has three bins, 1 and twice -1/2.
+
+    Args:
+        num: Length.
 
     >>> hann(4).round(12).tolist()
     [0.0, 0.5, 1.0, 0.5]

@@ -1,7 +1,7 @@
 """The front door: photo and sentence in, radar signal out. Read this file first.
 
     photo + depth --scene--> Scene --------------------+
-                               |                       +--method--> RadarCube --dsp--> PointCloud
+                               |                       +--method--> RadarCube --signal--> PointCloud
     sentences -----motion--> PoseSequences, placed ----+
 
 Only this file knows the order of the packages; they exchange the records of `core/records.py` and nothing else.
@@ -57,19 +57,7 @@ from mmweaver.weaver.streaming import (
 
 
 class Weaver(RoomReader):
-    """Generates radar signals with one method and one radar.
-
-    `method` is an object that follows `methods.Method`, or a name in METHODS: "weaver", the network (the default, also
-    called "auto"), or "physics". `radar` is a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
-    is called with the name of each stage as it begins.
-    `points` chooses the point cloud: "cfar", this project's own, "firmware", that of TI's demo, which needs ADC
-    samples, or a registered detector; `firmware` are the settings of TI's (default: what the radar's .cfg or preset
-    says).
-    `calibration`: the channel errors that the radar's firmware compensates (default: those of its .cfg); ADC samples
-    are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
-    `mmweaver train`, or a Hub name, for the network, which then makes all signals;
-    `from_pretrained` is the short form. Raises InputError for unknown names.
-    """
+    """Generates radar signals with one method and one radar."""
 
     def __init__(
         self,
@@ -82,6 +70,24 @@ class Weaver(RoomReader):
         weights: str | Path | None = None,
         calibration: ChannelCalibration | None = None,
     ):
+        """Chooses method, radar and point detector.
+
+        Args:
+            method: Name in METHODS, "weaver" (the network; also called "auto", the default) or "physics", or an object
+                that follows `methods.Method`.
+            radar: Name of a preset, a TI .cfg or radar.json file, or a RadarConfig.
+            listener: Called with the name of each stage as it begins.
+            points: Point detector: "cfar", the project's own, "firmware", that of TI's demo, which needs ADC samples,
+                or a registered one.
+            firmware: Settings of TI's detector; by default those of the radar's .cfg or preset.
+            weights: File or folder of `mmweaver train`, or a name on the Hub, for the network, which then makes all
+                signals; `from_pretrained` is the short form.
+            calibration: Channel errors that the radar's firmware compensates; by default those of its .cfg. ADC samples
+                are then as that board records them, cube and points as it compensates them.
+
+        Raises:
+            InputError: For unknown names, and for weights without the network.
+        """
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
         file = None if weights is None else _found(weights)
@@ -115,9 +121,14 @@ class Weaver(RoomReader):
     ) -> "Weaver":
         """A weaver that uses a trained network.
 
-        `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub, at a `revision`.
-        `radar` defaults to the one it was trained for; `options` as for the class. Raises InputError for files that are
-        damaged, foreign or of another version.
+        Args:
+            source: Weight file, folder of `mmweaver train`, or name on the Hub.
+            radar: As for the class; by default the radar that the network was trained for.
+            revision: Branch, tag or commit on the Hub.
+            **options: Further arguments of the class.
+
+        Raises:
+            InputError: For files that are damaged, foreign or of another version.
         """
         from mmweaver.models.weights import read_card
 
@@ -142,75 +153,101 @@ class Weaver(RoomReader):
         clip: str | None = None,
         body_model: str | Path | None = None,
     ) -> MotionClip:
-        """A recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md."""
+        """Reads a recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md.
+
+        Args:
+            path: Motion file.
+            fps: Frames per second, where the file does not state them.
+            unit: Unit of length, by name or in metres, where the file does not state it.
+            up: Upward axis, where the file does not state it.
+            clip: Name of the clip, in a file of several.
+            body_model: SMPL body model, for files of joint rotations.
+
+        Raises:
+            InputError: For a file that is not a known motion.
+        """
         return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
 
     @keywords_of(Request, "text")
     def request(self, text: str | Sequence[str] | None = None, **asked: Any) -> ParsedRequest:
-        """A checked and parsed request, with the arguments of `generate`. Cheap: no room is needed.
+        """A checked and parsed request, with the arguments of `generate`. Fast, since no room is needed.
 
         Raises:
-            InputError: for a request that cannot be met.
+            InputError: For a request that cannot be met.
         """
         return self.parsed(Request(text=text, **asked))
 
     def parsed(self, request: Request) -> ParsedRequest:
-        """The same of a record. Raises InputError for a request that cannot be met."""
+        """A checked and parsed request from a record.
+
+        Args:
+            request: The request.
+
+        Raises:
+            InputError: For a request that cannot be met.
+        """
         return parse(request, self.radar, needs_adc=needs_adc(self.points))
 
     @keywords_of(Request, "text")
     def generate(self, room: Room, text: str | Sequence[str] | None = None, **asked: Any) -> Generation:
-        """The signal of people doing in the room what the text says, or what a recorded motion shows.
+        """Generates the signal of people doing what a text describes or a recorded motion shows, in a room.
 
-        The sentence decides how long it takes (at least two seconds), and a recorded motion lasts as long as it is;
-        `frames` or `seconds` fix it: a sentence is then fitted, repeated or cut, which `meta` says. People keep half a
-        metre apart. The same seed gives the same bits.
+        The sentence determines the duration (at least two seconds), and a recorded motion keeps its own; `frames` or
+        `seconds` override it: a sentence is then stretched, repeated or cut, which `meta` reports. People keep a
+        distance of half a metre. The same seed gives the same bits.
 
         Args:
-            room: of `read_room`, `open_room` or `sample_room`; used as often as you like.
-            text: what the person does, or a list with a text for each person; "nobody" alone: the room is empty.
-            motion: a recorded motion of `read_motion` or a motion model for the first person, whose text names it.
-            frames, seconds: how many radar frames, or how long (default: as the sentence needs).
-            fps: frames per second (default: the radar's own, 10 for the awr1843).
-            seed: of everything that is sampled.
-            at: where the person starts, (x right, y away from the radar) in metres; chosen if not given.
-            heading_rad: where the first body faces first, from +x towards +y.
-            path_m: corners (x, y) of the first person's walk.
-            height_m: the body's height; a recorded body is scaled to it.
-            subject: the person by number, 0 to 9999: skin, build, habits, usual height; by default sampled by the seed.
-            as_recorded: a motion's positions are the radar's own.
-            keep_adc: also return raw samples, several times the cube's memory; the cube is the same without.
-            board: whose errors the signal has: "typical" (sampled by the seed; the default, but with a background the
-                one that recorded it), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
-            radar_poses: a `RadarPose` for each radar that records the scene (default: one at the camera).
+            room: From `read_room`, `open_room` or `sample_room`; can be used any number of times.
+            text: What the person does, or a list with one text per person; "nobody" alone gives the empty room.
+            motion: Recorded motion of `read_motion` or a motion model for the first person, whose text names it.
+            frames, seconds: Number of radar frames, or duration in seconds (default: as the sentence needs).
+            fps: Frames per second (default: the radar's own, 10 for the awr1843).
+            seed: Seed of everything that is sampled.
+            at: Where the person starts, (x right, y away from the radar) in metres; sampled if not given.
+            heading_rad: Initial direction of the first person's body, from +x towards +y.
+            path_m: Corners (x, y) of the first person's walk in metres.
+            height_m: Body height in metres; a recorded body is scaled to it.
+            subject: Number of the person, 0 to 9999: skin, build, habits, typical height; by default sampled by the
+                seed.
+            as_recorded: Whether the positions of a motion are already in the radar's coordinates.
+            keep_adc: Whether raw samples are returned, several times the cube's memory; the cube does not depend on it.
+            board: Board whose errors the signal has: "typical" (sampled by the seed; the default, except with a
+                background, whose board is used), "typical:N", "ideal", a board.json or a `Board` (docs/board.md).
+            radar_poses: One `RadarPose` per radar that records the scene (default: one at the camera).
 
-        Of several people `at`, `height_m` and `subject` are lists.
+        For several people `at`, `height_m` and `subject` are lists.
+
+        Returns:
+            Cube, points, poses and metadata; ADC samples if requested.
 
         Raises:
-            InputError: for a request that cannot be met.
+            InputError: For a request that cannot be met.
         """
         return self.carry_out(self.request(text, **asked), room)
 
     def stream(
         self, room: Room, sentences: Iterable[str | None], *, chunk_frames: int = CHUNK_FRAMES, **asked: Any
     ) -> Iterator[StreamChunk]:
-        """The signal of one person who does what one sentence after the other says, without a break between them.
+        """Generates the continuous signal of one person who acts out one sentence after the other.
 
-        Each sentence begins where the person is, in the posture that they are in, and takes as long as it needs; its
-        last chunk may have fewer than `chunk_frames` frames. A sentence that is not understood, or has no room, is
-        skipped and reported in `StreamChunk.refused`; for the first it is an InputError. The same seed and sentences
-        give the same bits, whatever `chunk_frames` is, unless sentences are None, each of which lasts a chunk. Memory
-        does not grow with the length of the stream.
+        Each sentence begins at the person's current place and posture, and takes as long as it needs; its last chunk
+        may have fewer than `chunk_frames` frames. A sentence that is not understood, or does not fit into the room, is
+        skipped and reported in `StreamChunk.refused`; for the first one it is an InputError. The same seed and
+        sentences give the same bits, whatever `chunk_frames` is, except for sentences of None, each of which lasts one
+        chunk. Memory does not grow with the length of the stream.
 
         Args:
-            room: as for `generate`.
-            sentences: any iterable, a live one too: it is asked for the next sentence when the last is done. None or ""
-                says that there is nothing new: one more chunk of the last activity, or of holding the posture.
-            chunk_frames: radar frames of a chunk.
+            room: As for `generate`.
+            sentences: Any iterable, possibly live: the next sentence is requested when the last one is finished. None
+                or "" continues the last activity, or holds the posture, for one more chunk.
+            chunk_frames: Radar frames per chunk.
             asked: `seed`, `at`, `heading_rad`, `height_m`, `subject`, `fps`, `keep_adc` and `board` as for `generate`.
 
+        Yields:
+            Consecutive chunks of cube, points and poses.
+
         Raises:
-            InputError: for a request that cannot be met.
+            InputError: For a request that cannot be met.
         """
         check_streams(self.method, self.method_name)
         request = self.request("a person stands", frames=1, **asked)
@@ -230,9 +267,15 @@ class Weaver(RoomReader):
 
     @single_precision()
     def carry_out(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...] | None = None) -> Generation:
-        """What `generate` does with a request that is already parsed, or whose motions are composed already (`people`).
+        """Generates the signal of a parsed request.
 
-        Raises InputError where the room has no place.
+        Args:
+            request: From `request` or `parsed`.
+            room: As for `generate`.
+            people: Motions in the camera's coordinates, if they have been composed already.
+
+        Raises:
+            InputError: If the room has no space for the motion.
         """
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
@@ -246,7 +289,7 @@ class Weaver(RoomReader):
         return replace(results[0], further=tuple(results[1:]))
 
     def _recorded(self, request: ParsedRequest, room: Room, people: tuple[Motion, ...], stages: Stages) -> Generation:
-        """What one radar records; `room` is in its frame, the people in the camera's."""
+        """The signal of one radar; `room` is in its coordinates, the people in the camera's."""
         pose = room.scene.radar_pose
         motions = people_seen_from(tuple(person.pose for person in people), pose)
         board, given = self.board_of(replace(request, seed=pose.noise_seed(request.seed)), room)
@@ -285,10 +328,16 @@ class Weaver(RoomReader):
         )
 
     def board_of(self, request: ParsedRequest, room: Room) -> tuple[Board, dict[str, Any]]:
-        """The board of a signal, and the method's argument for it: none for an ideal one.
+        """The board of a signal, and the keyword argument that passes it to the method, empty for an ideal board.
 
-        What the radar's own .cfg compensates is no error of the signal. Raises InputError for a method that knows no
-        boards, where one was asked for.
+        Errors that the radar's own .cfg compensates are not errors of the signal.
+
+        Args:
+            request: The parsed request.
+            room: The room, for the board of its background recording.
+
+        Raises:
+            InputError: If a board was requested and the method does not support boards.
         """
         is_of_background = request.board is None and room.background is not None
         board = (
@@ -307,7 +356,7 @@ class Weaver(RoomReader):
         return IDEAL_BOARD, {}
 
     def firmware_of(self, board: Board) -> FirmwareSettings | None:
-        """The settings of TI's point cloud, with the threshold of the board that was calibrated."""
+        """Settings of TI's detector, with the threshold of a calibrated board."""
         return None if self.firmware is None else self.firmware.with_threshold(board.cfar_threshold)
 
     def _meta(
@@ -319,7 +368,7 @@ class Weaver(RoomReader):
         signal: Signal,
         board: Board,
     ) -> dict[str, Any]:
-        """What meta.json says of a sequence: all that is needed to make it again."""
+        """The contents of meta.json: everything that is needed to reproduce the sequence."""
         return {
             "schema_version": META_VERSION,
             "made_by": "mmweaver generate",
@@ -339,9 +388,17 @@ class Weaver(RoomReader):
 
 
 def compose_request(request: ParsedRequest, scene: Scene) -> tuple[Motion, ...]:
-    """The motion of each person, the first one's from the recording where there is one.
+    """Composes the motion of each person; a recorded motion replaces that of the first.
 
-    Raises InputError where the room has no place for it.
+    Args:
+        request: The parsed request.
+        scene: The room in the camera's coordinates.
+
+    Returns:
+        One motion per person, without collisions with the room and each other.
+
+    Raises:
+        InputError: If the room has no space for the motion.
     """
     recorded = None
     if not request.people:
@@ -391,7 +448,7 @@ def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...
 
 
 def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
-    """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several or of nobody."""
+    """`person`, `plan` and `clauses` of one person; `people`, a list of all three, of several or none."""
     described = [
         (_person(pose, person), {"plan": person.plan, "clauses": person.clauses})
         for pose, person in zip(poses, people, strict=True)
@@ -403,7 +460,7 @@ def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) ->
 
 
 def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
-    """What meta.json says of a recorded motion."""
+    """Entry of a recorded motion in meta.json."""
     if motion is None:
         return {}
     digest = {} if motion.file is None else file_digest(motion.file)

@@ -31,17 +31,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Room(ShownByFacts):
-    """A photo, read and reconstructed; can be used for any number of sequences."""
+    """A photo, read and reconstructed; usable for any number of sequences."""
 
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
-    background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
+    background: RadarCube | None = None  # a recording of the empty room by the same radar in the same place
     background_board: Board | None = None  # the board.json that came with it
-    views: tuple[PosedPhoto, ...] = ()  # further photos that the scene was made of
+    views: tuple[PosedPhoto, ...] = ()  # further photos that the scene was reconstructed from
 
     def facts(self) -> dict[str, str]:
-        """The photo's and the scene's."""
+        """Size of the photo, facts of the scene, background and inputs, for display."""
         size = self.scene.photo.facts()["size"]
         background = "none" if self.background is None else f"by {self.background.config.name}"
         return {"photo": size, **self.scene.facts(), "background": background, "inputs": ", ".join(self.inputs)}
@@ -50,19 +50,28 @@ class Room(ShownByFacts):
         return _with_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
 
     def with_landmarks(self, *given: tuple[str, tuple[float, float]]) -> "Room":
-        """The room with landmarks at known places: `("door", (0.9, 2.8))`, metres right of and ahead of the radar.
+        """The room with landmarks at known places, which replace detected ones of the same kind.
 
-        They replace the detected ones of the same kind. Raises InputError for a kind that no sentence can go to.
+        Args:
+            *given: Kind and place (metres right of and ahead of the radar), such as `("door", (0.9, 2.8))`.
+
+        Raises:
+            InputError: For a kind that is not a destination of sentences.
         """
         inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in given]}
         return replace(self, scene=add_landmarks(self.scene, given), inputs=inputs)
 
     def with_background(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
-        """The room with a background recording by your radar, nobody present: its static clutter is used as it is.
+        """The room with a background recording of the empty room by your radar, whose static clutter is used as it is.
 
-        `source`: a folder of `mmweaver process` or `generate`, its radar.npz, a capture folder, or the cube
-        (`came_from`: its file or folder). A board.json in that folder is the board that recorded it; else its errors
-        are estimated. Raises InputError for what is no recording.
+        A board.json in the folder of the recording is the board that recorded it; otherwise its errors are estimated.
+
+        Args:
+            source: Folder of `mmweaver process` or `generate`, its radar.npz, a capture folder, or the cube.
+            came_from: File or folder of the cube, if a cube is given.
+
+        Raises:
+            InputError: If the source is not a recording.
         """
         if not isinstance(source, RadarCube):
             from mmweaver.recordings.read_recording import read_recording
@@ -74,7 +83,7 @@ class Room(ShownByFacts):
 
 
 def _board_next_to(recording: Path | None) -> Board | None:
-    """The board.json in the folder of a recording. Raises InputError for a damaged one."""
+    """The board.json in the folder of a recording, None without one."""
     if recording is None:
         return None
     file = (recording.parent if recording.is_file() else recording) / BOARD_FILE
@@ -83,7 +92,20 @@ def _board_next_to(recording: Path | None) -> Board | None:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Generation(ShownByFacts):
-    """One generated sequence. `poses` hold each person's joints at the radar's frames, `motions` densely in time."""
+    """One generated sequence.
+
+    Attributes:
+        cube: Range-Doppler cube (frame, range, doppler, antenna).
+        points: Point cloud of all frames.
+        adc: Raw samples, if they were requested.
+        poses: Each person's joints at the radar's frames.
+        motions: Each person's joints densely in time.
+        scene: The room in the radar's coordinates.
+        meta: Contents of meta.json.
+        stages: Duration of each stage.
+        board: Board whose errors the signal has.
+        further: Simultaneous signals of other radars.
+    """
 
     cube: RadarCube
     points: PointCloud
@@ -94,15 +116,15 @@ class Generation(ShownByFacts):
     meta: dict[str, Any]
     stages: Stages
     board: Board = IDEAL_BOARD
-    further: tuple["Generation", ...] = ()  # what other radars recorded at the same time
+    further: tuple["Generation", ...] = ()
 
     @property
     def radars(self) -> tuple["Generation", ...]:
-        """What each radar recorded, this one first."""
+        """The signals of all radars, this one first."""
         return (replace(self, further=()), *self.further)
 
     def facts(self) -> dict[str, str]:
-        """What was asked for and what came of it."""
+        """Request and result in short, for display."""
         shape = " x ".join(map(str, self.cube.values.shape))
         return {
             "text": " | ".join([self.meta["text"]] if isinstance(self.meta["text"], str) else self.meta["text"]),
@@ -136,14 +158,18 @@ class Generation(ShownByFacts):
     def save_html(self, path: str | Path) -> None:
         """Writes one HTML file that plays the sequence in any browser, without a server or a network connection.
 
-        Raises InputError where it cannot be written.
+        Args:
+            path: The file.
+
+        Raises:
+            InputError: If it cannot be written, or the radar is not at the camera.
         """
         from mmweaver.viz.html_page import write_page
 
         write_page(Path(path), *self._playback(), self.figure_data.title)
 
     def _playback(self) -> "tuple[Playback, Playback]":
-        """The sequence and its room, for the page."""
+        """The sequence and its room, for the playback page."""
         from mmweaver.viz.html_page import OFFLINE_ROOM_POINTS
         from mmweaver.viz.room import room_playback
         from mmweaver.viz.sequence import make_playback
@@ -156,7 +182,7 @@ class Generation(ShownByFacts):
         return sequence, room_playback(self.scene, "room", window_m, max_points=OFFLINE_ROOM_POINTS)
 
     def to_xarray(self) -> "Dataset":
-        """Cube, joints and points as an xarray Dataset, in SI units; needs the extra 'xarray'.
+        """Cube, joints and points as an xarray Dataset in SI units; needs the extra 'xarray'.
 
         `cube` has the dimensions frame_time (s), range (m), radial_velocity (m/s) and antenna, `joints`
         person, frame_time, joint and axis; columns of the point cloud have the dimension point.
@@ -166,7 +192,7 @@ class Generation(ShownByFacts):
         return to_dataset(self.cube, self.points, self.poses, self.adc, self.meta)
 
     def to_torch(self) -> "dict[str, Tensor]":
-        """Tensors that share the arrays' memory where they can, in SI units.
+        """Tensors in SI units that share the memory of the arrays where possible.
 
         `cube` complex64 (frame, range, doppler, antenna) with the axes `frame_time_s`, `range_m`,
         `radial_velocity_mps`, `antenna_position_m`; `joints_m` (person, frame, 22, 3); `points` (point, 6): frame,
@@ -178,12 +204,20 @@ class Generation(ShownByFacts):
 
     @property
     def pose(self) -> PoseSequence:
-        """The first person's joints at the radar's frames. Raises InputError where nobody is there."""
+        """The first person's joints at the radar's frames.
+
+        Raises:
+            InputError: If the room is empty.
+        """
         return _first(self.poses)
 
     @property
     def motion(self) -> PoseSequence:
-        """The first person's joints densely in time. Raises InputError where nobody is there."""
+        """The first person's joints densely in time.
+
+        Raises:
+            InputError: If the room is empty.
+        """
         return _first(self.motions)
 
     @property
@@ -192,7 +226,7 @@ class Generation(ShownByFacts):
 
     @property
     def figure_data(self) -> FigureData:
-        """What the figures are drawn from."""
+        """The data that figures are drawn from."""
         text = self.meta["text"]
         title = text if isinstance(text, str) else " | ".join(text)
         pose = self.scene.radar_pose
@@ -272,7 +306,7 @@ def _first(poses: tuple[PoseSequence, ...]) -> PoseSequence:
 
 
 def _recording_digest(place: Path) -> dict[str, str]:
-    """Path and, of a file or of a folder's radar.npz, sha256 of a recording."""
+    """Path of a recording and, for a file or a folder's radar.npz, its sha256."""
     file = next((one for one in (place, place / "radar.npz") if one.is_file()), None)
     return {"path": str(place)} if file is None else file_digest(file)
 

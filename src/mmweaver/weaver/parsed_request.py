@@ -1,4 +1,4 @@
-"""A request, checked, parsed and scheduled once: what the motion planner and the methods take."""
+"""A request, checked, parsed and scheduled once: the input of the motion planner and the methods."""
 
 import itertools
 import math
@@ -27,34 +27,34 @@ from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.weaver.request import Request
 
 MAX_FRAMES = 2000
-NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
+NEAREST_PERSON_M = 0.5  # for radars whose range window begins at 0
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
-LEAST_SECONDS = 2.0  # of a sequence whose length the sentence decides
+LEAST_SECONDS = 2.0  # of a sequence whose duration is determined by the sentence
 MAX_BYTES = 2_000_000_000  # of the largest array
 
 
 @dataclass(frozen=True, kw_only=True)
 class PersonRequest:
-    """One person of a request. None means chosen: the start by the motion planner, the height by the seed."""
+    """One person of a request. None means sampled: the start by the motion planner, the height by the seed."""
 
     text: str  # what the person does; for a recorded motion only its name
     plan: MotionPlan | None  # the parsed and scheduled text; None for a recorded motion
-    start_m: Place | None = None  # (x, y) on the floor, in the radar's frame
+    start_m: Place | None = None  # (x, y) on the floor, in the radar's coordinates
     height_m: float | None = None
-    subject: int | None = None  # who it is
+    subject: int | None = None  # number of the person
 
 
 @dataclass(frozen=True, kw_only=True)
 class ParsedRequest:
-    """A valid request for one sequence; made by `parse`."""
+    """A valid request for one sequence, made by `parse`."""
 
     people: tuple[PersonRequest, ...]  # none: an empty room
     config: RadarConfig  # at the requested frame rate
     frames: int = 20
     seed: int = 0
     motion: MotionClip | None = None  # the first person's recorded motion
-    heading_rad: float | None = None  # where the first person's body faces first, from +x towards +y
+    heading_rad: float | None = None  # initial direction of the first person's body, from +x towards +y
     as_recorded: bool = False  # the recorded positions are kept
     keep_adc: bool = False
     board: Board | None = None  # None: a typical one of this seed, or that of a background recording
@@ -66,12 +66,12 @@ class ParsedRequest:
 
     @property
     def range_window_m(self) -> tuple[float, float]:
-        """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
+        """Nearest and farthest distance in metres at which a person is placed: within the radar's range bins."""
         near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
         return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
 
     def meta(self) -> dict[str, Any]:
-        """What meta.json holds of the request."""
+        """The entries of the request in meta.json."""
         placed = {name: getattr(self, name) for name in ("heading_rad", "height_m", "subject", "as_recorded")}
         return {
             "seed": self.seed,
@@ -84,42 +84,45 @@ class ParsedRequest:
 
     @property
     def board_without_background(self) -> Board:
-        """The board that makes the signal in a room without a background recording."""
+        """The board of a signal in a room without a background recording."""
         return find_board("typical", self.config, self.seed) if self.board is None else self.board
 
     @property
     def text(self) -> str | list[str]:
-        """The text of one person, or a list of several people's; NOBODY of an empty room."""
+        """The text of one person, or a list for several people; NOBODY for an empty room."""
         return NOBODY if not self.people else _one_or_all([person.text for person in self.people])
 
     @property
     def at(self) -> Place | list[Place | None] | None:
-        """The start of one person, or a list of several people's; None where all are chosen."""
+        """The start of one person, or a list for several people; None where all are sampled."""
         return _one_or_all([person.start_m for person in self.people])
 
     @property
     def subject(self) -> int | list[int | None] | None:
-        """The number of one person, or a list of several people's; None where all are drawn by the seed."""
+        """The number of one person, or a list for several people; None where all are sampled."""
         return _one_or_all([person.subject for person in self.people])
 
     @property
     def height_m(self) -> float | list[float | None] | None:
-        """The height of one person, or a list of several people's; None where all are chosen."""
+        """The height of one person, or a list for several people; None where all are sampled."""
         return _one_or_all([person.height_m for person in self.people])
 
 
 def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> ParsedRequest:
-    """Checks the request and parses its sentences; takes milliseconds, so it is called before any long work.
+    """Checks a request and parses its sentences. Takes milliseconds, so it is called before any long computation.
 
     Args:
-        asked: what is asked for.
-        radar: the radar, at its own frame rate.
-        needs_adc: ADC samples are held in memory although they are not returned.
+        asked: The request.
+        radar: The radar at its own frame rate.
+        needs_adc: Whether ADC samples are held in memory even if they are not returned.
+
+    Returns:
+        The request with its plans, at the requested frame rate.
 
     Raises:
-        InputError: for texts, frames, seconds, fps or places outside their limits, a frame rate that the chirps do
+        InputError: For texts, frames, seconds, fps or places outside their limits, a frame rate that the chirps do
             not fit into, more samples than memory holds, a text that is not understood or of which nothing fits
-            the time, and a recorded motion that is shorter than what is asked for.
+            the duration, and a recorded motion that is shorter than requested.
     """
     if asked.fps is not None and not FPS_LIMITS[0] <= asked.fps <= FPS_LIMITS[1]:
         raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {asked.fps:g}")
@@ -172,7 +175,7 @@ def parse(asked: Request, radar: RadarConfig, *, needs_adc: bool = False) -> Par
 
 
 def _asks_for_nobody(asked: Request) -> bool:
-    """Whether an empty room is asked for. Raises InputError where somebody is to be in it all the same."""
+    """Whether an empty room is requested; InputError if the request also describes a person."""
     if asked.motion is not None or not any(says_nobody(one) for one in asked.sentences):
         return False
     if len(asked.sentences) > 1:
@@ -185,7 +188,7 @@ def _asks_for_nobody(asked: Request) -> bool:
 
 
 def _frames_asked_for(asked: Request, config: RadarConfig) -> int | None:
-    """The number of frames if frames or seconds are given. Raises InputError for both, or outside the limits."""
+    """The number of frames if frames or seconds are given; InputError for both, or for values outside the limits."""
     frames, seconds = asked.frames, asked.seconds
     if frames is not None and seconds is not None:
         raise InputError("frames and seconds both say how long it lasts; give one of them")
@@ -204,7 +207,7 @@ def _frames_asked_for(asked: Request, config: RadarConfig) -> int | None:
 
 
 def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None, config: RadarConfig) -> int:
-    """As many frames as the recorded motion has time for, or as the longest sentence needs and two seconds have."""
+    """Number of frames of the recorded motion, or of the longest sentence but at least two seconds."""
     if motion is not None:
         return max(1, math.floor(motion.duration_s / config.frame_period_s + 1e-6))
     needed_s = max([LEAST_SECONDS, *(natural_s(plan) for plan in plans if plan is not None)])
@@ -212,9 +215,13 @@ def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None
 
 
 def parsed_text(text: str) -> MotionPlan:
-    """The parsed sentence; activities of plug-ins are looked up where it is not understood without.
+    """Parses a sentence; activities of plug-ins are loaded if it is not understood without them.
 
-    Raises InputError where less than half of it is understood, and for an empty place.
+    Args:
+        text: The sentence.
+
+    Raises:
+        InputError: If less than half of it is understood, or it describes an empty room.
     """
     if says_nobody(text):
         raise InputError(f"{text[:60]!r} is an empty place, a sequence of its own: generate --text {NOBODY}, alone")
@@ -226,7 +233,7 @@ def parsed_text(text: str) -> MotionPlan:
 
 
 def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
-    """The plan with its first walk along a path. Raises InputError where nobody walks, or for what is no path."""
+    """The plan with its first walk along a path; InputError if it has no walk, or the path is not valid."""
     points = tuple((float(x), float(y)) for x, y in path_m)
     if len(points) < 2 or not all(math.isfinite(value) for point in points for value in point):
         raise InputError("a path has at least two points, x and y in metres, such as '0,3 0,1.5 0.8,1.5'")
@@ -259,17 +266,17 @@ def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
 def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
     if plan is None:
         return None
-    has_path = any(step.route_m for step in plan.steps)  # which is gone along once
+    has_path = any(step.route_m for step in plan.steps)  # a path is walked once
     return schedule(plan if has_path else repeated(plan, duration_s), duration_s)
 
 
 def _most_frames(config: RadarConfig, has_adc: bool) -> int:
-    """The most frames that limits and memory allow."""
+    """The maximum number of frames within limits and memory."""
     return max(1, min(MAX_FRAMES, MAX_BYTES // _frame_bytes(config, has_adc), int(MAX_SECONDS / config.frame_period_s)))
 
 
 def _frame_bytes(config: RadarConfig, has_adc: bool) -> int:
-    """Bytes of a frame of the largest array, complex64."""
+    """Bytes per frame of the largest array, complex64."""
     return 8 * config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
 
 
@@ -287,7 +294,7 @@ def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
 
 
 def _starts(at: Place | Sequence[Place | None] | None, people: int) -> list[Place | None]:
-    """Where each person starts, None = chosen. Raises InputError for what is no place, or for too many places."""
+    """Start of each person, None for sampled; InputError for invalid places or too many of them."""
     is_one = at is not None and all(isinstance(value, int | float) for value in at)
     given: list[Any] = [] if at is None else [at] if is_one else list(at)
     if len(given) > people or (is_one and people > 1):
@@ -299,7 +306,7 @@ def _starts(at: Place | Sequence[Place | None] | None, people: int) -> list[Plac
 
 
 def _one_each(given: Any, people: int, name: str) -> list[Any]:
-    """Each person's own value, None = chosen. Raises InputError for more values than people."""
+    """Each person's own value, None for sampled; InputError for more values than people."""
     values = [given] if given is None or isinstance(given, int | float) else list(given)
     if len(values) > people:
         raise InputError(f"{people} people need at most {people} {name}s, not {len(values)}")

@@ -1,7 +1,7 @@
 """Adds methods, radars, detectors, activities and encoders to mmWeaver.
 
-What is registered can be named wherever a built-in one can, in Python and, from a plug-in, on the command line. An
-installed package offers entries without being imported first by entry points in the groups `mmweaver.models.methods`,
+Registered entries can be named wherever a built-in one can, in Python and, from a plug-in, on the command line. An
+installed package provides entries without an import by entry points in the groups `mmweaver.models.methods`,
 `mmweaver.radars`, `mmweaver.detectors`, `mmweaver.activities` and `mmweaver.encoders`. See docs/extend.md.
 """
 
@@ -17,9 +17,14 @@ if TYPE_CHECKING:
 
 
 def method(name: str, make: "Callable[[], Method]") -> None:
-    """Registers a way to make the signal: `make()` returns an object that follows `mmweaver.models.methods.Method`.
+    """Registers a method from scene and people to the signal.
 
-    Raises InputError for a name that is taken.
+    Args:
+        name: Name of the method.
+        make: Returns an object that follows `mmweaver.models.methods.Method`.
+
+    Raises:
+        InputError: If the name is taken.
     """
     from mmweaver.models.methods import METHODS
 
@@ -27,16 +32,28 @@ def method(name: str, make: "Callable[[], Method]") -> None:
 
 
 def radar(config: "RadarConfig") -> None:
-    """Registers a radar preset under its own name. Raises InputError for a name that is taken."""
+    """Registers a radar preset under its own name.
+
+    Args:
+        config: The radar.
+
+    Raises:
+        InputError: If the name is taken.
+    """
     from mmweaver.core.presets import PRESETS
 
     PRESETS.register(config.name, config)
 
 
 def detector(name: str, detect: "Detector") -> None:
-    """Registers a point detector, a function (cube, adc or None) -> PointCloud.
+    """Registers a point detector.
 
-    One that needs ADC samples has the attribute `needs_adc = True`. Raises InputError for a name that is taken.
+    Args:
+        name: Name of the detector.
+        detect: Function (cube, adc or None) -> PointCloud; with an attribute `needs_adc = True` if it requires samples.
+
+    Raises:
+        InputError: If the name is taken.
     """
     from mmweaver.signal.detection import DETECTORS
 
@@ -44,10 +61,15 @@ def detector(name: str, detect: "Detector") -> None:
 
 
 def encoder(name: str, make: "Callable[[], nn.Module]") -> None:
-    """Registers an environment encoder for training: `make()` returns a module like `EnvironmentEncoder`.
+    """Registers an environment encoder for training.
 
-    It takes pictures (room, 5, row, column) and returns z_env (room, 512) and a map (room, 40, row / 8, column / 8).
-    Raises InputError for a name that is taken.
+    Args:
+        name: Name of the encoder.
+        make: Returns a module like `EnvironmentEncoder`: from pictures (room, 5, row, column) to z_env (room, 512) and
+            a map (room, 40, row / 8, column / 8).
+
+    Raises:
+        InputError: If the name is taken.
     """
     from mmweaver.models.environment_encoder import ENCODERS
 
@@ -68,10 +90,20 @@ def activity(
 ) -> None:
     """Registers an activity that sentences can name by its verbs.
 
-    `name` as in "walking", `example` a sentence with one of the verbs (base forms, one word each). `perform` is
-    (StepContext) -> Controls for the whole body, or with `hands` (StepContext, Controls) -> Controls for gestures laid
-    over it. `least_s` and `natural_s`: shortest and usual duration; `more` as in `Activity`. Raises InputError for a
-    key or verb that is taken.
+    Args:
+        key: Key of the activity.
+        name: Noun form, as in "walking".
+        example: Sentence with one of the verbs.
+        verbs: Base forms, one word each.
+        perform: (StepContext) -> Controls for the whole body, or with `hands` (StepContext, Controls) -> Controls for
+            gestures on top of another activity.
+        least_s: Shortest duration in seconds.
+        natural_s: Typical duration in seconds.
+        hands: Whether it is a gesture.
+        **more: Further fields of `Activity`.
+
+    Raises:
+        InputError: If the key or a verb is taken.
     """
     from mmweaver.motion.register_activity import register_activity
 

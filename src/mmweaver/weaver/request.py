@@ -1,7 +1,7 @@
-"""What is asked of `Weaver.generate`, as one typed record.
+"""The request of `Weaver.generate` as one typed record.
 
 It is the source of the keywords of `Weaver.generate`, of the options of `mmweaver generate`, of request.toml and of the
-studio's form. Nothing heavy is imported here.
+studio's form. Imports are kept light.
 """
 
 import math
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 class Heading(float):
-    """A direction in radians from +x towards +y, on the command line in degrees: 0 towards the radar."""
+    """A direction in radians from +x towards +y; on the command line in degrees with 0 towards the radar."""
 
     @classmethod
     def of_words(cls, word: str) -> "Heading":
-        """'90' -> 0.0, to the picture's right."""
+        """'90' -> 0.0, to the right of the picture."""
         degrees = float(word)
         if not math.isfinite(degrees):
             raise ValueError
@@ -30,12 +30,16 @@ class Heading(float):
 
     @property
     def words(self) -> str:
-        """As `of_words` reads it."""
+        """The direction in the form that `of_words` reads."""
         return repr(round(math.degrees(self) + 90, 10))
 
 
 def radar_pose(word: str) -> "RadarPose":
-    """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees. Raises InputError."""
+    """Parses '0.5,0,0.2,-30,10': position of a radar in metres, yaw and pitch in degrees.
+
+    Raises:
+        InputError: For any other form.
+    """
     from mmweaver.core.radar_pose import RadarPose
 
     return RadarPose.of_words(word)
@@ -123,5 +127,5 @@ class Request:
 
     @property
     def sentences(self) -> list[str]:
-        """One text for each person; that of a recorded motion may be empty."""
+        """One text per person; that of a recorded motion may be empty."""
         return [self.text or ""] if self.text is None or isinstance(self.text, str) else list(self.text)

@@ -1,4 +1,4 @@
-"""Where a room comes from: a photo, several photos, a scan, a mesh, or the bundled sample; all become a `Room`."""
+"""Sources of a room: a photo, several photos, a scan, a mesh, or the bundled sample; each becomes a `Room`."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -26,18 +26,29 @@ VIEWS_FILE = "views.json"
 
 
 class RoomReader:
-    """Reads rooms and reconstructs them. `listener` is called with the name of each stage as it begins."""
+    """Reads rooms and reconstructs them."""
 
     def __init__(self, listener: Callable[[str], object] | None = None):
+        """Args:
+        listener: Called with the name of each stage as it begins.
+        """
         self._listener = listener
 
     def read_room(
         self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
     ) -> Room:
-        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
+        """Reads a photo with depth and reconstructs the room.
 
-        `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
-        `sam` (models) give the class of each pixel, from which materials follow. See `scene.read_photo.read_photo`.
+        Args:
+            rgb: Colour picture.
+            depth: 16-bit PNG, or .npy in metres; None to estimate it.
+            camera: JSON of the camera's intrinsics.
+            **seen: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or the models
+                `segmenter` and `sam` give the class of each pixel, which determines materials. See
+                `scene.read_photo.read_photo`.
+
+        Raises:
+            InputError: If a file cannot be read or used.
         """
         stages = Stages(self._listener)
         with stages("read the photo"):
@@ -53,9 +64,14 @@ class RoomReader:
         return replace(room, scene=replace(room.scene, assumptions=(*room.scene.assumptions, note)))
 
     def read_views(self, views: str | Path, *, segmenter: str | None = None) -> Room:
-        """The room of several photos with depth, which views.json names with where each was taken.
+        """Reads several photos with depth and reconstructs the room. The radar is at the first one.
 
-        The radar stands at the first; see `scene.multiview.view_file`. `segmenter` as in `read_room`.
+        Args:
+            views: A views.json with the photos and their poses, see `scene.multiview.view_file`.
+            segmenter: Model that gives the class of each pixel.
+
+        Raises:
+            InputError: If a file cannot be read or used.
         """
         stages = Stages(self._listener)
         with stages("read the photos"):
@@ -73,13 +89,20 @@ class RoomReader:
         extra_views: Sequence[int] | str = (),
         **seen: Any,
     ) -> Room:
-        """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
+        """Reads a photo of a capture folder or of a scan, and reconstructs the room.
 
-        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a ROS bag.
+        Capture folders are of mmwave-capture-std (color.avi and depth.zst of a RealSense); scans are of Stray Scanner,
+        Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or a ROS bag.
 
-        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `extra_views`: numbers
-        of further photos of a scan that show more of the room, or "auto". `seen`: `classes`, `segmenter` and `sam` as
-        in `read_room`.
+        Args:
+            capture: The folder or file.
+            photo: Number of the photo.
+            rgb: Picture used instead of the frame of color.avi, where that cannot be decoded.
+            extra_views: Numbers of further photos of a scan that show more of the room, or "auto".
+            **seen: `classes`, `segmenter` and `sam` as in `read_room`.
+
+        Raises:
+            InputError: If a file cannot be read or used, or `extra_views` are requested of a source without poses.
         """
         if extra_views and (scan_kind(Path(capture)) is None or rgb is not None):
             raise InputError(
@@ -106,11 +129,16 @@ class RoomReader:
         return self._reconstruct(whole, found.assumptions, inputs, stages, others)
 
     def read_mesh(self, mesh: str | Path, **how: Any) -> Room:
-        """The room of a scan or model: a GLB, PLY or OBJ with triangles. Needs the extra 'mesh'.
+        """Reads a mesh with triangles (GLB, PLY or OBJ) as a room. Needs the extra 'mesh'.
 
-        `how`: `eye` and `look_deg`, the radar's place and direction in the mesh, chosen where they are not given;
-        `unit` and `up`, where the file does not say them; `materials`, a JSON of names and classes. See
-        `scene.scanned_mesh.mesh_photo.read_mesh_photo`.
+        Args:
+            mesh: The file.
+            **how: `eye` and `look_deg`, place and direction of the radar in the mesh, by default chosen; `unit` and
+                `up`, where the file does not state them; `materials`, a JSON of names and classes. See
+                `scene.scanned_mesh.mesh_photo.read_mesh_photo`.
+
+        Raises:
+            InputError: If the file cannot be read or used.
         """
         from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
 
@@ -124,15 +152,16 @@ class RoomReader:
         return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
 
     def open_room(self, path: str | Path, **how: Any) -> Room:
-        """The room of whatever lies at a path.
+        """Reads the room at a path, whatever its kind.
 
         Args:
-            path: a folder with rgb.png and depth.png (and camera.json), views.json or a folder with it, a scan or a
+            path: Folder with rgb.png and depth.png (and camera.json), views.json or a folder with it, a scan or
                 capture folder, a ROS bag (RealSense), or a mesh.
-            how: what `read_mesh`, `read_views`, `read_capture` or `read_room` takes besides files of the folder.
+            **how: Arguments of `read_mesh`, `read_views`, `read_capture` or `read_room` other than the files of the
+                folder.
 
         Raises:
-            InputError: for anything else, and for a keyword that such a room has no use for.
+            InputError: For anything else, and for a keyword that does not apply to this kind of room.
         """
         place = Path(path)
         views = next((one for one in (place, place / VIEWS_FILE) if one.name == VIEWS_FILE and one.is_file()), None)
@@ -170,7 +199,7 @@ class RoomReader:
 
 
 def _known(how: dict[str, Any], what: str, *names: str) -> dict[str, Any]:
-    """Raises InputError for an option that a kind of room does not have."""
+    """The options; InputError for one that does not apply to this kind of room."""
     if unknown := [name for name in how if name not in names]:
         raise InputError(f"{unknown[0].removesuffix('_deg')} says nothing of a room from {what}; leave it out")
     return how

@@ -1,9 +1,9 @@
-"""Signals without end: sentences come one after the other, chunks of cube, points and poses go. See `Weaver.stream`.
+"""Continuous signals: sentences come in one after the other, chunks of cube, points and poses go out (`Weaver.stream`).
 
     sentences --ContinuousMotion--> motion of each --method, BLOCK_FRAMES at a time--> signal --> StreamChunk
 
-Every sentence's frames are made in blocks of the same size, wherever chunks end, so that the chunk size changes no bit.
-Reference: docs/decisions/streams.md.
+The frames of every sentence are computed in blocks of fixed size, wherever chunks end, so the chunk size changes no
+bit. Reference: docs/decisions/streams.md.
 """
 
 import inspect
@@ -36,10 +36,10 @@ _MARGIN_S = 0.05  # of the dense motion around a chunk
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class StreamChunk(ShownByFacts):
-    """Some frames of a stream. All times are since the stream's first frame; frames of points count within the chunk.
+    """Some frames of a stream. Times count from the stream's first frame, frame numbers of points from the chunk's.
 
-    `meta` says of the sentence in force: its plan, what became of its clauses, what was assumed; `refused`, why the
-    last sentence could not be carried out ("" where it could): the person then stays as they are.
+    `meta` describes the current sentence: its plan, its clauses, the assumptions. `refused` states why the last
+    sentence could not be carried out ("" if it could); the person then remains as they are.
     """
 
     cube: RadarCube
@@ -67,7 +67,7 @@ class StreamChunk(ShownByFacts):
         return self.motions[0]
 
     def first(self, count: int) -> "StreamChunk":
-        """Its first frames; the dense motions stay whole."""
+        """The first frames of the chunk; dense motions are unchanged."""
         return replace(
             frames_of(self, 0, count),
             points=self.points.select(self.points.frame < count),
@@ -75,7 +75,7 @@ class StreamChunk(ShownByFacts):
         )
 
     def facts(self) -> dict[str, str]:
-        """Which frames, and what happens in them."""
+        """Frames, text and points in short, for display."""
         return {
             "frames": f"{self.first_frame} to {self.first_frame + self.num_frames - 1}",
             "text": self.text,
@@ -85,11 +85,23 @@ class StreamChunk(ShownByFacts):
 
 
 class Streamer:
-    """What a stream is made with; `chunks` runs it. Raises InputError for what is no number of frames."""
+    """The state of a stream; `chunks` runs it."""
 
     def __init__(
         self, weaver: "Weaver", room: Room, request: ParsedRequest, motion: ContinuousMotion, chunk_frames: int
     ) -> None:
+        """Prepares a stream.
+
+        Args:
+            weaver: Method, radar and point detector.
+            room: The room.
+            request: Parsed request with the options of the stream.
+            motion: Motion of the person.
+            chunk_frames: Radar frames per chunk, 1 to 1000.
+
+        Raises:
+            InputError: For an invalid number of frames.
+        """
         if not (isinstance(chunk_frames, int | np.integer) and 1 <= chunk_frames <= 1000):
             raise InputError(f"chunk_frames must be 1 to 1000, not {chunk_frames}")
         self.weaver, self.room, self.request, self.motion = weaver, room, request, motion
@@ -105,7 +117,14 @@ class Streamer:
         }
 
     def chunks(self, sentences: Iterable[str | None]) -> Iterator[StreamChunk]:
-        """Chunks for as long as sentences come. Raises InputError where the first sentence cannot be carried out."""
+        """Yields chunks for as long as there are sentences.
+
+        Args:
+            sentences: As for `Weaver.stream`.
+
+        Raises:
+            InputError: If the first sentence cannot be carried out.
+        """
         waiting: Iterator[StreamChunk] = iter(())  # the rest of a motion that the next sentence may end
         has_begun = False
         for sentence in sentences:
@@ -194,7 +213,15 @@ class Streamer:
 
 
 def check_streams(method: Method, name: str) -> None:
-    """Raises InputError for a method that cannot make a part of a longer signal."""
+    """Checks that a method can make parts of a longer signal.
+
+    Args:
+        method: The method.
+        name: Its name, for the error.
+
+    Raises:
+        InputError: If it cannot.
+    """
     if not takes_argument(method, "first_frame"):
         raise InputError(
             f"method {name!r} makes no streams, for it has no argument 'first_frame' (docs/extend.md); take weaver or"
@@ -203,14 +230,14 @@ def check_streams(method: Method, name: str) -> None:
 
 
 def takes_argument(method: Method, name: str) -> bool:
-    """Whether a method knows an optional argument of `methods.Method`."""
+    """Whether a method accepts an optional argument of `methods.Method`."""
     call = method if inspect.isfunction(method) else type(method).__call__
     parameters = inspect.signature(call).parameters
     return name in parameters or any(one.kind is one.VAR_KEYWORD for one in parameters.values())
 
 
 def frames_of(signal: SignalT, begin: int, end: int | None) -> SignalT:
-    """A signal, or a chunk, with the cube and the samples of some of its frames."""
+    """A signal or chunk, reduced to the cube and samples of frames `begin` to `end`."""
     some, cube = slice(begin, end), signal.cube
     grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[some])
     adc = None if signal.adc is None else replace(signal.adc, samples=signal.adc.samples[some])

@@ -1,6 +1,6 @@
-"""Checks that a method, radar, detector, activity or encoder of your own works with the rest of mmWeaver.
+"""Checks that your own method, radar, detector, activity or encoder works with the rest of mmWeaver.
 
-For the tests of a package that extends mmWeaver: each function raises AssertionError that says what is wrong. See
+For the tests of a package that extends mmWeaver: each function raises AssertionError with the reason. See
 docs/extend.md.
 """
 
@@ -29,10 +29,17 @@ FRAMES = 3
 
 
 def check_method(method: "Method", *, room: Room | None = None, radar: str | RadarConfig = "awr1843") -> None:
-    """Checks a method for making signals: shapes, types, the same bits for the same seed, with and without ADC samples.
+    """Checks a method: shapes, types, and the same bits for the same seed, with and without ADC samples.
 
-    `room`: where it is tried, by default the bundled one. A method may refuse several people or ADC samples with an
-    InputError, nothing else.
+    A method may refuse several people or ADC samples by an InputError; any other exception is a failure.
+
+    Args:
+        method: The method.
+        room: Room for the check; by default the bundled one.
+        radar: Radar for the check.
+
+    Raises:
+        AssertionError: If the method violates the protocol.
     """
 
     def checked(scene: Scene, poses: tuple[PoseSequence, ...], config: RadarConfig, **options: Any) -> Signal:
@@ -41,7 +48,7 @@ def check_method(method: "Method", *, room: Room | None = None, radar: str | Rad
         _check_cube(signal.cube, CubeGrid.of(config, options["num_frames"]), config)
         return signal
 
-    vars(checked)["__signature__"] = inspect.signature(method)  # which optional arguments it takes
+    vars(checked)["__signature__"] = inspect.signature(method)  # exposes its optional arguments
     weaver = Weaver(checked, radar)
     room = room or weaver.sample_room()
 
@@ -61,7 +68,14 @@ def check_method(method: "Method", *, room: Room | None = None, radar: str | Rad
 
 
 def check_radar(config: RadarConfig) -> None:
-    """Checks that a radar survives its own file and that signals can be made for it, by physics."""
+    """Checks that a radar survives a round trip through its file and that physics can make signals for it.
+
+    Args:
+        config: The radar.
+
+    Raises:
+        AssertionError: If it does not.
+    """
     assert RadarConfig.from_json(config.to_json()) == config, "the radar must come back from its own JSON"
     weaver = Weaver("physics", config)
     made = _unless_refused(lambda: weaver.generate(weaver.sample_room(), "a person stands", frames=1, seed=0))
@@ -70,7 +84,15 @@ def check_radar(config: RadarConfig) -> None:
 
 
 def check_detector(detect: "Detector", *, radar: str | RadarConfig = "awr1843") -> None:
-    """Checks a point detector on a simulated signal: a PointCloud within the cube's frames, the same each time."""
+    """Checks a point detector on a simulated signal: a PointCloud within the cube's frames, reproducible.
+
+    Args:
+        detect: The detector.
+        radar: Radar for the check.
+
+    Raises:
+        AssertionError: If the detector violates the protocol.
+    """
     weaver = Weaver("physics", radar)
     made = weaver.generate(weaver.sample_room(), TEXT, frames=FRAMES, seed=0, keep_adc=True)
     assert made.adc is not None
@@ -89,7 +111,14 @@ def check_detector(detect: "Detector", *, radar: str | RadarConfig = "awr1843") 
 
 
 def check_activity(key: str) -> None:
-    """Checks a registered activity: its example is understood as it, and the body moves smoothly and stays whole."""
+    """Checks a registered activity: its example is parsed as that activity, and the motion is reproducible and smooth.
+
+    Args:
+        key: Key of the activity.
+
+    Raises:
+        AssertionError: If a check fails.
+    """
     from mmweaver.motion.empty_floor import act_out
     from mmweaver.motion.language.activities import BY_KEY
     from mmweaver.motion.language.sentence_parser import parse_sentence
@@ -106,7 +135,14 @@ def check_activity(key: str) -> None:
 
 
 def check_encoder(make: "Callable[[], nn.Module]") -> None:
-    """Checks an environment encoder: its shapes, and that the network trains through it."""
+    """Checks an environment encoder: its shapes, and that gradients reach all of its weights.
+
+    Args:
+        make: Returns the encoder.
+
+    Raises:
+        AssertionError: If a check fails.
+    """
     import torch
 
     from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV

@@ -1,7 +1,7 @@
 """Receiver noise of a radar cube, sampled directly in its cells, without ADC samples or FFTs.
 
 The transform of white noise is white, and the Hann window, whose spectrum is 1/2 and twice -1/4, mixes each bin with
-its two neighbours. So it suffices to sample the stored bins and one more at either end.
+its two neighbours. It is therefore sufficient to sample the stored bins and one more at either end.
 """
 
 import numpy as np
@@ -10,18 +10,27 @@ import torch
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.signal.windows import MIN_HANN_LOOPS
 
-MIXED_POWER = 1.5  # of 1, -1/2, -1/2
+MIXED_POWER = 1.5  # sum of the squares of 1, -1/2, -1/2
 
 
 def cell_noise(rng: np.random.Generator, config: RadarConfig, num_frames: int) -> np.ndarray:
-    """Unit-power noise of frames that share no chirps, complex64 (frame, range, doppler, antenna)."""
+    """Unit-power noise of frames that share no chirps.
+
+    Args:
+        rng: Random stream.
+        config: The radar.
+        num_frames: Number of frames.
+
+    Returns:
+        Noise (frame, range, doppler, antenna), complex64.
+    """
     shape = (num_frames, config.num_range_bins, config.num_loops, config.num_antennas)
     out = np.empty(shape, np.complex64)
     samples = torch.empty(num_sampled_bins(config), config.num_loops, 2 * config.num_antennas)
-    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
+    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times faster than numpy's
     mixes_loops = config.num_loops >= MIN_HANN_LOOPS
     power = 2 * MIXED_POWER * (MIXED_POWER if mixes_loops else 1.0)
-    for frame in out:  # one at a time stays in the cache
+    for frame in out:  # one at a time fits into the cache
         lines = range_bins(samples.normal_(generator=generator).numpy(), config)
         if mixes_loops:
             lines = lines - 0.5 * _neighbours(lines)
@@ -39,12 +48,12 @@ def _neighbours(lines: np.ndarray) -> np.ndarray:
 
 
 def num_sampled_bins(config: RadarConfig) -> int:
-    """Range bins that are sampled: those stored, and one more at either end where there is one."""
+    """Number of range bins that are sampled: those stored, and one more at either end where there is one."""
     return min(config.num_range_bins + 2, config.num_samples)
 
 
 def range_bins(white: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """White bins (sampled, ...) -> the stored bins as the range window mixes them, with 3/2 of their power."""
+    """Mixes white bins (sampled, ...) as the range window does; the stored bins result, with 3/2 of the power."""
     if len(white) < config.num_range_bins + 2:  # all bins, or all but one, are stored: neighbours are cyclic
         white = white[np.arange(-1, config.num_range_bins + 1) % config.num_samples]
     return white[1:-1] - 0.5 * (white[:-2] + white[2:])

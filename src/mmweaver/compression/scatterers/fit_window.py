@@ -1,7 +1,7 @@
 """Working frames of a fit: centred phase, every chirp once.
 
-Overlapping frames (a recording cut into windows with a small hop) contain each chirp several times. Then all chirps
-form one long working frame whose window is the root of the sum of all squared windows, so that an error there has the
+Overlapping frames (a recording cut into windows with a small hop) contain each chirp several times. All chirps then
+form one long working frame whose window is the root of the sum of all squared windows, so that an error in it has the
 same energy as in the cube. Without overlap, a working frame is a frame of the cube.
 """
 
@@ -28,19 +28,19 @@ class FitWindow:
 
     config: RadarConfig
     num_frames: int
-    hop: int  # loops from a frame to the next where frames overlap, else 0
+    hop: int  # loops from one frame to the next where frames overlap, otherwise 0
     response: PointResponse
     axes: Axes
-    phasor: Tensor  # (range, doppler, antenna) from centred phase to that of the working frame
+    phasor: Tensor  # (range, doppler, antenna) phase of the working frame relative to centred phase
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int, hop: int) -> "FitWindow":
         """The working frames of a radar.
 
         Args:
-            config: the radar.
-            num_frames: of the cube.
-            hop: loops from one frame to the next; 0 for separate frames.
+            config: The radar.
+            num_frames: Number of frames of the cube.
+            hop: Loops from one frame to the next; 0 for separate frames.
         """
         window = long_window(config.num_loops, num_frames, hop) if hop else None
         response = PointResponse(config, window)
@@ -54,18 +54,18 @@ class FitWindow:
         return 1 if self.hop else self.num_frames
 
     def working(self, values: CubeValues) -> Tensor:
-        """Values of a cube -> working frames (frame, range, doppler, antenna) in centred phase."""
+        """Working frames (frame, range, doppler, antenna) in centred phase, from the values of a cube."""
         frames = _joined(values, self.config, self.hop) if self.hop else values
         return torch.from_numpy(np.ascontiguousarray(frames, np.complex64)) * self.phasor.conj()
 
     def cube_values(self, working: Tensor) -> CubeValues:
-        """The inverse: working frames -> values of the cube (frame, range, doppler, antenna), complex64."""
+        """The inverse of `working`: values of the cube (frame, range, doppler, antenna), complex64."""
         frames = (working * self.phasor).numpy()
         return _cut(frames[0], self.config, self.num_frames, self.hop) if self.hop else frames
 
 
 def overlap_hop(cube: RadarCube) -> int:
-    """Loops from one frame to the next if the frames overlap and agree about their shared chirps, else 0."""
+    """Loops from one frame to the next if frames overlap and agree about their shared chirps, otherwise 0."""
     config, time_s = cube.config, cube.grid.frame_time_s
     if len(time_s) < 2 or config.is_coded:
         return 0
@@ -79,7 +79,13 @@ def overlap_hop(cube: RadarCube) -> int:
 
 
 def long_window(num_loops: int, num_frames: int, hop: int) -> np.ndarray:
-    """Window over the loops of a working frame of overlapping frames (loop,)."""
+    """Window (loop,) of the working frame of overlapping frames.
+
+    Args:
+        num_loops: Loops per frame.
+        num_frames: Number of frames.
+        hop: Loops from one frame to the next.
+    """
     square = np.zeros(num_loops + hop * (num_frames - 1))
     for frame in range(num_frames):
         square[frame * hop :][:num_loops] += doppler_window(num_loops) ** 2
@@ -101,7 +107,7 @@ def _joined(values: np.ndarray, config: RadarConfig, hop: int) -> np.ndarray:
 
 
 def _cut(frame: np.ndarray, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
-    """One long frame (range, doppler, antenna) -> overlapping frames, complex64."""
+    """Overlapping frames, complex64, of one long frame (range, doppler, antenna)."""
     num_loops = config.num_loops
     window, long = doppler_window(num_loops), long_window(num_loops, num_frames, hop)
     uncompensated = frame * _compensation(config, len(long)).conj()

@@ -1,4 +1,4 @@
-"""Fits scatterers to a cube: alternates greedy selection with joint refinement."""
+"""Fits scatterers to a cube by alternating greedy selection and joint refinement."""
 
 from dataclasses import dataclass
 
@@ -22,11 +22,11 @@ from mmweaver.compression.scatterers.refinement import Damping, refined_factors
 
 Array = np.ndarray
 
-# power of an antenna's echoes over that of the strongest, and of what was received in phase with them
+# minimum echo power of an antenna relative to the strongest, and minimum share received in phase with the model
 MIN_SHARE = 0.05
 CALIBRATED_EVERY = 4  # stages: gains change slowly
-NOISE_CELLS = 10_000  # of which the median tells the power of the noise
-MAX_GROUP = 160  # scatterers that are solved for together
+NOISE_CELLS = 10_000  # sample size for the median noise power
+MAX_GROUP = 160  # scatterers that are solved for jointly
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,33 +34,36 @@ class FitRecipe:
     """Budget and effort of a fit.
 
     `num_points` is shared by all frames, wherever points explain most energy. A new scatterer must explain at least
-    `least_gain` times the noise power of a cell, so frames of pure noise get none.
+    `least_gain` times the noise power of a cell, so frames of pure noise have none.
     """
 
     num_points: int
     with_static: bool = True
     with_calibration: bool = False
     stages: int = 30
-    growth: float = 1.0  # points after a share of the stages are that share of all to this power
+    growth: float = 1.0  # exponent: after a share of the stages, that share to this power of all points is placed
     last_steps: int = 8
     least_gain: float = 8.0
-    most_noise: float | None = None  # noise power of a cell, where it is known; the residual may show less
+    most_noise: float | None = None  # upper bound of the noise power per cell, where it is known
 
 
 def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
-    """Layers that approximate working frames in least squares.
+    """Least-squares approximation of working frames by layers.
 
     Args:
-        target: working frames (frame, range, doppler, antenna) in centred phase.
-        fit_window: of these frames.
-        recipe: budget and effort.
+        target: Working frames (frame, range, doppler, antenna) in centred phase, complex64.
+        fit_window: Fit window of these frames.
+        recipe: Budget and effort.
+
+    Returns:
+        Scatterers, static layer, antenna gains and noise power.
     """
     with torch.no_grad():
         return ScattererFit(target, fit_window, recipe).run()
 
 
 class ScattererFit:
-    """State of one fit; invariants: `received` = target / calibration - static, `residual` = received - points."""
+    """State of one fit. Invariants: `received` = target / calibration - static, `residual` = received - points."""
 
     def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
         self.target, self.recipe = target.contiguous().numpy(), recipe
@@ -76,7 +79,7 @@ class ScattererFit:
         self.update_static()
 
     def run(self) -> Layers:
-        """The layers after all stages."""
+        """Runs all stages and returns the layers."""
         recipe = self.recipe
         for stage in range(1, recipe.stages + 1):
             self._fill(round(self.most_points(stage) * (stage / recipe.stages) ** recipe.growth))
@@ -90,7 +93,7 @@ class ScattererFit:
         )
 
     def most_points(self, stage: int) -> int:
-        """How many scatterers the fit may have after its last stage, as a stage knows it."""
+        """Number of scatterers that the fit may have after its last stage, as known at a stage."""
         return self.recipe.num_points
 
     @property
@@ -98,7 +101,7 @@ class ScattererFit:
         return int(np.count_nonzero(self.points.amplitude))
 
     def _fill(self, wanted: int) -> None:
-        """Adds new scatterers, or removes the weakest, up to the wanted number."""
+        """Adds new scatterers, or removes the weakest, to reach the wanted number."""
         if self._num_points > wanted:
             self._keep(wanted)
         self._add(wanted)
@@ -148,11 +151,11 @@ class ScattererFit:
             subtract_static(values, self.static - before, self.static_response)
 
     def whole_static(self) -> Array:
-        """The static layer with what the residual holds of it."""
+        """The static layer, including the static part of the residual."""
         return self.static + fit_static(self.residual, self.static_response)
 
     def _calibrate(self) -> None:
-        """Least-squares gain of each antenna; the mean gain stays 1. Antennas without echoes keep theirs."""
+        """Least-squares gain of each antenna with a mean of 1. Antennas without echoes keep theirs."""
         model = self.received - self.residual
         flat, received = (values.reshape(-1, values.shape[-1]) for values in (model, self.received))
         power = np.einsum("caq,caq->a", *(2 * [flat.view(np.float32).reshape(*flat.shape, 2)]))
@@ -178,5 +181,5 @@ class ScattererFit:
 
 
 def _matrices(values: Array) -> Array:
-    """Complex (frame, range, doppler, antenna) -> real (frame, range, (doppler, antenna, part)), the same memory."""
+    """Complex (frame, range, doppler, antenna) as a real view (frame, range, (doppler, antenna, part))."""
     return values.view(np.float32).reshape(*values.shape[:2], -1)

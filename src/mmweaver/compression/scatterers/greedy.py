@@ -1,4 +1,4 @@
-"""Greedy choice of new scatterers: matched-filter peaks of the residual."""
+"""Greedy selection of new scatterers: matched-filter peaks of the residual."""
 
 from dataclasses import dataclass, field
 
@@ -14,7 +14,7 @@ BEAMS_A_WAVELENGTH = 2.2  # slightly denser than the array's resolution
 CELLS_A_POINT, CELLS_AT_ONCE = 12, 8192
 MIN_BEND = 0.5  # of a parabola, relative to its peak
 ROUNDED = 1e-4
-PEAK_SHARE = 0.9  # of the peak that a new scatterer gets, for neighbours share its energy
+PEAK_SHARE = 0.9  # share of the peak that a new scatterer receives, since neighbours share its energy
 SIDES = (-1, 0, 1)
 
 
@@ -27,7 +27,10 @@ class Beams:
 
     @classmethod
     def covering(cls, axes: Axes, num_directions: int) -> "Beams":
-        """As dense as the aperture requires; a single zero cosine along a side the array cannot resolve."""
+        """Beams as dense as the aperture requires.
+
+        A single zero cosine along an axis that the array does not resolve.
+        """
         sides = []
         for side in range(2):
             if side >= num_directions:
@@ -57,7 +60,7 @@ class NewPoints:
 
 @dataclass(frozen=True, kw_only=True)
 class Greedy:
-    """Finds scatterers in residuals (frame, range, doppler, antenna) of a response."""
+    """Finds scatterers in residuals (frame, range, doppler, antenna)."""
 
     axes: FactorAxes
     beams: Beams
@@ -68,7 +71,7 @@ class Greedy:
 
     @classmethod
     def of(cls, response: PointResponse, axes: Axes) -> "Greedy":
-        """With beams as dense as the array resolves."""
+        """A search with beams as dense as the array resolves."""
         return cls(axes=FactorAxes.of(response, axes), beams=Beams.covering(axes, response.num_directions))
 
     @property
@@ -76,11 +79,19 @@ class Greedy:
         return self.axes.response.range_kernel, self.axes.response.doppler_kernel
 
     def matched_power(self, residual: Array, *, count: int, least: float) -> tuple[Array, Array]:
-        """Energy (frame, range, doppler) that one scatterer per cell would explain, and the index of its beam.
+        """Energy that one scatterer per cell would explain, and its best beam.
 
-        Where it is at most `least`, or less than that of `count` local maxima, it may be 0. The matched filter of a
-        cell has at most the sum of the magnitudes next to it, and no beam more than the energy of all antennas: beams
-        are formed where this bound is largest, in ever more cells.
+        The matched filter of a cell is at most the sum of the magnitudes around it, and no beam has more than the
+        energy of all antennas. Beams are formed in the cells where this bound is largest, in growing numbers.
+
+        Args:
+            residual: Residual (frame, range, doppler, antenna).
+            count: Number of local maxima that must be exact.
+            least: Energy up to which cells are ignored.
+
+        Returns:
+            Energy (frame, range, doppler), possibly 0 where it is at most `least` or below `count` local maxima, and
+            the index of the beam.
         """
         bound = np.sqrt(np.einsum("...a,...a->...", *(2 * [residual.view(np.float32)])))
         bound = np.square(_along(_along(bound, self.taps[0], 1), self.taps[1], 2)) * np.float32(1 + ROUNDED)
@@ -101,7 +112,7 @@ class Greedy:
             wanted = 2 * done
 
     def _beam(self, residual: Array, cells: Array, power: Array, beam: Array) -> None:
-        """Fills in the strongest beams of some cells."""
+        """Computes the strongest beam of some cells."""
         found = _matched_filter(residual, cells, self.taps) @ self.beams.steer.numpy()
         each = np.square(found.real) + np.square(found.imag)
         best = each.argmax(axis=1)
@@ -111,9 +122,9 @@ class Greedy:
         """The best new scatterers over all frames, local maxima over range and Doppler.
 
         Args:
-            residual: (frame, range, doppler, antenna).
-            count: how many at most.
-            least: energy that each must explain.
+            residual: Residual (frame, range, doppler, antenna).
+            count: Maximum number of scatterers.
+            least: Energy that each must explain.
         """
         least = max(least, 0.0)
         power, beam = self.matched_power(residual, count=count, least=least)
@@ -174,7 +185,7 @@ def _along(values: Array, taps: Array, axis: int) -> Array:
 
 
 def _matched_filter(residual: Array, cells: Array, taps: tuple[Array, Array]) -> Array:
-    """The matched filter of a residual at some cells, complex (cell, antenna)."""
+    """Matched filter of a residual at some cells, complex (cell, antenna)."""
     num_range, num_doppler, antennas = residual.shape[1:]
     rest, column = np.divmod(cells, num_doppler)
     row = rest % num_range
@@ -190,7 +201,7 @@ def _matched_filter(residual: Array, cells: Array, taps: tuple[Array, Array]) ->
 
 
 def _largest(values: Array, count: int) -> Array:
-    """Places of the `count` largest values, in falling order."""
+    """Indices of the `count` largest values, in decreasing order."""
     found = np.argpartition(-values, count, axis=None)[:count]
     return found[np.argsort(-values.flat[found])]
 
@@ -198,7 +209,7 @@ def _largest(values: Array, count: int) -> Array:
 def _offset(values: Array, cells: Array, steer: Array, peak: Array, index: Array, stride: int, size: int) -> Array:
     """Offset in bins of a parabola through each peak and its neighbours along an axis.
 
-    `values` (cell, antenna); `index`: of the peaks along the axis of `size` cells, `stride` apart.
+    `values` are (cell, antenna); `index` are the positions of the peaks along the axis of `size` cells, `stride` apart.
     """
     before, after = (
         ((values[cells + side * stride * inside] * steer).sum(axis=1) / np.where(peak, peak, 1)).real * inside

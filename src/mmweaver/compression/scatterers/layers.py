@@ -21,9 +21,12 @@ NO_RESPONSE = 1e-5  # relative to the peak
 class Layers:
     """Parameters of one fit window, in units of its response.
 
-    `points` (frame, point) are padded with amplitude zero. `static` (range, antenna): static clutter, one complex
-    amplitude per range cell and antenna; its Doppler response is known. `calibration` (antenna,): complex gains of the
-    array. `noise_power`: per cell, not part of a rendered cube.
+    Attributes:
+        points: Scatterers (frame, point), padded with amplitude zero.
+        static: Static clutter (range, antenna): one complex amplitude per range cell and antenna, of known Doppler
+            response.
+        calibration: Complex gains (antenna,) of the array.
+        noise_power: Noise power per cell, which is not part of a rendered cube.
     """
 
     points: Points
@@ -45,19 +48,19 @@ def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
     """Renders points and static layer in centred phase.
 
     Args:
-        layers: of one fit window.
-        response: of that window.
-        axes: cells to render.
+        layers: Layers of one fit window.
+        response: Point response of that window.
+        axes: Cells to render.
 
     Returns:
-        (frame, range, doppler, antenna), complex64.
+        Values (frame, range, doppler, antenna), complex64.
     """
     cells = response.render(layers.points, axes, static_cells(layers.static, response, axes))
     return cells * layers.calibration if bool((layers.calibration != 1).any()) else cells
 
 
 def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
-    """Static layer (range, antenna) -> its cells (range, doppler, antenna)."""
+    """Cells (range, doppler, antenna) of a static layer (range, antenna)."""
     return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
 
 
@@ -74,7 +77,7 @@ def fit_static(residual: Array, response: StaticResponse) -> Array:
 
 
 def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
-    """Doppler response of zero velocity where it is not zero, and these bins: three for a Hann window."""
+    """Doppler response of zero velocity where it is not zero, and those bins: three for a Hann window."""
     kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
     found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
     bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
@@ -82,6 +85,7 @@ def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
 
 
 def no_points(num_frames: int) -> Points:
+    """Scatterers (frame, 0) of frames without any."""
     return Points(
         range_bin=torch.zeros(num_frames, 0),
         doppler_bin=torch.zeros(num_frames, 0),
@@ -91,7 +95,7 @@ def no_points(num_frames: int) -> Points:
 
 
 def select_points(points: Points, order: Tensor) -> Points:
-    """Points of each frame selected by `order` (frame, selected)."""
+    """Points of each frame selected by indices (frame, selected)."""
     return points[torch.arange(len(order))[:, None], order]
 
 

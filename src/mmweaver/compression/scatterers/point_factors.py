@@ -1,6 +1,6 @@
-"""Scatterers of several frames and the short factors that their echoes are products of, as NumPy arrays.
+"""Scatterers of several frames and the short factors of their echoes, as NumPy arrays.
 
-`signal.point_response.PointResponse` in the form that a fit needs hundreds of times: bins that lie one apart, factors
+`signal.point_response.PointResponse` in the form that a fit needs hundreds of times: bins spaced by one, factors
 of all frames at once, products frame by frame.
 """
 
@@ -17,7 +17,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True, kw_only=True)
 class FactorAxes:
-    """What the factors of a response need to know about the cells, and the response itself."""
+    """A response, and the cells that its factors are evaluated at."""
 
     response: PointResponse
     first_range: float
@@ -30,6 +30,7 @@ class FactorAxes:
 
     @classmethod
     def of(cls, response: PointResponse, axes: Axes) -> "FactorAxes":
+        """The cells of `axes`, which must be spaced by one bin."""
         return cls(
             response=response,
             first_range=float(axes.range_bin[0]),
@@ -56,7 +57,14 @@ class PointFactors:
 
     @classmethod
     def evaluate(cls, axes: FactorAxes, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
-        """Factors of scatterers with these parameters."""
+        """Factors of scatterers with these parameters.
+
+        Args:
+            axes: Response and cells.
+            bins: Range and Doppler bins (2, frame, point).
+            direction: Direction cosines (frame, point, 2).
+            amplitude: Amplitudes (frame, point), complex64.
+        """
         response = axes.response
         return cls(
             axes=axes,
@@ -85,7 +93,7 @@ class PointFactors:
         )
 
     def counts(self) -> Array:
-        """Scatterers of each frame (frame,), up to the last one that is no padding."""
+        """Number of scatterers of each frame (frame,), up to the last one that is not padding."""
         is_real = self.amplitude != 0
         num = is_real.shape[1]
         return (
@@ -95,7 +103,13 @@ class PointFactors:
         )
 
     def moved(self, step: Array, largest_bins: float, largest_direction: float) -> "PointFactors":
-        """After a step (frame, point, 6) of bins, directions, real and imaginary amplitude, none larger than that."""
+        """The scatterers after a step.
+
+        Args:
+            step: Changes (frame, point, 6) of bins, directions, real and imaginary amplitude.
+            largest_bins: Limit of the change in bins.
+            largest_direction: Limit of the change in direction cosines.
+        """
         bins = self.bins + np.moveaxis(step[..., :2].clip(-largest_bins, largest_bins), -1, 0)
         direction = self.direction + step[..., 2:4].clip(-largest_direction, largest_direction)
         amplitude = self.amplitude + step[..., 4] + np.complex64(1j) * step[..., 5]
@@ -103,7 +117,7 @@ class PointFactors:
         return self.evaluate(self.axes, bins, direction.clip(-1, 1), amplitude)
 
     def joined(self, frame: Array, bins: Array, direction: Array, amplitude: Array) -> "PointFactors":
-        """With more scatterers (point,), sorted by frame, after those of their frames."""
+        """The scatterers with more of them (point,), sorted by frame, after those of their frames."""
         have, more = self.counts(), np.bincount(frame, minlength=self.amplitude.shape[0])
         slot = have[frame] + np.arange(len(frame)) - (np.cumsum(more) - more)[frame]
         kept, num = int(have.max(initial=0)), int((have + more).max(initial=0))
@@ -122,20 +136,29 @@ class PointFactors:
         return PointFactors(axes=self.axes, **out)
 
     def take(self, other: "PointFactors", frame: int) -> None:
-        """Takes a frame's scatterers from others."""
+        """Replaces a frame's scatterers by those of another set."""
         for name in ("bins", "at_range", "at_doppler"):
             getattr(self, name)[:, frame] = getattr(other, name)[:, frame]
         for name in ("direction", "amplitude", "steer"):
             getattr(self, name)[frame] = getattr(other, name)[frame]
 
     def rendered(self, frame: int, count: int, first: int = 0) -> Array:
-        """Scatterers `first` to `count` of a frame, real (range, (doppler, antenna, part)) in centred phase."""
+        """Response of some scatterers of a frame in centred phase.
+
+        Args:
+            frame: Index of the frame.
+            count: Index after the last scatterer.
+            first: Index of the first scatterer.
+
+        Returns:
+            Real values (range, (doppler, antenna, part)).
+        """
         axes, response, own, count = self.axes, self.axes.response, slice(first, count), count - first
         echo = self.amplitude[frame, own, None] * self.steer[frame, own]
         along = np.float32(response.num_loops / (2 * math.pi) * response.migration) * self.bins[1, frame, own, None]
         a_wavelength = np.float32(response.config.wavelength_m / (2 * response.range_a_bin_m))
         nearer = self.direction[frame, own] @ (axes.place.T * a_wavelength)
-        # by values and by slopes of the range kernel; of either, by values and by slopes of the Doppler kernel
+        # indexed by value or slope of the range kernel, then by value or slope of the Doppler kernel
         parts = np.zeros((2, count, 2, len(axes.place)), np.complex64)
         parts[0, :, 0] = echo
         np.multiply(echo, nearer, out=parts[1, :, 0])

@@ -1,8 +1,8 @@
 """Levenberg-Marquardt refinement of all scatterers of a frame jointly, frame by frame.
 
 A scatterer is a product of a range, a Doppler and an antenna factor, so the normal matrix of hundreds of scatterers
-is the elementwise product of three small Gram matrices: no Jacobian is ever formed. A frame's arrays stay in the cache,
-where those of all frames together are copied to and from memory for every operation.
+is the elementwise product of three small Gram matrices, and no Jacobian is formed. The arrays of one frame fit into
+the cache, while those of all frames together would be copied to and from memory in every operation.
 """
 
 import math
@@ -22,7 +22,7 @@ SOLVE = get_lapack_funcs("posv", dtype=np.float32)
 MAX_STEP_BINS = 0.5
 MAX_STEP_DIRECTION = 0.25
 DAMPING_START, DAMPING_MIN, DAMPING_MAX = 3e-2, 3e-3, 1e3
-DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a step that is rejected costs as much as one that is not
+DAMPING_DOWN, DAMPING_UP = 1.5, 8.0  # a rejected step costs as much as an accepted one
 HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
 
@@ -34,10 +34,11 @@ class Damping:
 
     @classmethod
     def fresh(cls, num_frames: int) -> "Damping":
+        """The initial damping."""
         return cls(np.full(num_frames, DAMPING_START))
 
     def learn(self, frame: int, *, is_better: bool) -> None:
-        """Lowers the damping of a frame whose step was accepted, raises that of another."""
+        """Lowers the damping of a frame whose step was accepted, raises it otherwise."""
         changed = self.value[frame] / DAMPING_DOWN if is_better else self.value[frame] * DAMPING_UP
         self.value[frame] = min(max(changed, DAMPING_MIN), DAMPING_MAX)
 
@@ -55,16 +56,16 @@ def refined(
     """Levenberg-Marquardt refinement of all scatterers.
 
     Frames of more than `largest` scatterers are split into groups of neighbours in range, solved in turn. A step that
-    would raise a frame's error is rejected. Padded points have amplitude zero and stay.
+    would raise a frame's error is rejected. Padded points of zero amplitude are unchanged.
 
     Args:
-        points: (frame, point).
-        target: (frame, range, doppler, antenna) in centred phase.
-        response: of the radar.
-        axes: of the target, those of the radar or parts of them.
-        damping: of each frame, changed in place.
-        steps: number of steps.
-        largest: scatterers that are solved for together.
+        points: Scatterers (frame, point).
+        target: Working frames (frame, range, doppler, antenna) in centred phase.
+        response: Point response of the radar.
+        axes: Cells of the target.
+        damping: Damping of each frame, changed in place.
+        steps: Number of steps.
+        largest: Maximum number of scatterers that are solved for jointly.
 
     Returns:
         The points after the steps, and the residual of the target.
@@ -86,9 +87,15 @@ def refined_factors(
     steps: int,
     largest: int,
 ) -> PointFactors:
-    """As `refined`. `received`: the target, real (frame, range, (doppler, antenna, part)); `rest`: the residual.
+    """`refined` on factors.
 
-    The residual is changed in place.
+    Args:
+        points: Scatterers with their factors.
+        received: The target, real (frame, range, (doppler, antenna, part)).
+        rest: The residual, of the same shape; changed in place.
+        damping: Damping of each frame, changed in place.
+        steps: Number of steps.
+        largest: Maximum number of scatterers that are solved for jointly.
     """
     counts = points.counts().tolist()
     filled = [frame for frame, count in enumerate(counts) if count]
@@ -114,7 +121,7 @@ def refined_factors(
 
 
 def _groups(points: PointFactors, frame: int, count: int, largest: int) -> list[tuple[Array, slice]]:
-    """Indices of a frame's scatterers that are solved for together, by range, and the range cells that they see."""
+    """Indices of a frame's scatterers that are solved for jointly, by range, and the range cells that they affect."""
     num_range = points.axes.num_range
     if count <= largest:
         return [(np.arange(count), slice(0, num_range))]
@@ -127,7 +134,7 @@ def _groups(points: PointFactors, frame: int, count: int, largest: int) -> list[
 
 
 def _step(points: PointFactors, frame: int, group: Array, rest: Array, cells: slice, damping: float) -> Array:
-    """A damped Gauss-Newton step (point, 6) of some scatterers: bins, directions, real and imaginary amplitude."""
+    """Damped Gauss-Newton step (point, 6) of some scatterers: bins, directions, real and imaginary amplitude."""
     num, sides = len(group), points.axes.response.num_directions
     at_range = points.at_range[:, frame, group, cells].reshape(2 * num, -1)
     at_doppler = points.at_doppler[:, frame, group]
@@ -135,9 +142,9 @@ def _step(points: PointFactors, frame: int, group: Array, rest: Array, cells: sl
     gradient = _gradient(at_range, at_doppler, vectors, rest[cells])
     matrix = _normal_matrix(at_range, at_doppler.reshape(2 * num, -1), vectors)
     diagonal = matrix.reshape(-1)[:: len(matrix) + 1]
-    # relative to each parameter's own curvature: they are of several kinds, and amplitudes of many decibels
+    # relative to each parameter's own curvature, since parameters differ in kind and amplitudes by many decibels
     diagonal += damping * (diagonal + (1e-6 * diagonal.max() + 1e-30))
-    # the lower triangle of a matrix in rows is the upper one in columns, which are not copied then
+    # the lower triangle in row order is the upper one in column order, which saves a copy
     _, found, info = SOLVE(matrix.T, gradient, lower=0, overwrite_a=1, overwrite_b=1)
     out = np.zeros((num, 6), np.float32)
     if not info and np.isfinite(found).all():
@@ -147,7 +154,7 @@ def _step(points: PointFactors, frame: int, group: Array, rest: Array, cells: sl
 
 
 def _antenna_vectors(points: PointFactors, frame: int, group: Array) -> Array:
-    """Real (kind, point, 2 antenna): echo, its derivatives by direction, and by the two parts of amplitude."""
+    """Real (kind, point, 2 antenna): echo, its derivatives by direction, and by both parts of the amplitude."""
     steer, place = points.steer[frame, group], points.axes.place
     sides = points.axes.response.num_directions
     out = np.empty((3 + sides, *steer.shape), np.complex64)
@@ -160,14 +167,14 @@ def _antenna_vectors(points: PointFactors, frame: int, group: Array) -> Array:
 
 
 def _normal_matrix(at_range: Array, at_doppler: Array, vectors: Array) -> Array:
-    """(parameter and point, parameter and point); only the blocks on and below the diagonal are filled."""
+    """Normal matrix over (parameter, point); only the blocks on and below the diagonal are filled."""
     kinds, num = len(vectors), vectors.shape[1]
     flat = vectors.reshape(kinds * num, -1)
     by_range, by_doppler, by_antenna = at_range @ at_range.T, at_doppler @ at_doppler.T, flat @ flat.T
     own, slope = slice(0, num), slice(num, None)
     out = np.empty(((1 + kinds) * num,) * 2, np.float32)
     rest = out[2 * num :].reshape(kinds - 1, num, -1)
-    # echo by echo, and by echo the other kinds, which neither range nor Doppler changes
+    # echo with echo, then echo with the other kinds
     echo = by_antenna[own, own]
     out[own, own] = by_range[slope, slope] * by_doppler[own, own] * echo
     out[slope.start : 2 * num, own] = by_range[own, slope] * by_doppler[slope, own] * echo
@@ -185,7 +192,7 @@ def _normal_matrix(at_range: Array, at_doppler: Array, vectors: Array) -> Array:
 
 
 def _gradient(at_range: Array, at_doppler: Array, vectors: Array, rest: Array) -> Array:
-    """(parameter and point,): inner products of the residual (range, ...) with all derivatives."""
+    """Inner products (parameter and point,) of the residual (range, ...) with all derivatives."""
     num = at_doppler.shape[1]
     seen = (at_range @ rest).reshape(2, num, at_doppler.shape[2], -1)
     along = at_doppler.transpose(1, 0, 2) @ seen[0]  # by the values of the kernel, and by its slopes
