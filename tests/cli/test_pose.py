@@ -53,7 +53,7 @@ def test_from_a_task_to_poses(model: Path, tmp_path: Path, capsys: pytest.Captur
     assert (tmp_path / "poses" / "pose.png").stat().st_size > 5000
     write_points_npz(tmp_path / "nobody.npz", cloud.select(np.zeros(len(cloud.frame), bool)))
     assert main(["pose", str(model), "--points", str(tmp_path / "nobody.npz"), "--out", str(tmp_path / "none")]) == 2
-    assert "nobody to give poses of" in capsys.readouterr().err
+    assert "nobody" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -85,7 +85,7 @@ def test_a_file_cut_anywhere_holds_its_whole_chunks(path: Path):
 
 def test_foreign_and_missing_files_have_one_clear_line(path: Path, tmp_path: Path):
     path.write_bytes(b"PK\x03\x04" + bytes(100))
-    with pytest.raises(InputError, match=r"is no \.mmw file"):
+    with pytest.raises(InputError, match=r"a\.mmw is no"):
         MmwFile(path)
     with pytest.raises(InputError, match="cannot read"):
         MmwFile(tmp_path / "none.mmw")

@@ -83,7 +83,7 @@ def test_another_version_of_the_signal_is_noticed(both: tuple[ActivitySet, Activ
     stored = read_activity_set(both[0].files.folder)
     assert stored.on_demand is not None
     stored.on_demand._power_db = stored.on_demand._power_db + 1.0
-    with pytest.raises(InputError, match="makes another signal of sequence 0"):
+    with pytest.raises(InputError, match="sequence 0"):
         stored.cube(0)
     stored.on_demand.method = "gone"
     stored.on_demand._rooms.clear()
