@@ -15,10 +15,3 @@ class MeanEchoes(TensorRecord):
     velocity_mps: Tensor  # (..., echo) radial, positive away from the radar
     direction: Tensor  # (..., echo, 2) direction cosines along x and z
     cross_section_m2: Tensor  # (..., echo) mean
-
-
-@dataclass(frozen=True, kw_only=True)
-class CellEchoes(MeanEchoes):
-    """Echoes that stand for resolution cells; a cell has one number in all frames, and so one phase."""
-
-    cell: Tensor  # (..., echo) int64
