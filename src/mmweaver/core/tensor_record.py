@@ -1,11 +1,12 @@
-"""Frozen dataclasses of torch tensors that are moved, stacked, concatenated and indexed together."""
+"""Frozen dataclasses of tensors or arrays that are moved, stacked, joined and indexed as one."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import torch
     from torch import Tensor
 
 RecordT = TypeVar("RecordT", bound="TensorRecord")
@@ -13,10 +14,10 @@ RecordT = TypeVar("RecordT", bound="TensorRecord")
 
 @dataclass(frozen=True, kw_only=True)
 class TensorRecord:
-    """Base of records whose tensor fields share their leading axes.
+    """Base of records whose fields are tensors, or numpy arrays, that share their leading axes.
 
-    Operations apply to every tensor and to nested records. None and non-tensor values are kept, taken from the first
-    record when several are combined.
+    Operations apply to every one and to nested records; None and other values stay as they are, taken from the first
+    record where several are combined.
 
     >>> import torch
     >>> @dataclass(frozen=True, kw_only=True)
@@ -49,7 +50,7 @@ class TensorRecord:
 
     @classmethod
     def stack(cls: type[RecordT], records: Sequence[RecordT]) -> RecordT:
-        """Stacks records of equal shapes along a new leading axis."""
+        """Records of tensors of equal shapes along a new leading axis."""
         import torch
 
         return _combined(records, torch.stack)
@@ -67,7 +68,9 @@ class TensorRecord:
         """
         import torch
 
-        return _combined(records, lambda tensors: torch.cat(tensors, dim))
+        return _combined(
+            records, lambda parts: (np.concatenate if isinstance(parts[0], np.ndarray) else torch.cat)(parts, dim)
+        )
 
 
 def _mapped(value: Any, function: Callable[["Tensor"], "Tensor"]) -> Any:
@@ -75,10 +78,10 @@ def _mapped(value: Any, function: Callable[["Tensor"], "Tensor"]) -> Any:
 
     if isinstance(value, TensorRecord):
         return value.map(function)
-    return function(value) if isinstance(value, torch.Tensor) else value
+    return function(value) if isinstance(value, (torch.Tensor, np.ndarray)) else value
 
 
-def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]], "torch.Tensor"]) -> RecordT:
+def _combined(records: Sequence[RecordT], join: Callable[[list[Any]], Any]) -> RecordT:
     import torch
 
     first = records[0]
@@ -88,5 +91,5 @@ def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]],
         if isinstance(each[0], TensorRecord):
             values[name] = _combined(each, join)
         else:
-            values[name] = join(each) if isinstance(each[0], torch.Tensor) else each[0]
+            values[name] = join(each) if isinstance(each[0], (torch.Tensor, np.ndarray)) else each[0]
     return type(first)(**values)
