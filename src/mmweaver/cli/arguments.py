@@ -37,7 +37,7 @@ RENAMED = {
     "--empty-room": "--background",
     "--each": "--per-class",
     "--repeat": "--per-class",
-    "--doing": "--action",
+    **dict.fromkeys(("--doing", "--body-z"), "a board is calibrated from signals, not from point clouds; leave it out"),
     "--effort": "--preset",
     "--further-photos": "--extra-views",
     "--start": "--weights",
