@@ -6,8 +6,8 @@ are composed again with other random numbers, and that person goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
-import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
@@ -27,20 +27,20 @@ def compose_people(
     scene: Scene,
     *,
     seed: int,
-    range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
     heights_m: Sequence[float | None] | None = None,
     subjects: Sequence[int | None] | None = None,
     first: Motion | None = None,
     heading_rad: float | None = None,
-    farthest_m: float = math.inf,
+    **window: Any,
 ) -> tuple[Motion, ...]:
     """One motion for each scheduled plan, in their order; each is another subject.
 
     `starts_m`, `heights_m` and `subjects` hold each person's start (x, y), height and number, None where it is chosen.
     `heading_rad` is where the first faces first. `first` is the first
     person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
-    the first person moves as they would alone, wherever that leaves room for the others. Raises InputError as
+    the first person moves as they would alone, wherever that leaves room for the others. `window`: `range_window_m` and
+    `farthest_m` as for `compose`. Raises InputError as
     `compose` does, and where the people cannot be kept separate.
     """
     starts = [None] * len(plans) if starts_m is None else list(starts_m)
@@ -57,14 +57,13 @@ def compose_people(
             plan,
             scene,
             seed=own_seed,
-            range_window_m=range_window_m,
             start_m=starts[index],
             height_m=heights[index],
             subject=numbers[index],
             others=others,
             heading_rad=None if index or first is not None else heading_rad,
             may_touch=may_touch,
-            farthest_m=farthest_m,
+            **window,
         )
 
     if len(plans) == 1:

@@ -106,8 +106,8 @@ class Trainer(Generic[LearnerT]):
         learner: The network with its loss.
         recipe: Hyperparameters.
         out: Folder of checkpoint, log and weights; a checkpoint there is resumed.
-        train: `train(step, share)` samples the part of a step's batch that belongs to one of several processes.
-        validation: `validation(index, share)`, one of a few fixed batches.
+        batches: `train(step, share)` samples the part of a step's batch that belongs to one of several processes;
+            `validation(index, share)` is one of a few fixed batches.
         compute: Device, precision and process; default: the CPU in float32, alone.
         is_tuning: Whether the initial weights are validated first, as the ones to beat.
         tensorboard: Whether TensorBoard's files are written, too.
@@ -123,8 +123,7 @@ class Trainer(Generic[LearnerT]):
         recipe: LoopRecipe,
         out: Path,
         *,
-        train: BatchSampler,
-        validation: BatchSampler,
+        batches: tuple[BatchSampler, BatchSampler],
         compute: ComputeDevice | None = None,
         is_tuning: bool = False,
         tensorboard: bool = False,
@@ -132,7 +131,7 @@ class Trainer(Generic[LearnerT]):
     ):
         self.compute = compute or ComputeDevice()
         self.learner = learner.to(self.compute.device)
-        self.recipe, self.out, self._train, self._validation = recipe, out, train, validation
+        self.recipe, self.out, (self._train, self._validation) = recipe, out, batches
         if recipe.batch_size % self.compute.share[1]:
             raise InputError(
                 f"a batch of {recipe.batch_size} cannot be shared by {self.compute.share[1]} processes evenly;"

@@ -41,6 +41,7 @@ from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.motion.people import subject_of
+from mmweaver.motion.planning.placement import Conditions
 from mmweaver.propagation.static_paths import ALL_PATHS
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.signal.detection import check_points, detect, needs_adc
@@ -218,12 +219,10 @@ class Weaver(RoomReader):
         (person,) = request.people
         motion = ContinuousMotion(
             room.scene,
+            Conditions(seed=request.seed, start_m=person.start_m, heading_rad=request.heading_rad),
             frame_period_s=request.config.frame_period_s,
             range_window_m=request.range_window_m,
-            seed=request.seed,
             farthest_m=request.config.farthest_bin_m,
-            start_m=person.start_m,
-            heading_rad=request.heading_rad,
             height_m=person.height_m,
             subject=person.subject,
         )

@@ -69,14 +69,13 @@ def sample_codes(
     tokens: int | None,
     most_tokens: int,
     seed: int,
-    temperature: float = 1.0,
-    top_k: int = 50,
+    **sampling: Any,
 ) -> list[int]:
     """Samples motion codes for a text.
 
     With `tokens`, exactly that many: all other tokens, and an early end, are masked. Without, as many as the model
-    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. The same seed gives the same
-    codes.
+    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. `sampling`: `temperature`
+    (default 1) and `top_k` (default 50). The same seed gives the same codes.
     """
     from transformers import LogitsProcessorList
 
@@ -92,8 +91,7 @@ def sample_codes(
             max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,
             num_beams=1,
             do_sample=True,
-            temperature=temperature,
-            top_k=top_k,
+            **({"temperature": 1.0, "top_k": 50} | sampling),
             logits_processor=rules,
         )
     ids = [int(k) - first_motion_id for k in generated[0]]
