@@ -19,8 +19,8 @@ EXAMPLES = """examples:
 @options
 class Options(Written, Samples, Ranges):
     """Finds what recordings show of the board that made them: IF response, noise figure, leakage, antenna gains and
-    phases, first chirps, drift. Nothing need be known of the room. Reports what
-    it could not see, and why; generate --board takes the file.
+    phases, first chirps, drift. Nothing need be known of the room. Reports what it could not see and why;
+    generate --board takes the file.
     """
 
     GROUPS: ClassVar[dict[str, str]] = {"radar": "what recordings do not bring"}

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.motion.animation.assemble import assembled_controls, solved
@@ -18,7 +19,6 @@ from mmweaver.motion.planning.constraint_relaxation import relax_constraints
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Conditions, Placement, place
-from mmweaver.motion.planning.targets import drop_targets
 
 RUN_ROOM_M = 3.5  # straight free floor required to run to and fro at 3 m/s
 
@@ -69,40 +69,28 @@ def compose(
     plan: MotionPlan,
     scene: Scene,
     *,
-    seed: int,
     range_window_m: tuple[float, float],
-    start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
     subject: int | None = None,
     person: Person | None = None,
-    heading_rad: float | None = None,
-    is_varied: bool = True,
-    others: tuple[PoseSequence, ...] = (),
-    has_photo: bool = True,
-    after: BodyState | None = None,
     may_touch: bool = True,
     farthest_m: float = math.inf,
+    **conditions: Any,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
     Args:
-        plan: Scheduled plan, see `motion.language.timing.plan_motion`.
-        scene: The room, in the radar's frame.
-        seed: Determines what the sentence leaves open.
-        range_window_m: Nearest and farthest slant range in metres that the radar keeps; the body stays inside.
-        start_m: Start position (x, y) in metres; None chooses one.
-        height_m: Height of the body in metres; None takes the described height, else samples the population.
-        subject: Number of the person, which fixes surface, build, habits and usual height; None samples it by the seed.
-        person: A person made otherwise, instead of `height_m` and `subject`.
-        heading_rad: Initial heading in radians, from +x towards +y; None chooses one.
-        is_varied: False lets standing people face the radar, where it observes them best, without personal habits.
-        others: People already in the scene; the trajectory keeps clear of them (see `multi_person`).
-        has_photo: False if the scene has no photo. Walks to a door or table then lead to free floor, which an
-            assumption reports.
-        after: Final state of the previous motion, from which this one continues (see `continuous`).
-        may_touch: Whether, as a last resort, travelling movements may be done on the spot, falls redirected, and a
-            lying body may touch furniture; each deviation is reported. False raises instead.
-        farthest_m: Maximum range in metres with all range bins; error messages advise no longer window.
+        plan: a scheduled plan, as `motion.language.timing.plan_motion` makes it of a sentence.
+        scene: the room, in the radar's frame.
+        range_window_m: nearest and farthest slant range that the radar keeps; the body stays inside.
+        height_m: the body's height; if None as the sentence describes the person, else of the population.
+        subject: who it is: surface, build, habits and usual height; sampled by the seed if None.
+        person: instead of the two, a person made otherwise.
+        may_touch: where nothing else has room, travelling movements are done on the spot, falls go another way, and a
+            lying body touches furniture; each deviation is reported. False raises instead.
+        farthest_m: what the radar sees at most, with all its range bins; a longer window is not advised.
+        **conditions: the fields of `planning.placement.Conditions`: `seed`, and perhaps `start_m`, `heading_rad`,
+            `is_varied` (False: no habits, too), `others` and `after`.
 
     Returns:
         The motion at 120 Hz in the radar's frame, with plan, person and assumptions.
@@ -113,31 +101,29 @@ def compose(
     """
     if plan.duration_s <= 0:
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
-    plan = settled(plan if has_photo else drop_targets(plan))
-    person = person or person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
+    given = Conditions(**conditions)
+    plan = settled(plan)
+    person = person or person_of(subject_of(given.seed) if subject is None else subject, plan.person, height_m)
     plan = apply_habits(plan, person)
     body = SkeletonProportions(person.height_m)
     floor = FloorMap.of(scene, range_window_m, person.height_m)
     plan, running_notes = _running(plan, floor)
 
     controls: dict[int, Controls] = {}
-    conditions = Conditions(
-        seed=seed, start_m=start_m, heading_rad=heading_rad, is_varied=is_varied, others=others, after=after
-    )
 
     def compose_on(plan: MotionPlan, floor: FloorMap) -> RankedPlacement:
         def candidates(attempt: int) -> list[Placement]:
-            return place(plan, floor, body, conditions, attempt=attempt)
+            return place(plan, floor, body, given, attempt=attempt)
 
         def animate(placement: Placement) -> PoseSequence:
             made = assembled_controls(
                 placement.steps,
                 placement.path,
                 body,
-                seed=seed,
+                seed=given.seed,
                 duration_s=plan.duration_s,
-                habits=habits_of(person.subject) if is_varied else NO_HABITS,
-                entry=None if after is None else after.controls,
+                habits=habits_of(person.subject) if given.is_varied else NO_HABITS,
+                entry=None if given.after is None else given.after.controls,
             )
             controls[id(placement)] = made
             pose = solved(made, body, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m)

@@ -24,6 +24,7 @@ from mmweaver.motion.language.timing import natural_s, schedule
 from mmweaver.motion.people import Person, apply_habits, person_of, subject_of
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.placement import Conditions
 from mmweaver.motion.planning.seating import preferred, usable_seats
 
 IDLE_S = 10.0  # duration of a part without a new sentence
@@ -76,20 +77,17 @@ class ContinuousMotion:
     def __init__(
         self,
         scene: Scene,
+        first: Conditions,
         *,
         frame_period_s: float,
         range_window_m: tuple[float, float],
         farthest_m: float = math.inf,
-        seed: int,
-        start_m: tuple[float, float] | None = None,
-        heading_rad: float | None = None,
         height_m: float | None = None,
         subject: int | None = None,
     ) -> None:
-        self.scene, self.frame_period_s, self.range_window_m, self.seed = scene, frame_period_s, range_window_m, seed
-        self._farthest_m = farthest_m
-        self._start_m, self._heading_rad = start_m, heading_rad
-        self._height_m, self._subject = height_m, subject_of(seed) if subject is None else subject
+        self.scene, self.frame_period_s, self.range_window_m = scene, frame_period_s, range_window_m
+        self._first, self._farthest_m = first, farthest_m  # start and heading are those of the first part
+        self._height_m, self._subject = height_m, subject_of(first.seed) if subject is None else subject
         self._person: Person | None = None
         self._parts = 0
         self._last: MotionPart | None = None
@@ -167,7 +165,7 @@ class ContinuousMotion:
         number = self._parts
         frames = max(1, math.ceil(natural_s(plan) / self.frame_period_s - 1e-6))
         scheduled = schedule(plan, frames * self.frame_period_s)
-        seed = self.seed if number == 0 else int(stream(self.seed, "stream", number).integers(2**31))
+        seed = self._first.seed if number == 0 else int(stream(self._first.seed, "stream", number).integers(2**31))
         is_first = self._end is None
         motion = compose(
             scheduled,
@@ -176,8 +174,8 @@ class ContinuousMotion:
             range_window_m=self.range_window_m,
             person=person,
             after=self._state(),
-            start_m=self._start_m if is_first else None,
-            heading_rad=self._heading_rad if is_first else None,
+            start_m=self._first.start_m if is_first else None,
+            heading_rad=self._first.heading_rad if is_first else None,
             may_touch=may_touch,
             farthest_m=self._farthest_m,
         )

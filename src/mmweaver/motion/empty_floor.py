@@ -5,6 +5,7 @@ import numpy as np
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.targets import drop_targets
 
 RADAR_HEIGHT_M = 1.1
 FLOOR_M = 8.0  # both ways
@@ -75,11 +76,10 @@ def act_out(
     ('bow', (245, 22, 3))
     """
     return compose(
-        plan_motion(text, duration_s),
+        drop_targets(plan_motion(text, duration_s)),  # no photo shows a door or table to walk to
         empty_floor(),
         seed=seed,
         range_window_m=WINDOW_M,
         height_m=height_m,
         subject=subject,
-        has_photo=False,
     )

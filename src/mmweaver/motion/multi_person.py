@@ -5,8 +5,8 @@ composed again with other random numbers, and that person goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
-import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
@@ -26,35 +26,21 @@ def compose_people(
     scene: Scene,
     *,
     seed: int,
-    range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
     heights_m: Sequence[float | None] | None = None,
     subjects: Sequence[int | None] | None = None,
     first: Motion | None = None,
     heading_rad: float | None = None,
-    farthest_m: float = math.inf,
+    **window: Any,
 ) -> tuple[Motion, ...]:
     """Composes one motion per scheduled plan, each of another subject.
 
-    The first person moves as they would alone, unless that leaves no room for the others.
-
-    Args:
-        plans: Scheduled plans, one per person; that of a given `first` is not used.
-        scene: The room, in the radar's frame.
-        seed: Determines what the sentences leave open.
-        range_window_m: Nearest and farthest slant range in metres that the radar keeps.
-        starts_m: Start (x, y) of each person in metres; None entries are chosen.
-        heights_m: Height of each person in metres; None entries are sampled or described.
-        subjects: Number of each person; None entries are sampled.
-        first: Existing motion of the first person (a recorded one), kept unchanged.
-        heading_rad: Initial heading of the first person in radians, from +x towards +y.
-        farthest_m: Maximum range in metres with all range bins, for advice in error messages.
-
-    Returns:
-        The motions in the order of `plans`.
-
-    Raises:
-        InputError: As in `compose`, or if the people cannot be kept apart.
+    `starts_m`, `heights_m` and `subjects` hold each person's start (x, y), height and number, None where it is chosen.
+    `heading_rad` is where the first faces first. `first` is the first
+    person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
+    the first person moves as they would alone, wherever that leaves room for the others. `window`: `range_window_m` and
+    `farthest_m` as for `compose`. Raises InputError as
+    `compose` does, and where the people cannot be kept separate.
     """
     starts = [None] * len(plans) if starts_m is None else list(starts_m)
     heights = [None] * len(plans) if heights_m is None else list(heights_m)
@@ -70,14 +56,13 @@ def compose_people(
             plan,
             scene,
             seed=own_seed,
-            range_window_m=range_window_m,
             start_m=starts[index],
             height_m=heights[index],
             subject=numbers[index],
             others=others,
             heading_rad=None if index or first is not None else heading_rad,
             may_touch=may_touch,
-            farthest_m=farthest_m,
+            **window,
         )
 
     if len(plans) == 1:

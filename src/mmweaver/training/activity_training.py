@@ -250,8 +250,7 @@ def train_activity(
         out,
         compute=compute,
         is_tuning=start is not None,
-        train=_batch_sampler(examples, recipe),
-        validation=_fixed_batches(unseen, recipe.validation_batches),
+        batches=(_batch_sampler(examples, recipe), _fixed_batches(unseen, recipe.validation_batches)),
         **options,
     )
     trainer.run(listener)

@@ -150,8 +150,7 @@ def train(
         recipe,
         out,
         compute=compute,
-        train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
-        validation=validation,
+        batches=(batch_sampler(rooms, recipe, recipe.seed, recipe.mirror), validation),
         **options,
     )
     trainer.run(listener)

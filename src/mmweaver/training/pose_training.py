@@ -236,8 +236,7 @@ def train_pose(
         recipe,
         out,
         is_tuning=start is not None,
-        train=_sampler(windows, recipe, "pose batch"),
-        validation=_sampler(unseen, recipe, "pose validation"),
+        batches=(_sampler(windows, recipe, "pose batch"), _sampler(unseen, recipe, "pose validation")),
         **options,
     )
     trainer.run(listener)

@@ -106,13 +106,13 @@ class Trainer(Generic[LearnerT]):
     Args:
         learner: The network with its loss.
         recipe: Hyperparameters.
-        out: Folder of checkpoint, log and weights; an existing checkpoint is resumed.
-        train: `train(step, share)` samples the part of a step's batch that belongs to one of several processes.
-        validation: `validation(index, share)` returns one of a few fixed batches.
-        compute: Device, precision and process. Default: CPU in float32, a single process.
-        is_tuning: Whether the initial weights are validated first, as the ones to improve on. Default: False.
-        tensorboard: Whether to write TensorBoard files. Default: False.
-        save_every_s: Seconds between checkpoints. Default: 60.
+        out: Folder of checkpoint, log and weights; a checkpoint there is resumed.
+        batches: `train(step, share)` samples the part of a step's batch that belongs to one of several processes;
+            `validation(index, share)` is one of a few fixed batches.
+        compute: Device, precision and process; default: the CPU in float32, alone.
+        is_tuning: Whether the initial weights are validated first, as the ones to beat.
+        tensorboard: Whether TensorBoard's files are written, too.
+        save_every_s: Seconds between checkpoints; default 60.
 
     Raises:
         InputError: If the checkpoint has other settings, or processes cannot share a batch evenly.
@@ -124,8 +124,7 @@ class Trainer(Generic[LearnerT]):
         recipe: LoopRecipe,
         out: Path,
         *,
-        train: BatchSampler,
-        validation: BatchSampler,
+        batches: tuple[BatchSampler, BatchSampler],
         compute: ComputeDevice | None = None,
         is_tuning: bool = False,
         tensorboard: bool = False,
@@ -133,7 +132,7 @@ class Trainer(Generic[LearnerT]):
     ):
         self.compute = compute or ComputeDevice()
         self.learner = learner.to(self.compute.device)
-        self.recipe, self.out, self._train, self._validation = recipe, out, train, validation
+        self.recipe, self.out, (self._train, self._validation) = recipe, out, batches
         if recipe.batch_size % self.compute.share[1]:
             raise InputError(
                 f"a batch of {recipe.batch_size} cannot be shared by {self.compute.share[1]} processes evenly;"

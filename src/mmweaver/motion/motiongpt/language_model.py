@@ -86,25 +86,13 @@ def sample_codes(
     tokens: int | None,
     most_tokens: int,
     seed: int,
-    temperature: float = 1.0,
-    top_k: int = 50,
+    **sampling: Any,
 ) -> list[int]:
     """Samples motion codes for a text.
 
-    Args:
-        t5: Language model.
-        text_ids: Token ids of the text, (1, word).
-        first_motion_id: Id of the first motion token.
-        codes: Number of motion codes.
-        tokens: Exact number of codes; other tokens and an early end are masked. None lets the model end, as in the
-            published demo, and drops other tokens.
-        most_tokens: Maximum number of codes if `tokens` is None.
-        seed: Seed; the same seed gives the same codes.
-        temperature: Sampling temperature.
-        top_k: Number of most likely tokens to sample from.
-
-    Returns:
-        Motion codes.
+    With `tokens`, exactly that many: all other tokens, and an early end, are masked. Without, as many as the model
+    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. `sampling`: `temperature`
+    (default 1) and `top_k` (default 50). The same seed gives the same codes.
     """
     from transformers import LogitsProcessorList
 
@@ -120,8 +108,7 @@ def sample_codes(
             max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,
             num_beams=1,
             do_sample=True,
-            temperature=temperature,
-            top_k=top_k,
+            **({"temperature": 1.0, "top_k": 50} | sampling),
             logits_processor=rules,
         )
     ids = [int(k) - first_motion_id for k in generated[0]]

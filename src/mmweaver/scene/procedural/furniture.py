@@ -1,9 +1,10 @@
 """Builds the furniture of procedural rooms from the records of furniture.toml."""
 
+import ast
+import operator
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from types import CodeType
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,14 @@ from mmweaver.scene.procedural.parts import Appearance, LocalSeat, Part, Piece
 Span = float | tuple[float, float]
 
 RECORDS = read_tables("furniture.toml")
+_FUNCTIONS: dict[Any, Callable[..., Any]] = {
+    "min": min,
+    "max": max,
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 _FLAGS = ("landmark", "on_wall", "is_free")
 
 
@@ -46,30 +55,46 @@ def make_piece(name: str, palette: Palette, rng: np.random.Generator, **sizes: A
         name=record.get("called", name),
         parts=tuple(builder.parts),
         seats=(*seats, *builder.seats),
+        sizes=known,
         **{flag: record[flag] for flag in _FLAGS if flag in record},
     )
 
 
 def evaluate(formula: Any, sizes: dict[str, Any]) -> Any:
-    """Evaluates a formula of a record.
+    """A number or a range (as they are), or the value of a formula: numbers, sizes, + - * /, min, max.
 
-    Args:
-        formula: Number or range, returned unchanged, or an expression of the sizes.
-        sizes: Sizes by name.
-
-    Returns:
-        The value, or for a range the values of its ends.
+    Raises ValueError for a formula that has anything else, or no value.
     """
     if isinstance(formula, tuple):
         return tuple(evaluate(part, sizes) for part in formula)
     if not isinstance(formula, str):
         return formula
-    return eval(_compiled(formula), {"__builtins__": {"min": min, "max": max}}, sizes)
+    try:
+        return _value(_parsed(formula), sizes)
+    except (SyntaxError, TypeError, KeyError, ZeroDivisionError):
+        raise ValueError(
+            f"no value for {formula!r}: a formula has numbers, + - * /, min, max and {', '.join(sizes)}"
+        ) from None
 
 
 @cache
-def _compiled(formula: str) -> CodeType:
-    return compile(formula, "furniture.toml", "eval")
+def _parsed(formula: str) -> ast.expr:
+    return ast.parse(formula, mode="eval").body
+
+
+def _value(node: ast.expr, sizes: dict[str, Any]) -> Any:
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return number
+        case ast.Name(id=name):
+            return sizes[name]
+        case ast.UnaryOp(op=ast.USub(), operand=of):
+            return -_value(of, sizes)
+        case ast.BinOp(left=left, op=op, right=right):
+            return _FUNCTIONS[type(op)](_value(left, sizes), _value(right, sizes))
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+            return _FUNCTIONS[name](*(_value(each, sizes) for each in args))
+    raise TypeError(f"{ast.unparse(node)} is not arithmetic")
 
 
 class Builder:
@@ -98,7 +123,8 @@ class Builder:
         known: dict[str, Any] = {}
         for name, size in sizes.items():
             if isinstance(size, dict):
-                known[name] = size.get("yes", True) if self.chance(size["share"]) else size.get("no", False)
+                is_so = "share" not in size or self.chance(size["share"])
+                known[name] = size.get("yes", True) if is_so else size.get("no", False)
             else:
                 value = evaluate(size, known)
                 known[name] = self.uniform(*value) if isinstance(value, tuple) else value

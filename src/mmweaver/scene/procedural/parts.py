@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -57,6 +58,9 @@ class Piece:
     landmark: str = ""  # Landmark.kind, if it is a landmark
     on_wall: bool = False  # mounted on a wall at y = 0
     is_free: bool = False  # stands anywhere in a room, not only at a wall
+    sizes: dict[str, Any] = field(
+        default_factory=dict, repr=False, compare=False
+    )  # as sampled, by their record's names
 
     @property
     def low_m(self) -> Float[Array, "3"]:
@@ -85,7 +89,7 @@ class Piece:
     def top_m(self) -> float:
         """Height of the surface for objects, metres: the highest top of a box that is larger than 0.1 m2."""
         sizes = [(part, np.subtract(part.high_m, part.low_m)) for part in self.parts if part.shape == "box"]
-        return max(part.high_m[2] for part, size in sizes if size[0] * size[1] > 0.1)
+        return max((part.high_m[2] for part, size in sizes if size[0] * size[1] > 0.1), default=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
