@@ -276,12 +276,12 @@ def _read_file(file: Path, command: str, kind: type[General]) -> dict[str, Any]:
             hint = f"did you mean {near[0]!r}?" if near else f"see mmweaver {command} --help-all"
             raise InputError(f"{file}: mmweaver {command} has no option {name!r}; {hint}")
         one = known[key]
-        read = _of_file(one, value, file)
+        read = _read_file_value(one, value, file)
         found[one.name] = [*found.get(one.name, ()), *read] if option_kind(one)[1] else read
     return found
 
 
-def _of_file(one: "dataclasses.Field[Any]", value: Any, file: Path) -> Any:
+def _read_file_value(one: "dataclasses.Field[Any]", value: Any, file: Path) -> Any:
     kind = option_kind(one)[0]
 
     def beside(each: Any) -> Any:
@@ -315,13 +315,13 @@ def request_toml(asked: General, **instead: Any) -> str:
             given[name] = one, [getattr(asked, one.name)]
         if name not in given or not one.metadata.get("is_setting", True):
             continue
-        values = [_to_file(one, value) for value in given[name][1]]
+        values = [_file_value(one, value) for value in given[name][1]]
         written[name] = values if option_kind(one)[1] else values[0]
     again = f"mmweaver {command} --config {REQUEST_FILE} {'--out DIR' if has_option else 'DIR'}"
     return f"# mmweaver {__version__}; the same again: {again}\n{tomli_w.dumps(written)}"
 
 
-def _to_file(one: "dataclasses.Field[Any]", value: Any) -> Any:
+def _file_value(one: "dataclasses.Field[Any]", value: Any) -> Any:
     """One value as TOML has it."""
     kind = option_kind(one)[0]
     key, equals, name = value.rpartition("=") if kind is Setting else ("", "", value)

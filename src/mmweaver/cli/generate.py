@@ -312,7 +312,7 @@ def _run_one(asked: Options, out: Path) -> int:
         if asked.motion_file is None and asked.motion_model is None:  # before PyTorch starts, which takes 2 s
             parse(request, radar)
         weaver = weaver_of(asked, radar, bar)
-        parsed = weaver.parsed(_with_motion(asked, request, weaver))
+        parsed = weaver.parsed(_add_motion(asked, request, weaver))
         result = weaver.carry_out(parsed, room_of(asked, weaver, background))
         written = {REQUEST_FILE: asked.request_toml(text=texts, frames=parsed.frames, seconds=None)}
         meta = result.save(out, overwrite=asked.overwrite, extra=written, **asked.output)
@@ -354,7 +354,7 @@ def _check_motion(asked: Options) -> None:
         raise InputError("--motion-set is about a recorded motion; give --motion too")
 
 
-def _with_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
+def _add_motion(asked: Options, request: Request, weaver: "Weaver") -> Request:
     """The request with the recorded motion, or with that which a model makes of its text."""
     from dataclasses import replace
 

@@ -393,10 +393,10 @@ def _box(moving: np.ndarray, noise_power: float, *, with_static: bool) -> tuple[
     bins = strong.any(axis=0)
     if with_static:
         bins[len(bins) // 2] = True
-    return _around(strong.any(axis=1)), _around(bins)
+    return _neighbourhood(strong.any(axis=1)), _neighbourhood(bins)
 
 
-def _around(mask: np.ndarray) -> slice:
+def _neighbourhood(mask: np.ndarray) -> slice:
     """Slice from the first to the last set element, with a margin; everything where none is set."""
     found = np.flatnonzero(mask)
     return slice(max(0, found[0] - MARGIN), found[-1] + 1 + MARGIN) if len(found) else slice(None)

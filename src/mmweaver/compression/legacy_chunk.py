@@ -254,7 +254,7 @@ class LegacyLevelCoder:
 
     def _code_group(self, stream, group: LegacyGroup, wanted, planes, size, other, beam: int, wide: int) -> None:
         at, factor = group.at, group.factor
-        around = _around(size, at, wide) // factor
+        around = _neighbourhood(size, at, wide) // factor
         other_beams = other[at] // factor
         by_around = np.searchsorted(SUM_BOUNDS, around, side="right")
         by_other_beams = np.searchsorted(SUM_BOUNDS, other_beams, side="right")
@@ -338,7 +338,7 @@ def _groups(classes: Cells, near: Cells, padded_shape: tuple[int, ...]) -> list[
     return groups
 
 
-def _around(size: Integers, at: Integers, wide: int) -> Integers:
+def _neighbourhood(size: Integers, at: Integers, wide: int) -> Integers:
     """Weighted magnitudes of the known neighbours; cells not decoded yet are zero."""
     out = size[at - 1] + size[at + 1] + size[at - wide] + size[at + wide]
     out = 2 * out + size[at - wide - 1] + size[at - wide + 1] + size[at + wide - 1] + size[at + wide + 1]

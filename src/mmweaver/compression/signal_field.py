@@ -139,9 +139,9 @@ def coordinates_on(native: CubeGrid, grid: CubeGrid) -> Axes:
     the line through the native antennas.
     """
     return (
-        _in_cells(native.frame_time_s, grid.frame_time_s),
-        _in_cells(native.range_m, grid.range_m),
-        _in_cells(native.radial_velocity_mps, grid.radial_velocity_mps),
+        _cell_coordinates(native.frame_time_s, grid.frame_time_s),
+        _cell_coordinates(native.range_m, grid.range_m),
+        _cell_coordinates(native.radial_velocity_mps, grid.radial_velocity_mps),
         antenna_coordinate(native.antenna_position_m, grid.antenna_position_m, native.wavelength_m),
     )
 
@@ -202,7 +202,7 @@ def _refined(values: Axis, factor: float) -> Axis:
     return values[0] + np.arange(num) * (step / factor)
 
 
-def _in_cells(native: Axis, wanted: Axis) -> Axis:
+def _cell_coordinates(native: Axis, wanted: Axis) -> Axis:
     if len(native) < 2:
         return np.zeros(len(wanted))
     return (wanted - native[0]) / (native[1] - native[0])

@@ -46,10 +46,10 @@ class NoRoomError(InputError):
 
     def __init__(self, message: str, *, recovery_options: Mapping[str, Any] | None = None) -> None:
         self.recovery_options: dict[str, Any] = dict(recovery_options or {})
-        super().__init__(message + _in_words(self.recovery_options))
+        super().__init__(message + _advice(self.recovery_options))
 
 
-def _in_words(recovery_options: Mapping[str, Any]) -> str:
+def _advice(recovery_options: Mapping[str, Any]) -> str:
     if not recovery_options:
         return ""
     x, y = recovery_options["nearest_place_m"]

@@ -256,7 +256,7 @@ class RadarConfig:
         for field in dataclasses.fields(self):
             if field.name in RARE_FIELDS and values[field.name] == field.default:
                 del values[field.name]
-        return {name: _as_list(value) for name, value in values.items()}
+        return {name: _listed(value) for name, value in values.items()}
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -309,5 +309,5 @@ class RadarConfig:
         return cls(**record_fields(cls, values, "the radar file"))
 
 
-def _as_list(value: Any) -> Any:
-    return [_as_list(item) for item in value] if isinstance(value, tuple) else value
+def _listed(value: Any) -> Any:
+    return [_listed(item) for item in value] if isinstance(value, tuple) else value

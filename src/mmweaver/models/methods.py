@@ -138,13 +138,18 @@ class Physics:
         return Signal(
             cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
             adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
-            assumptions=(*ASSUMPTIONS, *_of_order(self.propagation), *several, *_of_background(simulator.background)),
+            assumptions=(
+                *ASSUMPTIONS,
+                *_order_notes(self.propagation),
+                *several,
+                *_background_notes(simulator.background),
+            ),
         )
 
     def _prepare(
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> Simulator:
-        room = self._traced.get(scene, _with_antennas_of(board, config), None, None)
+        room = self._traced.get(scene, _board_antennas(board, config), None, None)
         return Simulator(
             scene,
             config,
@@ -209,8 +214,8 @@ class Learned:
             )
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         moved = () if scene.radar_pose.is_at_camera else (ELSEWHERE,)
-        order = _of_order(self.propagation)
-        assumptions = (LEARNED_NOTE, *order, *moved, *several, *_of_background(room.background))
+        order = _order_notes(self.propagation)
+        assumptions = (LEARNED_NOTE, *order, *moved, *several, *_background_notes(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
     def _encode(
@@ -218,7 +223,7 @@ class Learned:
     ) -> "LearnedRoom":
         from mmweaver.models.neural_path_solver import LearnedRoom
 
-        given = self._given.get(scene, _with_antennas_of(board, config), None, None)
+        given = self._given.get(scene, _board_antennas(board, config), None, None)
         return LearnedRoom(self._network, given, config, background=background, board=board)
 
     @cached_property
@@ -234,7 +239,7 @@ def _given_room(scene: Scene, config: RadarConfig, propagation: Propagation) -> 
     return GivenRoom.of(scene, config, propagation=propagation)
 
 
-def _with_antennas_of(board: Board | None, config: RadarConfig) -> RadarConfig:
+def _board_antennas(board: Board | None, config: RadarConfig) -> RadarConfig:
     """The radar with the antenna positions of a board, on which rays depend."""
     return config if board is None else replace(built_radar(board, config), noise_figure_db=config.noise_figure_db)
 
@@ -259,11 +264,11 @@ class _Latest(Generic[RoomT]):
         return kept[3]
 
 
-def _of_order(propagation: Propagation) -> tuple[str, ...]:
+def _order_notes(propagation: Propagation) -> tuple[str, ...]:
     return (FIRST_ORDER_ALONE,) if propagation.bounces == 1 else ()
 
 
-def _of_background(background: "BackgroundRecording | None") -> tuple[str, ...]:
+def _background_notes(background: "BackgroundRecording | None") -> tuple[str, ...]:
     return () if background is None else (RECORDED, *background.assumptions)
 
 

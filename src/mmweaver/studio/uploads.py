@@ -115,12 +115,12 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
     if not colour:
         raise InputError("the depth has no picture: bring rgb.png of the same view, too")
     if not depth:
-        raise _without_depth(session, colour[0])
+        raise _drop_depth(session, colour[0])
     camera = next((one for one in files.values() if one.suffix.lower() == ".json"), None)
     return _photographed(session, RoomFiles(rgb=colour[0], depth=depth[0], camera=camera))
 
 
-def _without_depth(session: Session, photo: Path) -> RecoverableError:
+def _drop_depth(session: Session, photo: Path) -> RecoverableError:
     """Offers to estimate the depth where the package for it is installed, else says what to install."""
     name = secrets.token_urlsafe(6)
     session.photos[name] = photo

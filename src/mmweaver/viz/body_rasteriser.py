@@ -131,18 +131,18 @@ def _one(
     share = (columns - x) * (dx / length) + (rows - y) * (dy / length)
     np.maximum(share, 0.0, out=share)
     np.minimum(share, 1.0, out=share)
-    radius = _between(body.radius_px[one], share)
+    radius = _interpolated(body.radius_px[one], share)
     right = (columns - x - share * dx) / radius
     down = (rows - y - share * dy) / radius
     inside = 1.0 - right * right - down * down
     cover = np.minimum(inside * radius * np.float32(0.5) + np.float32(0.5), 1.0)  # exact to first order at the edge
     bulge = np.sqrt(np.maximum(inside, 0.0))
-    depth_m = _between(body.depth_m[one], share) - _between(body.radius_m[one], share) * bulge
+    depth_m = _interpolated(body.depth_m[one], share) - _interpolated(body.radius_m[one], share) * bulge
     light = right * np.float32(LIGHT[0]) + down * np.float32(LIGHT[1]) + bulge * np.float32(LIGHT[2])
     return cover, depth_m, light
 
 
-def _between(ends: Float[Array, "2"], share: Float[Array, "row column"]) -> Float[Array, "row column"]:
+def _interpolated(ends: Float[Array, "2"], share: Float[Array, "row column"]) -> Float[Array, "row column"]:
     return np.float32(ends[0]) + np.float32(ends[1] - ends[0]) * share
 
 

@@ -47,7 +47,7 @@ class Room(ShownByFacts):
         return {"photo": size, **self.scene.facts(), "background": background, "inputs": ", ".join(self.inputs)}
 
     def _repr_html_(self) -> str:
-        return _with_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
+        return _add_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
 
     def with_landmarks(self, *given: tuple[str, tuple[float, float]]) -> "Room":
         """The room with landmarks at known places, which replace detected ones of the same kind.
@@ -143,7 +143,7 @@ class Generation(ShownByFacts):
 
         page = BytesIO()
         self.plot().savefig(page, format="png", dpi=60)
-        return _with_picture(super()._repr_html_(), page.getvalue())
+        return _add_picture(super()._repr_html_(), page.getvalue())
 
     def plot(self) -> "Figure":
         """The page of preview.png as a matplotlib figure."""
@@ -324,7 +324,7 @@ def _png_of(rgb: np.ndarray, width: int = 320) -> bytes:
     return out.getvalue()
 
 
-def _with_picture(table: str, png: bytes) -> str:
+def _add_picture(table: str, png: bytes) -> str:
     from base64 import b64encode
 
     return f"{table}<img src='data:image/png;base64,{b64encode(png).decode()}' style='max-width:100%'/>"

@@ -127,7 +127,7 @@ def _says(record: ClauseRecord, own: Sequence[Step]) -> bool:
     said, seen = _stems(record.clause) - _NO_WORDS, _stems(record.shown)
     if not said:
         return True
-    kept = {word for word, kind in TARGETS.items() if any(kind in _where(step) for step in own)}
+    kept = {word for word, kind in TARGETS.items() if any(kind in _place_words(step) for step in own)}
     kept |= {word for word in SEATS if any(step.seat == word for step in own)}
     if len(own) != 1 or not said - _stems(" ".join(kept)) - _OF_NUMBERS <= seen or seen & _TELLING - said:
         return False
@@ -142,7 +142,7 @@ def _numbers(text: str) -> set[float]:
     return {float(value) for value in values if value is not None}
 
 
-def _where(step: Step) -> tuple[str, ...]:
+def _place_words(step: Step) -> tuple[str, ...]:
     """The kinds of landmarks that a step goes to, is done at or faces."""
     return step.target, step.facing, *(() if step.place is None else step.place.words.split())
 

@@ -80,14 +80,14 @@ def cells_of(place: Place, floor: FloorMap) -> Float[Array, "cell 2"]:
     inside, part = np.ones(len(cells), bool), place
     while part is not None and len(cells):
         if part.relation == "between":
-            inside &= _between(part, floor.scene, cells)
+            inside &= _middle_place(part, floor.scene, cells)
         elif part.landmark == "wall":
-            inside &= _near_wall(part, floor.scene, cells)
+            inside &= _wall_places(part, floor.scene, cells)
         elif part.landmark:
             middles = _middles(part.landmark, part, floor.scene)
-            inside &= np.any([_at(part, middle, cells) for middle in middles], axis=0)
+            inside &= np.any([_place_at(part, middle, cells) for middle in middles], axis=0)
         else:
-            inside &= _within(part, cells)
+            inside &= _inside(part, cells)
         part = part.also
     cells = cells[inside]
     if not len(cells):
@@ -179,13 +179,13 @@ def _nearest_on(wall: Float[Array, "2 2"], points: Float[Array, "point 2"]) -> F
     return wall[0] + share[:, None] * along
 
 
-def _near_wall(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _wall_places(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Mask of cells at, or near, one of the walls."""
     away = np.min([np.hypot(*(cells - _nearest_on(wall, cells)).T) for wall in _walls(place, scene)], axis=0)
     return away <= (AT_WALL_M if place.relation == "against" else NEAR_WALL_M)
 
 
-def _between(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _middle_place(place: Place, scene: Scene, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Mask of cells between two objects: near the line between them, away from its ends."""
     inside = np.zeros(len(cells), bool)
     for one, other in _pairs(place, scene):
@@ -215,7 +215,7 @@ def _pairs(place: Place, scene: Scene) -> list[tuple[Float[Array, "2"], Float[Ar
     return found
 
 
-def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _place_at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Mask of cells in the given relation to an object, seen from the radar."""
     away = middle / max(float(np.hypot(*middle)), 1e-6)
     aside = np.array([away[1], -away[0]])  # to the right in the picture
@@ -232,7 +232,7 @@ def _at(place: Place, middle: Float[Array, "2"], cells: Float[Array, "cell 2"]) 
     return (depth > BESIDE_M) & (depth < REACH_M) & (np.abs(along) < WIDTH_M)
 
 
-def _within(place: Place, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
+def _inside(place: Place, cells: Float[Array, "cell 2"]) -> Bool[Array, " cell"]:
     """Mask of cells in the named part of the free floor."""
     x, y = cells.T
     if place.relation == "range":
