@@ -84,7 +84,7 @@ class Board:
     drift_ppm: float = 0.0  # relative carrier frequency error, rms over time
     gain_db: float = 0.0  # echo gain relative to the link budget of the radar
     noise_figure_db: float | None = None  # None keeps the radar's
-    element_spacing_m: float | None = None  # true spacing of antennas nominally half a wavelength apart
+    element_spacing_m: float | None = None  # true spacing of antennas half a wavelength apart; None keeps the radar's
     cfar_threshold: float | None = None  # range CFAR of TI's demo, in its counts; None keeps the settings'
 
     def __post_init__(self) -> None:

@@ -18,7 +18,7 @@ class FirmwareCfar:
         average: Averaging mode: "ca", "cago" or "caso".
         window: Averaging window in bins.
         guard: Guard cells in bins.
-        noise_shift: The noise sum is divided by 2 ** noise_shift.
+        noise_shift: The noise sum of both sides is shifted right by this; a single side ("cago", "caso") by one less.
         cyclic: Whether the window wraps around at the ends.
         threshold: Threshold in the device's counts, see `FirmwareSettings`.
 

@@ -129,6 +129,7 @@ def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns
 
 
 def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:
+    """Micro-Doppler spectrogram; None without samples, with too few loops, or if it shows only noise."""
     if adc is None:
         return None
     try:
@@ -139,6 +140,7 @@ def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:
 
 
 def _people(cube: RadarCube) -> tuple[PersonTrack, ...]:
+    """Tracks of people; empty for a single frame or too few moving Doppler bins."""
     if len(cube.values) < 2 or moving_doppler(cube).sum() < 2:
         return ()
     return tuple(track_people(point_cloud(cube, moving_only=True), cube.grid.frame_time_s))

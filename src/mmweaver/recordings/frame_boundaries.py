@@ -60,6 +60,7 @@ def _changes(stream: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_several(within: np.ndarray, between: np.ndarray, parts: int) -> bool:
+    """Whether the steps at the boundaries of `parts` equal pieces of a frame jump like those between frames."""
     loops = within.shape[1] + 1
     seams = [number * loops // parts - 1 for number in range(1, parts)]
     typical = np.median(within, axis=0)
@@ -68,6 +69,7 @@ def _is_several(within: np.ndarray, between: np.ndarray, parts: int) -> bool:
 
 
 def _is_part(within: np.ndarray, between: np.ndarray, parts: int) -> bool:
+    """Whether only every `parts`-th step between frames jumps, so that `parts` frames are one."""
     is_last = np.arange(len(between)) % parts == parts - 1
     small = np.median(between[~is_last])
     is_small = small < JUMP / 2 * max(np.median(within), MIN_CHANGE)

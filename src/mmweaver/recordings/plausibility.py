@@ -210,14 +210,25 @@ def _period(config: RadarConfig, frame_time_s: PerFrame | None) -> Iterator[str]
 
 
 def _likeness(flat: np.ndarray, lag: int) -> float:
-    """Mean normalised correlation of a stream (frame, sample) with itself at a lag."""
+    """Normalised correlation of a stream with itself at a lag.
+
+    Args:
+        flat: Samples in recorded order, (frame, sample).
+        lag: Lag in samples.
+
+    Returns:
+        Magnitude from 0 to 1.
+    """
     before, after = flat[:, :-lag], flat[:, lag:]
     common = np.abs(np.vdot(before, after))
     return float(common / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-300))
 
 
 def _transmitters(cube: RadarCube) -> Iterator[str]:
-    """Searches for another board or transmitter order that agrees better with the static echoes."""
+    """Searches for another board or transmitter order that agrees better with the static echoes.
+
+    Another board is considered only if no order of the radar's own antennas fits.
+    """
     own = cube.config.tx_order
     cube = replace(cube, values=cube.values[:FRAMES_LOOKED_AT])
     found = agreements(cube)

@@ -185,6 +185,7 @@ def _board_metas(recording: Recording) -> dict[str, Any]:
 
 
 def _warnings(recording: Recording, strict: bool) -> list[str]:
+    """Deviations of samples from settings. Raises InputError for any in strict mode."""
     if recording.adc is None:
         return []
     file = recording.files["recording"] if recording.axes is None else None
@@ -221,6 +222,7 @@ def _packets_meta(folder: Path, packets: PacketCapture) -> dict[str, Any]:
 
 
 def _assumptions(recording: Recording) -> list[str]:
+    """Assumptions on frame timing, and losses of packets."""
     if recording.stored_cube is not None:
         return []
     every = f"frames follow each other every {recording.config.frame_period_s * 1e3:g} ms, as"

@@ -269,6 +269,7 @@ def _read_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool)
 
 
 def _read_capture(path: Path, reading: RawReading, frames: slice) -> Recording:
+    """Reads a capture folder. Raises InputError for options, since its radar.cfg determines everything."""
     if given := [name for name, value in vars(reading).items() if value is not None]:
         option = "--" + given[0].replace("_", "-")
         raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {option}")

@@ -22,6 +22,10 @@ class Resumable:
 
     Of several processes all load and one saves. A run resumes with its original number of threads, since sums over
     another number of threads differ in their last bits.
+
+    Attributes:
+        done: Number of completed steps.
+        history: Rows of figures, saved with the state.
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
