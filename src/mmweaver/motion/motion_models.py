@@ -57,10 +57,11 @@ def load_motion_model(name: str) -> MotionModel:
     """Loads a motion model by name.
 
     Args:
-        name: Entry point, "module:attribute", or anything else for a MotionGPT checkpoint.
+        name: Entry point, "module:attribute", or anything else for a MotionGPT checkpoint, which is read on the first
+            call.
 
     Raises:
-        InputError: If there is no such model.
+        InputError: If an entry point or a module cannot be imported.
     """
     found = plugins(GROUP)
     if name in found:
