@@ -94,8 +94,10 @@ class Physics:
     """Ray-traced ADC samples, processed as the radar does. The room is prepared once and kept for the next call."""
 
     def __init__(self, propagation: Propagation = ALL_PATHS) -> None:
-        """Args:
-        propagation: Which paths are traced.
+        """Keeps the settings; rooms are prepared on demand.
+
+        Args:
+            propagation: Which paths are traced.
         """
         self.propagation = propagation
         self._prepared = _Latest(self._prepare)
@@ -162,9 +164,11 @@ class Learned:
     """Renders the network's paths. The room is encoded once and kept for the next call."""
 
     def __init__(self, weights: Path | None = None, propagation: Propagation = ALL_PATHS) -> None:
-        """Args:
-        weights: File of `mmweaver train`; by default the weights that come with mmweaver.
-        propagation: Which paths are traced in addition to the network's.
+        """Keeps the settings; the network is loaded on demand.
+
+        Args:
+            weights: File of `mmweaver train`; by default the weights that come with mmweaver.
+            propagation: Which paths are traced in addition to the network's.
         """
         self.weights, self.propagation = weights, propagation
         self._encoded = _Latest(self._encode)

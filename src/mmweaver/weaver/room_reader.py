@@ -29,8 +29,10 @@ class RoomReader:
     """Reads rooms and reconstructs them."""
 
     def __init__(self, listener: Callable[[str], object] | None = None):
-        """Args:
-        listener: Called with the name of each stage as it begins.
+        """Creates a reader.
+
+        Args:
+            listener: Called with the name of each stage as it begins.
         """
         self._listener = listener
 
