@@ -1,4 +1,4 @@
-"""What `mmweaver generate` makes its sequences with: the radar, the generator, the room."""
+"""Inputs of `mmweaver generate`: the radar, the generator, the room."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -14,7 +14,11 @@ DEFAULT_RADAR = "awr1843"
 
 
 def read_background(asked: "Options") -> "RadarCube | None":
-    """The background recording, if one is given. Raises InputError for what is no recording."""
+    """The background recording, if one is given.
+
+    Raises:
+        InputError: If it is not a recording.
+    """
     if asked.background is None:
         return None
     from mmweaver.recordings.read_recording import read_recording
@@ -23,7 +27,7 @@ def read_background(asked: "Options") -> "RadarCube | None":
 
 
 def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
-    """The radar: that of the background recording where no other is given."""
+    """The radar; by default that of the background recording."""
     from dataclasses import replace
 
     from mmweaver.core.range_window import chosen_range
@@ -38,7 +42,13 @@ def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
 
 
 def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str], object] | None" = None) -> "Weaver":
-    """The generator that the options ask for."""
+    """The generator for the options.
+
+    Args:
+        asked: The options.
+        radar: The radar.
+        listener: Called with the name of each stage as it begins.
+    """
     from mmweaver.io.radar_file import load_firmware
     from mmweaver.io.ti_calibration import read_ti_calibration
     from mmweaver.weaver.front_door import Weaver

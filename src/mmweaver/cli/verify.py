@@ -25,7 +25,14 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Prints what is damaged; returns 0 or 1. Raises InputError where nothing can be verified."""
+    """Prints what is damaged.
+
+    Returns:
+        0 if nothing is, otherwise 1.
+
+    Raises:
+        InputError: If nothing can be verified.
+    """
     from mmweaver.datasets.verification import verify
 
     found = verify(asked.path)

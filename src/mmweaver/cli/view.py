@@ -48,7 +48,7 @@ def run(asked: Options) -> int:
 
 
 def _room(stored: "StoredResult") -> "Playback | None":
-    """The room of a generated result, where its files are still what they were; a result folder holds none."""
+    """The room of a generated result, read again if its files are unchanged; a result folder contains none."""
     inputs = stored.meta.get("inputs")
     if not stored.poses or not isinstance(inputs, dict):
         return None

@@ -268,7 +268,13 @@ def _integral(slowness: np.ndarray, time_s: np.ndarray) -> np.ndarray:
 
 
 def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
-    """Mean horizontal speed of the pelvis in m/s."""
+    """Mean horizontal speed of the pelvis in m/s.
+
+    Args:
+        pose: The motion.
+        start_s: Start of the interval in seconds.
+        end_s: End of the interval in seconds.
+    """
     inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
     path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
     return float(path_m / (end_s - start_s))
