@@ -1,4 +1,4 @@
-"""mmweaver verify: whether files are still as they were written, and which command makes damaged ones anew."""
+"""mmweaver verify: whether files are unchanged since they were written, and which command regenerates damaged ones."""
 
 from pathlib import Path
 

@@ -230,7 +230,7 @@ class MmwFile(CheckedFile):
         return records
 
     def _scanned(self, stream: BinaryIO) -> list[MmwRecord]:
-        """Places of the records; nothing is read but what stands in front of the chunks."""
+        """Positions of the records; only their heads are read."""
         records: list[MmwRecord] = []
         self._starts: list[int] = []
         at, last_s = self.end_of_header, None

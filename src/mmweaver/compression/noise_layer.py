@@ -124,7 +124,15 @@ def to_noise(
 def from_noise(
     coefficients: Complex[Array, "beam frame range doppler"], beams: Complex[Array, "beam antenna"]
 ) -> Complex[Array, "frame range doppler antenna"]:
-    """The inverse of `to_noise`."""
+    """The inverse of `to_noise`.
+
+    Args:
+        coefficients: Coefficients (beam, frame, range, doppler).
+        beams: Unitary matrix (beam, antenna).
+
+    Returns:
+        Working frames (frame, range, doppler, antenna).
+    """
     values = _transformed(coefficients, fft.idctn)
     return np.moveaxis(np.tensordot(beams.conj().astype(coefficients.dtype), values, axes=(0, 0)), 0, 3)
 

@@ -60,7 +60,12 @@ def persistent_motion_cells(recordings: Sequence[PointRecording], radar: Quantis
 
 
 def remove_motion(window: PointRecording, cells: Cells) -> PointRecording:
-    """The window without the moving points in some cells."""
+    """The window without moving points in some cells.
+
+    Args:
+        window: Points of one window.
+        cells: Cells (cell, 2) in steps of CELL_M.
+    """
     hidden = is_moving(window.cloud) & _inside(_cells_of(window.cloud), cells)
     return replace(window, cloud=window.cloud.select(~hidden)) if hidden.any() else window
 

@@ -159,7 +159,15 @@ def _recording(
 
 
 def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
-    """Joints (time, 22, 3) of a motion at given times in seconds, linearly interpolated."""
+    """Joints of a motion, linearly interpolated.
+
+    Args:
+        pose: The motion.
+        time_s: Times (time,) in seconds.
+
+    Returns:
+        Joints (time, 22, 3) in metres.
+    """
     before = np.searchsorted(pose.time_s, time_s).clip(1, len(pose.time_s) - 1)
     early_s, late_s = pose.time_s[before - 1], pose.time_s[before]
     share = ((time_s - early_s) / (late_s - early_s)).clip(0, 1)[:, None, None]

@@ -55,7 +55,12 @@ class PointRecording:
         return [self.part(first, length) for first in range(0, self.num_frames - length + 1, step)]
 
     def part(self, first: int, num_frames: int) -> "PointRecording":
-        """`num_frames` frames starting at `first`, renumbered from 0."""
+        """Consecutive frames, renumbered from 0.
+
+        Args:
+            first: First frame.
+            num_frames: Number of frames.
+        """
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
         return replace(
@@ -251,7 +256,15 @@ def _silences(recording: PointRecording, samples: list[PointRecording]) -> list[
 def index_runs(
     begin: Int[np.ndarray, " run"], end: Int[np.ndarray, " run"]
 ) -> tuple[Int[np.ndarray, " index"], Int[np.ndarray, " index"]]:
-    """All indices from `begin` to `end` - 1 of each run, one run after the other, with the number of their run."""
+    """Concatenated index ranges.
+
+    Args:
+        begin: First index (run,) of each range.
+        end: Index (run,) after the last.
+
+    Returns:
+        Number of the range (index,), and the index (index,).
+    """
     count = end - begin
     run = np.repeat(np.arange(len(count)), count)
     return run, np.arange(len(run)) - np.repeat(np.cumsum(count) - count - begin, count)

@@ -103,7 +103,12 @@ class VariationSample:
 
 
 def sample_variation(variation: Variation, rng: np.random.Generator) -> VariationSample:
-    """Samples the conditions of one recording."""
+    """Samples the conditions of one recording.
+
+    Args:
+        variation: Ranges of the conditions.
+        rng: Random stream.
+    """
 
     def uniform(*names: str) -> dict[str, float]:
         return {name: rng.uniform(*getattr(variation, name)) for name in names}

@@ -195,7 +195,12 @@ def window_row(window: PointRecording) -> Row:
 
 # files --------------------------------------------------------------------------------------------------------------
 def save_recogniser(folder: Path, model: Recogniser) -> None:
-    """Writes the files of a folder. meta.json is written last, so a folder that contains it is complete."""
+    """Writes a recogniser. meta.json is written last, so a folder that contains it is complete.
+
+    Args:
+        folder: The folder, which must exist.
+        model: The recogniser.
+    """
     write_trees(folder / TREES_FILE, model.trees)
     with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, names=np.array(model.names), generated=model.generated, busy=model.points.busy)

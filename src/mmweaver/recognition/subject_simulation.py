@@ -303,9 +303,13 @@ def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np
 
 
 def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
-    """Joints (frame, joint, 3) with the feet up to `wider_m` farther apart, and the knees half as much.
+    """Joints with the feet farther apart, and the knees half as much.
 
-    Feet that stand apart already are moved less. While one foot is in the air, the body moves over the other one.
+    Feet that are apart already are moved less. While one foot is in the air, the body moves over the other one.
+
+    Args:
+        joints_m: Joints (frame, joint, 3) in metres.
+        wider_m: Maximum additional distance of the feet in metres.
     """
     across = joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]
     across = across * (1.0, 1.0, 0.0)
@@ -325,10 +329,18 @@ def spread_feet(joints_m: Joints, wider_m: float) -> Joints:
 
 
 def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray:
-    """Times (time,) of a movement on the spot that is slow near the pose it begins in, and faster far from it.
+    """Warps the times of a movement in place: slow near its initial pose, faster far from it.
 
-    The tempo at the far end is 1 + `linger` times that at the near end; the whole lasts as long. Movements of less than
-    3 cm (rms over joints) keep their times.
+    The tempo at the far end is 1 + `linger` times that at the near end; the duration is unchanged. Movements of less
+    than 3 cm (rms over joints) keep their times.
+
+    Args:
+        time_s: Times (time,) in seconds.
+        joints_m: Joints (time, 22, 3) in metres.
+        linger: Additional relative tempo at the far end.
+
+    Returns:
+        Warped times (time,) in seconds.
     """
     local = joints_m - joints_m[:, :1] * (1.0, 1.0, 0.0)
     far_m = np.sqrt(((local - local[0]) ** 2).sum(axis=-1).mean(axis=-1))
@@ -341,9 +353,17 @@ def lingering(time_s: np.ndarray, joints_m: Joints, linger: float) -> np.ndarray
 
 
 def slow_at_turns(time_s: np.ndarray, joints_m: Joints, slower: float) -> np.ndarray:
-    """Times (time,) of a way on which whoever stands takes 1 + `slower` times as long, and who walks as long as before.
+    """Warps the times of a walk: standing takes 1 + `slower` times as long, walking as long as before.
 
-    In between in proportion to the speed of the pelvis, relative to that which three quarters of the time it is below.
+    In between the factor depends on the speed of the pelvis relative to its upper quartile.
+
+    Args:
+        time_s: Times (time,) in seconds.
+        joints_m: Joints (time, 22, 3) in metres.
+        slower: Additional relative duration of standing.
+
+    Returns:
+        Warped times (time,) in seconds.
     """
     step_m = np.linalg.norm(np.gradient(joints_m[:, joint("pelvis"), :2], axis=0), axis=-1)
     speed_mps = step_m / np.gradient(time_s)

@@ -114,11 +114,23 @@ def train_pose_of_task(
     listener: Listener | None = None,
     **options: Any,
 ) -> tuple[list[Path], list[Trainer[PoseLearner]]]:
-    """Trains pose networks on people who carry out the sentences of a task; writes `out`/weights.safetensors, weights_2
-    and so on.
+    """Trains pose networks on people who perform the sentences of a task.
 
-    Sequences stay in `out`/sequences, so a run may be interrupted. `tell` hears how many sequences are done, `listener`
-    of each step. Raises InputError.
+    Sequences are stored in `out`/sequences, so a run can be resumed.
+
+    Args:
+        task_file: The task as TOML.
+        out: Folder for weights.safetensors, weights_2.safetensors and so on.
+        training: How networks are trained; by default `PoseTraining()`.
+        tell: Called with the number of finished sequences and the total.
+        listener: Called after each training step.
+        **options: Further arguments of `train_pose`.
+
+    Returns:
+        Weight files and trainers, one per network.
+
+    Raises:
+        InputError: For a task or a folder that cannot be used.
     """
     training, out, task = training or PoseTraining(), Path(out), read_task(task_file)
     recipe = training.recipe
@@ -137,7 +149,17 @@ def train_pose_of_task(
 
 
 def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer[PoseLearner], people_seed: int) -> Path:
-    """Writes the best network with what one must know to apply it."""
+    """Writes the best network, with the settings that are needed to apply it.
+
+    Args:
+        file: The weight file.
+        task: The task, for its recordings and radar.
+        trainer: The finished training.
+        people_seed: Seed of the generated people.
+
+    Returns:
+        The file.
+    """
     columns = task.recordings.columns
     settings = {
         "window_s": float(task.recordings.window_s),

@@ -124,7 +124,12 @@ def joined_trees(one: TreeEnsemble, other: TreeEnsemble | None) -> TreeEnsemble:
 
 
 def write_trees(file: Path, ensemble: TreeEnsemble) -> None:
-    """Writes the arrays of an ensemble as one .npz."""
+    """Writes the arrays of an ensemble.
+
+    Args:
+        file: The .npz.
+        ensemble: The trees.
+    """
     with atomic_file(file) as temporary, temporary.open("wb") as stream:
         np.savez_compressed(stream, **vars(ensemble))
 

@@ -81,7 +81,12 @@ def file_names(listed: Any, names: list[str | None]) -> list[str]:
 
 
 def place_of(folder: Path, said: str) -> Path:
-    """Path for an uploaded file, always inside `folder`; subfolders are created."""
+    """Path for an uploaded file, always inside `folder`; subfolders are created.
+
+    Args:
+        folder: Folder of the upload.
+        said: Path sent by the browser.
+    """
     parts = [part for part in said.replace("\\", "/").split("/") if part.strip(".")]
     for part in parts[-1 - MAX_DEPTH : -1]:
         folder = folder / safe_name(part, set())

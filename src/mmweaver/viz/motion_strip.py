@@ -190,7 +190,14 @@ LEFT, RIGHT, TRUNK, BEHIND = "#2b78b8", "#c2431c", "#444a52", "#b9bec6"
 def draw_pose_strips(
     strips: Sequence[tuple[str, Joints, Joints | None]], path: Path, *, frame_rate_hz: float, count: int = 8
 ) -> None:
-    """Writes a picture of a strip for each (title, joints, joints behind or None); both are set on their pelvises."""
+    """Writes a picture with one strip per motion, each optionally over another motion; both are aligned at the pelvis.
+
+    Args:
+        strips: Title, joints, and joints to draw behind or None, for each strip.
+        path: The picture: png, pdf or svg, by its suffix.
+        frame_rate_hz: Frames per second of the joints.
+        count: Number of instants.
+    """
     import matplotlib.pyplot as plt
 
     with plt.rc_context(STYLE):

@@ -93,7 +93,13 @@ def make_playback(
 
 
 def as_bytes(power_db: Float[Array, "*shape"], low_db: float, high_db: float) -> UInt8[Array, "*shape"]:
-    """Decibels as bytes: 0 at `low_db` and below, 255 at `high_db` and above."""
+    """Decibels as bytes.
+
+    Args:
+        power_db: Power (...) in dB.
+        low_db: Level of byte 0 and below.
+        high_db: Level of byte 255 and above.
+    """
     share = (power_db - low_db) / (high_db - low_db)
     return (np.clip(share, 0, 1) * 255).round().astype(np.uint8)
 

@@ -61,7 +61,15 @@ STYLE: Any = {
 
 
 def label_axes(axes: "Axes", title: str, x_label: str, y_label: str, *, grid: bool = False) -> None:
-    """Title at the upper left, axis labels, and ticks at round numbers."""
+    """Title at the upper left, axis labels, and ticks at round numbers.
+
+    Args:
+        axes: The axes.
+        title: Title.
+        x_label: Quantity and unit of the x axis.
+        y_label: Quantity and unit of the y axis.
+        grid: Whether a grid is drawn.
+    """
     axes.set(title=title, xlabel=x_label, ylabel=y_label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(_round_numbers())

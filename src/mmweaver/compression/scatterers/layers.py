@@ -60,24 +60,55 @@ def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
 
 
 def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:
-    """Cells (range, doppler, antenna) of a static layer (range, antenna)."""
+    """Cells of a static layer.
+
+    Args:
+        static: Static layer (range, antenna).
+        response: Point response of the window.
+        axes: Cells to render.
+
+    Returns:
+        Values (range, doppler, antenna).
+    """
     return static[:, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
 
 
 def subtract_static(residual: Array, static: Array, response: StaticResponse) -> None:
-    """Subtracts a static layer (range, antenna) from a residual (frame, range, doppler, antenna), in place."""
+    """Subtracts a static layer from a residual, in place.
+
+    Args:
+        residual: Residual (frame, range, doppler, antenna).
+        static: Static layer (range, antenna).
+        response: As given by `static_response`.
+    """
     kernel, bins = response
     residual[:, :, bins] -= static[:, None, :] * kernel[:, None]
 
 
 def fit_static(residual: Array, response: StaticResponse) -> Array:
-    """Least-squares static layer (range, antenna) of a residual (frame, range, doppler, antenna)."""
+    """Least-squares static layer of a residual.
+
+    Args:
+        residual: Residual (frame, range, doppler, antenna).
+        response: As given by `static_response`.
+
+    Returns:
+        Static layer (range, antenna).
+    """
     kernel, bins = response
     return np.einsum("trda,d->ra", residual[:, :, bins], kernel) / (len(residual) * np.square(kernel).sum())
 
 
 def static_response(response: PointResponse, axes: Axes) -> StaticResponse:
-    """Doppler response of zero velocity where it is not zero, and those bins: three for a Hann window."""
+    """Doppler response of zero velocity, where it is not zero.
+
+    Args:
+        response: Point response of the window.
+        axes: Cells to render.
+
+    Returns:
+        The response, and the slice of its bins: three for a Hann window.
+    """
     kernel = response.doppler_kernel(axes.doppler_bin)[0].numpy()
     found = np.flatnonzero(np.abs(kernel) > NO_RESPONSE)
     bins = slice(int(found[0]), int(found[-1]) + 1) if len(found) else slice(0, 0)
