@@ -27,7 +27,12 @@ def read_background(asked: "Options") -> "RadarCube | None":
 
 
 def radar_of(asked: "Options", background: "RadarCube | None") -> "RadarConfig":
-    """The radar; by default that of the background recording."""
+    """The radar, from the options or the background recording.
+
+    Args:
+        asked: The options.
+        background: The background recording, if any.
+    """
     from dataclasses import replace
 
     from mmweaver.core.range_window import chosen_range
@@ -66,7 +71,13 @@ def weaver_of(asked: "Options", radar: "RadarConfig", listener: "Callable[[str],
 
 
 def room_of(asked: "Options", weaver: "Weaver", background: "RadarCube | None") -> "Room":
-    """The room with its landmarks and its background recording."""
+    """The room with its landmarks and its background recording.
+
+    Args:
+        asked: The options.
+        weaver: Reader of rooms.
+        background: The background recording, if any.
+    """
     room = asked.read_room(weaver)
     room = room.with_landmarks(*asked.landmark) if asked.landmark else room
     return room if background is None else room.with_background(background, came_from=asked.background)

@@ -105,7 +105,11 @@ class Options(Printed):
 
 
 def run(asked: Options) -> int:
-    """Trains and writes the weights. Raises InputError."""
+    """Trains a network and writes its weights.
+
+    Raises:
+        InputError: For options or data that cannot be used.
+    """
     _check(asked)
     from mmweaver.core.output_checks import check_output_folder
     from mmweaver.training.device import ComputeDevice

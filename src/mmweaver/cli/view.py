@@ -31,7 +31,11 @@ class Options(General):
 
 
 def run(asked: Options) -> int:
-    """Writes the page. Raises InputError for a folder that holds no result."""
+    """Writes the page.
+
+    Raises:
+        InputError: If the folder contains no result.
+    """
     out = asked.out or asked.folder / "view.html"
     check_output_file(out, overwrite=asked.overwrite)
     from mmweaver.io.stored_result import read_result

@@ -81,7 +81,7 @@ def signal_filled(
 ) -> Complex[Array, "frame range doppler antenna"]:
     """Replaces active cells by a continuation of the noise around them.
 
-    Alternates between smoothing and restoring the other cells (Papoulis-Gerchberg).
+    Alternates between smoothing in the DCT domain and restoring the other cells.
 
     Args:
         values: Working frames (frame, range, doppler, antenna).

@@ -36,7 +36,12 @@ Labels = Int[np.ndarray, " window"]
 
 # labelled recordings ------------------------------------------------------------------------------------------------
 def fewest_recordings(windows: Sequence[PointRecording], labels: Sequence[str]) -> int:
-    """Number of recordings of the activity with the fewest, by the names of their windows."""
+    """Number of recordings of the activity with the fewest.
+
+    Args:
+        windows: Labelled windows; those of the same name belong to one recording.
+        labels: All activities.
+    """
     count = Counter(label for label, _ in {(window.label, window.name) for window in windows})
     return min(count[label] for label in labels)
 
@@ -92,7 +97,13 @@ def generated_worth(votes: Votes, labels: Labels) -> float:
 
 
 def labelled_alone(made: TrainingWindows, features: Features, labels: Labels) -> TrainingWindows:
-    """Labelled windows as the only training windows."""
+    """Labelled windows as the only training windows.
+
+    Args:
+        made: Training windows whose settings are kept.
+        features: Features (window, feature) of the labelled windows.
+        labels: Their labels (window,).
+    """
     whole, nobody = np.zeros(len(labels), bool), np.zeros(len(labels), int)
     return replace(made, features=features, label=labels, person=nobody, is_copy=whole, importance=None)
 
@@ -152,7 +163,12 @@ def following(windows: Sequence[PointRecording]) -> Bool[np.ndarray, " window"]:
 
 
 def smoothed_votes(votes: Votes, follows: Bool[np.ndarray, " window"]) -> Votes:
-    """Mean vote of each window and its neighbours, where they follow each other."""
+    """Mean vote of each window and its neighbours in the same recording.
+
+    Args:
+        votes: Votes (window, label).
+        follows: As given by `following`.
+    """
     total, count = votes.copy(), np.ones(len(votes))
     after = np.flatnonzero(follows)
     for here, there in ((after, after - 1), (after - 1, after)):

@@ -104,7 +104,15 @@ class TrainingWindows:
     def weighed_trees(
         self, options: TrainingOptions, which: Bool[np.ndarray, " window"] | None = None
     ) -> tuple[TreeEnsemble, Float[np.ndarray, " feature"]]:
-        """Trees as of `trees`, and the importance (feature,) of each feature."""
+        """Trees with the importance of each feature.
+
+        Args:
+            options: How trees are grown.
+            which: Mask (window,) of the windows to use; by default all.
+
+        Returns:
+            The trees, and the importance (feature,).
+        """
         which = np.ones(len(self.label), bool) if which is None else which
         return grow_trees(
             self.features[which],

@@ -144,7 +144,15 @@ class Service:
         }
 
     def room_of(self, session: Session, name: str) -> BroughtRoom:
-        """A room by its id, the session's own or an offered one; InputError if unknown."""
+        """A room by its id.
+
+        Args:
+            session: The session, for its own rooms.
+            name: Id of one of them or of an offered room.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         known = self._rooms | session.rooms
         if name not in known:
             raise InputError("this room is not known here; choose another one")
@@ -152,7 +160,15 @@ class Service:
 
     @staticmethod
     def radar_of(session: Session, name: str) -> RadarConfig:
-        """A radar by its id, the session's own or a preset; InputError if unknown."""
+        """A radar by its id.
+
+        Args:
+            session: The session, for its own radars.
+            name: Id of one of them, or name of a preset.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         if name in session.radars:
             return session.radars[name][1]
         if name not in PRESETS:
@@ -161,7 +177,16 @@ class Service:
 
     @staticmethod
     def board_of(session: Session, name: str, radar: RadarConfig) -> Board:
-        """A board by its id, the session's own, "ideal" or "typical:N"; InputError if unknown."""
+        """A board by its id.
+
+        Args:
+            session: The session, for its own boards.
+            name: Id of one of them, "ideal" or "typical:N".
+            radar: The radar that the board is for.
+
+        Raises:
+            InputError: If it is unknown.
+        """
         if name in session.boards:
             return find_board(session.boards[name][1], radar)
         if name != "ideal" and not name.startswith("typical:"):
@@ -170,7 +195,15 @@ class Service:
 
     @staticmethod
     def motion_of(session: Session, name: str | None) -> MotionClip | None:
-        """A motion uploaded to the session, None for None; InputError if unknown."""
+        """A motion uploaded to the session.
+
+        Args:
+            session: The session.
+            name: Id of the motion; None gives None.
+
+        Raises:
+            InputError: If it is no longer kept.
+        """
         if name is not None and name not in session.motions:
             raise InputError("this motion is no longer kept; open its file again")
         return None if name is None else session.motions[name][1]
@@ -225,12 +258,29 @@ class Service:
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
     def recording(self, session: Session, name: str) -> bytes:
-        """An offered recording, kept in the session and packed for the page; InputError if it cannot be read."""
+        """An offered recording, kept in the session and packed for the page.
+
+        Args:
+            session: The session.
+            name: Name of the recording.
+
+        Raises:
+            InputError: If it is unknown or cannot be read.
+        """
         return self._kept(session, self.recordings.get(name), {})
 
     @staticmethod
     def compare(session: Session, a: str, b: str) -> dict[str, Any]:
-        """The comparison of two kept results; InputError if one is no longer kept."""
+        """The comparison of two kept results, see `comparison`.
+
+        Args:
+            session: The session.
+            a: Id of the reference.
+            b: Id of the result that is compared with it.
+
+        Raises:
+            InputError: If one is no longer kept, or they cannot be compared.
+        """
         return comparison(session.result(a), session.result(b))
 
     def result_bytes(self, session: Session, name: str) -> bytes:
@@ -301,6 +351,10 @@ def _offered_room(files: RoomFiles) -> BroughtRoom:
 
 def comparison(a: Result, b: Result) -> dict[str, Any]:
     """The results of `mmweaver compare`: text and values, and a row for each feature that both sides have.
+
+    Args:
+        a: The reference.
+        b: The result that is compared with it.
 
     Raises:
         InputError: If one of them is a point cloud alone, or they have no common ranges.

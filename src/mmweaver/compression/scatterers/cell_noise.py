@@ -53,7 +53,15 @@ def num_sampled_bins(config: RadarConfig) -> int:
 
 
 def range_bins(white: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Mixes white bins (sampled, ...) as the range window does; the stored bins result, with 3/2 of the power."""
+    """Mixes white bins as the range window does.
+
+    Args:
+        white: White noise (sampled, ...) of `num_sampled_bins` bins.
+        config: The radar.
+
+    Returns:
+        The stored bins (range, ...), with 3/2 of the power.
+    """
     if len(white) < config.num_range_bins + 2:  # all bins, or all but one, are stored: neighbours are cyclic
         white = white[np.arange(-1, config.num_range_bins + 1) % config.num_samples]
     return white[1:-1] - 0.5 * (white[:-2] + white[2:])

@@ -126,7 +126,12 @@ def no_points(num_frames: int) -> Points:
 
 
 def select_points(points: Points, order: Tensor) -> Points:
-    """Points of each frame selected by indices (frame, selected)."""
+    """Points of each frame selected by index.
+
+    Args:
+        points: Points (frame, point).
+        order: Indices (frame, selected).
+    """
     return points[torch.arange(len(order))[:, None], order]
 
 
@@ -139,7 +144,15 @@ def compact(points: Points) -> Points:
 
 
 def strongest(points: Points, count: int) -> Points:
-    """The `count` strongest points over all frames."""
+    """The strongest points over all frames.
+
+    Args:
+        points: Points (frame, point).
+        count: Number of points to keep.
+
+    Returns:
+        Points (frame, point), padded with amplitude zero.
+    """
     size = points.amplitude.abs().flatten()
     if count >= int((size > 0).sum()):
         return compact(points)
